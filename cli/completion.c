@@ -53,7 +53,7 @@ static void print_words(FILE *out, CommandId command)
 
 /* ---- bash ---- */
 
-/* Whether a row before this one has the same option, of other commands. */
+/* Tells whether a row before this one has the same option, of other commands. */
 static bool is_told(OptionId id)
 {
     OptionId first = 0;

@@ -17,7 +17,7 @@ static void listen(void *user, const KrsDiagnostic *diagnostic)
         text_add(said, diagnostic->message);
 }
 
-/* Whether a text has a comma outside of brackets: a vector whose brackets are left out. */
+/* Tells whether a text has a comma outside of brackets: a vector whose brackets are left out. */
 static bool is_bare_vector(const char *text)
 {
     int depth = 0;

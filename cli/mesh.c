@@ -11,7 +11,7 @@
 /* --copies, in the order of copies_choices. */
 enum { COPIES_INSTANCES, COPIES_FLAT, COPIES_MERGED };
 
-/* How a file has copies. */
+/* Tells how a file has copies. */
 static int copies_in(const Options *options, const MeshFormat *format)
 {
     if (options->mesh_copies >= 0)

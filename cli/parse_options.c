@@ -61,7 +61,7 @@ bool option_is_given(const Options *options, OptionId id)
     return false;
 }
 
-/* Whether the command takes it for what it writes: `krs watch` has the options of `krs mesh` for meshes. */
+/* Tells whether the command takes it for what it writes: `krs watch` has the options of `krs mesh` for meshes. */
 static bool is_wanted(const Options *options, OptionId id)
 {
     return (options->meshes && option_belongs(id, COMMAND_MESH)) ||

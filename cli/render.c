@@ -384,7 +384,7 @@ static KrsStatus make_ready(Render *render)
     return status == KRS_OK ? render_compile(render) : status;
 }
 
-/* Whether all files of a frame are there already, and whole. */
+/* Tells whether all files of a frame are there already, and whole. */
 static bool is_there(const Render *render, uint32_t frame)
 {
     bool there = render->output_count > 0;

@@ -72,7 +72,7 @@ static const char *foreign_place(const char *path)
     return NULL;
 }
 
-/* Whether two names are one file for the first layer or the last. */
+/* Tells whether two names are one file for the first layer or the last. */
 static bool are_one_output(const Options *options, const char *a, const char *b)
 {
     bool one = output_is_same(numbered_path(options, a, 1), numbered_path(options, b, 1));
@@ -283,7 +283,7 @@ static KrsStatus find_error(Slicing *slicing, const double low[3], const double 
                : refuse_error(slicing);
 }
 
-/* Whether the box of the scene is on one side of the plane. */
+/* Tells whether the box of the scene is on one side of the plane. */
 static bool misses_box(const Slicing *slicing)
 {
     const KrsSectionPlane *plane = &slicing->plane;

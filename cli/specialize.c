@@ -52,7 +52,7 @@ static bool load_structure(Cache *cache, CacheKey key, SeenStructure *seen)
     return known;
 }
 
-/* Whether a scene of this structure has ever had other literals; from now on it is known. */
+/* Tells whether a scene of this structure has ever had other literals; from now on it is known. */
 static bool remember(Cache *cache, CacheKey structure, CacheKey literals)
 {
     SeenStructure seen  = {.literals = literals};

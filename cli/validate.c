@@ -249,7 +249,7 @@ static KrsStatus try_balls(Validation *v)
     return v->reached > ALL_OF_THE_WAY ? report_estimate(v) : KRS_OK;
 }
 
-/* Whether shaders may have found a distance in a cell that is a little aside, as they compute in
+/* Tells whether shaders may have found a distance in a cell that is a little aside, as they compute in
    single precision. */
 static bool is_of_cell_aside(Validation *v, const double point[3], double answered,
                              double tolerance)

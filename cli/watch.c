@@ -185,7 +185,7 @@ static KrsStatus make_all(Watch *watch)
     return status;
 }
 
-/* Whether another text of the scene, or more room, may do better. */
+/* Tells whether another text of the scene, or more room, may do better. */
 static bool can_be_mended(const Watch *watch, KrsStatus status, bool first)
 {
     if (status == KRS_INTERRUPTED)

@@ -106,7 +106,7 @@ static bool is_straight(const Cube *cube, double slopes[2])
     return true;
 }
 
-/* How many parts the surface may meet. */
+/* Tells how many parts the surface may meet. */
 static int count_met(const Cube *cube)
 {
     int count = 0;

@@ -9,7 +9,7 @@
 
 /* Those that are known, a blank between two. */
 const char *import_endings(void);
-/* Whether the name has one of these endings. */
+/* Tells whether the name has one of these endings. */
 bool import_knows(const char *path);
 
 /* Fills `scene` with a text that compiles without a mistake.  KRS_BAD_SCENE: `refusal` says which

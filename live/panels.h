@@ -7,7 +7,7 @@
 #include "live/viewing.h"
 
 void panels_draw(Viewing *viewing);
-/* How much of the window, at its right, is theirs: the picture stands beside it. */
+/* Tells how much of the window, at its right, is theirs: the picture stands beside it. */
 double panels_width(const Viewing *viewing);
 
 #endif

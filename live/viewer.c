@@ -153,7 +153,7 @@ static bool notice_slow_reading(Viewing *viewing)
     return viewing->reads_slowly;
 }
 
-/* How long the window may wait for the next event. */
+/* Tells how long the window may wait for the next event. */
 static double choose_wait(const Viewing *viewing, bool running)
 {
     if (running)

@@ -50,7 +50,7 @@ static int compare_numbers(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Whether the center is inside of the convex hull of points that are seen from it at these angles. */
+/* Tells whether the center is inside of the convex hull of points that are seen from it at these angles. */
 static bool is_held(Lying *lying)
 {
     if (lying->count < 3 || lying->result->base < LEAST_BASE * lying->m->measures->area)

@@ -43,7 +43,7 @@ typedef struct Measurer {
     atomic_size_t next; /* of what threads share */
 } Measurer;
 
-/* Whether to go on, asked by the first thread; all stop if not. */
+/* Tells whether to go on, asked by the first thread; all stop if not. */
 bool measurer_goes_on(Measurer *m, size_t part, double fraction);
 
 /* Each sets its members of the measures. */

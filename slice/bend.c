@@ -48,7 +48,7 @@ static void beside(const Stretch *stretch, double part, double left, double at[2
                 left * stretch->left[k];
 }
 
-/* Whether the outline is as near at four places along the stretch. */
+/* Tells whether the outline is as near at four places along the stretch. */
 static bool is_near(const Section *s, const Stretch *stretch, double reach)
 {
     static const double places[4] = {0.17, 0.39, 0.61, 0.87};
@@ -243,7 +243,7 @@ static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends 
     return true;
 }
 
-/* Whether an arc with such tangents, which are nearly the same, is as near to the stretch. */
+/* Tells whether an arc with such tangents, which are nearly the same, is as near to the stretch. */
 static bool has_tangents(const Stretch *stretch, const Ends *ends, double reach)
 {
     const double *n = ends->normals[0], *m = ends->normals[1];

@@ -63,7 +63,7 @@ static double width_of(const OutlinePoint *points, size_t count)
     return length > 0 ? 2 * fabs(area_of(points, NULL, count)) / length : 0;
 }
 
-/* Whether points that are left out leave nothing of a contour. */
+/* Tells whether points that are left out leave nothing of a contour. */
 static bool is_crumb(Section *s, const OutlinePoint *points, size_t count)
 {
     ArenaMark     before = arena_mark(&s->arena);

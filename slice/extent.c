@@ -110,7 +110,7 @@ static void halve(const Box *box, Box halves[2])
     halves[0].axis[longest].high = halves[1].axis[longest].low = middle;
 }
 
-/* Whether nothing is solid below best - gap; `best` is lower then. */
+/* Tells whether nothing is solid below best - gap; `best` is lower then. */
 static bool prove(Extent *e, Box all)
 {
     Box    open[MOST_OPEN];
@@ -175,7 +175,7 @@ static double find_bottom(const MeshField *field, const Box *box, int axis, doub
     return e.best < INFINITY ? e.best : bottom;
 }
 
-/* Whether nothing is solid in a box, as far as few boxes prove it. */
+/* Tells whether nothing is solid in a box, as far as few boxes prove it. */
 static bool is_empty(const MeshField *field, const double low[3], const double high[3])
 {
     Extent e = {.field = field, .sign = 1, .best = INFINITY};

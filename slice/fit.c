@@ -197,7 +197,7 @@ static size_t longest_run(const OutlinePoint *points, size_t from, size_t end, d
     return good;
 }
 
-/* How far it is from a point to the line or the circle of a piece. */
+/* Tells how far it is from a point to the line or the circle of a piece. */
 static double distance_to_whole(const Piece2 *piece, const double at[2])
 {
     if (piece->radius > 0)

@@ -138,7 +138,7 @@ static bool is_monotone(const LaneSlope *slope, const double direction[3])
 
 /* ---- what is thinner than cells ---- */
 
-/* Whether a value is on the other side by more than solids are thicker. */
+/* Tells whether a value is on the other side by more than solids are thicker. */
 static bool is_other(const Section *s, double distance, bool inside)
 {
     return inside ? distance > s->skin : distance < -2 * s->skin;
@@ -181,7 +181,7 @@ static double look_through(const Section *s, double side, const double from[2], 
     return 0;
 }
 
-/* Whether all of a line is on the other side. */
+/* Tells whether all of a line is on the other side. */
 static bool is_joined(const Section *s, const double from[2], const double to[2], bool inside)
 {
     enum { PLACES = 8 };
@@ -236,7 +236,7 @@ static bool leads_to(const Section *s, Fan *fan, bool inside, double reach, doub
 
 static const double WIDER = 16; /* so many thicknesses away what is thin may be thick */
 
-/* Whether what is thin at a place leads to where it is thicker; `angle` becomes the direction. */
+/* Tells whether what is thin at a place leads to where it is thicker; `angle` becomes the direction. */
 static bool is_end(const Section *s, const double at[2], bool inside, double thick, double *angle)
 {
     static const double DEEP = 0.6; /* a wall is half as deep as it is thick */
@@ -335,7 +335,7 @@ static bool hides_thin(Section *s, const Cell *cell)
 
 typedef enum CellState { CELL_EMPTY, CELL_LEAF, CELL_SPLIT } CellState;
 
-/* Whether the outline crosses an edge of a cell as often as its ends tell: not at all, or once at most. */
+/* Tells whether the outline crosses an edge of a cell as often as its ends tell: not at all, or once at most. */
 static bool is_plain_edge(const Section *s, const Cell *cell, int axis, uint32_t across)
 {
     double    low[2], high[2];
@@ -486,7 +486,7 @@ static size_t find_split(const Section *s, size_t first, size_t count, BoxOfItem
     return best * part;
 }
 
-/* Whether the tape that was entered last is worth another look in smaller boxes. */
+/* Tells whether the tape that was entered last is worth another look in smaller boxes. */
 static bool is_long(const MeshField *field)
 {
     const LaneTape *tape = field_tape(field);

@@ -57,7 +57,7 @@ bool grid_end_vtu(GridFile *file);
 bool grid_begin_vdb(GridFile *file);
 bool grid_add_vdb(GridFile *file, const KrsGridBrick *brick);
 bool grid_end_vdb(GridFile *file);
-/* Whether OpenVDB is there; else it is said of what `path` names. */
+/* Tells whether OpenVDB is there; else it is said of what `path` names. */
 KrsStatus grid_check_vdb(const char *path);
 
 #endif

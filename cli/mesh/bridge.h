@@ -112,9 +112,9 @@ static inline const unsigned char *mesh_corner_color(const MeshParts *parts, siz
                                 : parts->colors[parts->triangles[triangle][corner]];
 }
 
-/* Whether corners of such triangles have frames. */
+/* Tells whether corners of such triangles have frames. */
 bool mesh_needs_frames(const MeshMaterial *material);
-/* Whether a picture shows something of it. */
+/* Tells whether a picture shows something of it. */
 bool mesh_is_baked(const MeshMaterial *material);
 
 /* What glTF has as roughness, which is that across the tangent. */

@@ -71,12 +71,12 @@ KrsStatus write_meshes(Meshing *meshing);
 /* options.c: the files that are written. */
 size_t      output_count(const Meshing *meshing);
 const char *output_path(const Meshing *meshing, size_t index);
-/* How long what is meshed is; false: it has no end. */
+/* Tells how long what is meshed is; false: it has no end. */
 bool find_end(const Meshing *meshing, double *longest);
 /* Fills in what is meshed, as of all commands that take a solid; and how, as of `krs mesh` alone. */
 KrsStatus check_common_options(Meshing *meshing);
 KrsStatus check_mesh_options(Meshing *meshing);
-/* Whether files have neither colors nor parts with names. */
+/* Tells whether files have neither colors nor parts with names. */
 bool has_shapes_alone(const Meshing *meshing);
 /* That there is nothing to `what`, which is all that is said of empty results: where, unless that is all or the box of
    --within, and which error may have left out what there is (0: none).  Returns KRS_BAD_SCENE. */

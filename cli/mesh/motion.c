@@ -95,7 +95,7 @@ static double distance_between(const Motion *motion, size_t copy, const MeshPose
     return most;
 }
 
-/* How far a copy is from where it belongs between two keyframes. */
+/* Tells how far a copy is from where it belongs between two keyframes. */
 static double distance_of(const Motion *motion, size_t copy, Matrix *const ends[2],
                           Matrix *const places[PLACES])
 {
@@ -111,7 +111,7 @@ static double distance_of(const Motion *motion, size_t copy, Matrix *const ends[
     return most;
 }
 
-/* Whether it must have another keyframe in the middle, if there can be one. */
+/* Tells whether it must have another keyframe in the middle, if there can be one. */
 static bool wants_key(Motion *motion, size_t copy, Matrix *const ends[2],
                       Matrix *const places[PLACES], bool can)
 {

@@ -134,7 +134,7 @@ size_t output_count(const Meshing *meshing)
     return meshing->options->outputs.count ? meshing->options->outputs.count : 1;
 }
 
-/* Whether pictures show the colors of a file. */
+/* Tells whether pictures show the colors of a file. */
 static bool is_baked(const Meshing *meshing, const MeshFormat *format)
 {
     return meshing->options->mesh_bake > 0 && format->has_looks;
@@ -148,7 +148,7 @@ static bool can_be_baked(const Meshing *meshing)
     return false;
 }
 
-/* Whether only the shape counts. */
+/* Tells whether only the shape counts. */
 static bool is_shape_enough(const Meshing *meshing)
 {
     bool colors = false;

@@ -61,7 +61,7 @@ static bool walk(const Meshing *meshing, const Triangle *triangle, int corner,
     return true;
 }
 
-/* How a place changes along the two edges of the first corner. */
+/* Tells how a place changes along the two edges of the first corner. */
 static void find_slopes(const Triangle *triangle, double slopes[2][2])
 {
     for (int edge = 0; edge < 2; edge++)

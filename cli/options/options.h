@@ -80,7 +80,7 @@ const char *option_help(const OptionInfo *option, char text[OPTION_TEXT]);
 const char *option_words(const OptionInfo *option, char text[OPTION_TEXT]);
 
 bool option_belongs(OptionId id, CommandId command);
-/* Whether the command has options of this group. */
+/* Tells whether the command has options of this group. */
 bool group_belongs(OptionGroup group, CommandId command);
 /* False: whatever its value, samples of pictures are the same. */
 bool option_changes_pictures(OptionId id);
@@ -169,7 +169,7 @@ typedef struct Options {
     Arena *arena; /* for whatever a command needs until the process ends */
 } Options;
 
-/* Whether the command line has an option. */
+/* Tells whether the command line has an option. */
 bool option_is_given(const Options *options, OptionId id);
 
 #endif

@@ -167,7 +167,7 @@ static void say_anew(const Checkpoint *checkpoint, const char *why)
         say("`%s` %s; rendering begins anew", checkpoint->path, why);
 }
 
-/* Whether the sum at the end of a file is that of what is before it. */
+/* Tells whether the sum at the end of a file is that of what is before it. */
 static bool is_whole(FILE *file)
 {
     static unsigned char piece[1 << 16];

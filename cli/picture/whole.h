@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-/* Whether a file is there whose name ends in .exr or .png, and is such a picture from its first byte to its last:
+/* Tells whether a file is there whose name ends in .exr or .png, and is such a picture from its first byte to its last:
    what others have begun, emptied or cut off is none.  Pixels are not decoded. */
 bool picture_is_whole(const char *path);
 

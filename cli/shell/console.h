@@ -21,7 +21,7 @@ KrsStatus say_no_command(const char *word);
 void console_clear(void);
 /* On a terminal: what is being done, until a line is printed, or this is called with NULL. */
 void console_doing(const Options *options, const char *what);
-/* Whether colours are wanted on standard error. */
+/* Tells whether colours are wanted on standard error. */
 bool console_color(const Options *options);
 
 /* Standard output, to the last byte: KRS_IO_ERROR and a line when that fails. */

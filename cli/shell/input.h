@@ -8,7 +8,7 @@
 
 /* Reads standard input if `-` is one of the scenes. */
 KrsStatus input_open(Options *options);
-/* Whether a path stands for the scene that was read by input_open. */
+/* Tells whether a path stands for the scene that was read by input_open. */
 bool is_input(const Options *options, const char *path);
 
 #endif

@@ -291,7 +291,7 @@ static double seconds_of(struct timeval time)
     return (double)time.tv_sec + 1e-6 * (double)time.tv_usec;
 }
 
-/* Whether the child's processor time was used up: the system says so by SIGXCPU, or kills as well. */
+/* Tells whether the child's processor time was used up: the system says so by SIGXCPU, or kills as well. */
 static bool is_out_of_time(const Watch *watch, int signal_number)
 {
     struct rlimit limit;
@@ -478,7 +478,7 @@ static int run(Options *options, Work *work, const sigset_t *signals, const sigs
     return status;
 }
 
-/* Whether what took too long is one text of many: the next one may be better. */
+/* Tells whether what took too long is one text of many: the next one may be better. */
 static bool goes_on_watching(const Options *options, const Watch *watch)
 {
     const RunStage stage = (RunStage)atomic_load(&shared->stage);

@@ -51,10 +51,10 @@ void stage_enter(RunStage stage);
 
 /* Tells the parent that the work of this stage goes on: the deadline begins anew. */
 void stage_goes_on(void);
-/* Whether a checkpoint is there from which the same command goes on: then an interrupt ends it with
+/* Tells whether a checkpoint is there from which the same command goes on: then an interrupt ends it with
    status 75. */
 void stage_resumable(bool resumable);
-/* How large what is compiled is, should it take too long: "`a.krs` has 12 bytes". */
+/* Tells how large what is compiled is, should it take too long: "`a.krs` has 12 bytes". */
 void stage_size(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* For STAGE_WAIT: a process that is late before it is ended, which is said, and another one takes its place.

@@ -40,7 +40,7 @@ static bool same_span(Span a, Span b)
     return a.source == b.source && a.start == b.start && a.end == b.end;
 }
 
-/* Whether a diagnostic was given before.  The statements of a loop are elaborated many times and
+/* Tells whether a diagnostic was given before.  The statements of a loop are elaborated many times and
    would report the same mistake each time.  Only stored diagnostics are compared, which are few.
    A diagnostic without a location is never a repeat. */
 static bool is_repeat(const Diags *diags, DiagCode code, Span span)

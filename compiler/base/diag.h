@@ -73,7 +73,7 @@ const char *diag_text(Diags *diags, const char *format, ...) __attribute__((form
 void        diag_note(Diags *diags, Diag *diag, const char *note);
 void        diag_secondary(Diags *diags, Diag *diag, Span span, const char *label);
 
-/* Whether further errors would not be stored, so that a pass may stop looking for them. */
+/* Tells whether further errors would not be stored, so that a pass may stop looking for them. */
 bool diags_full(const Diags *diags);
 
 /* Sorts by source, in the order in which sources were read, then by position.  Notes come first, in

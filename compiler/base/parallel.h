@@ -16,7 +16,7 @@ enum { MOST_PARTS = 16 };
  */
 void run_in_parallel(void (*work)(void *task, size_t part, size_t parts), void *task);
 
-/* How many parts there are now. */
+/* Tells how many parts there are now. */
 size_t parallel_parts(void);
 
 /* Where a part of `count` items begins; part `parts` begins behind the last item. */

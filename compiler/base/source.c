@@ -187,7 +187,7 @@ static uint64_t hash_file(uint64_t hash, const char *path, const void *bytes, si
     return hash_bytes(hash, bytes, length);
 }
 
-/* How a scene that is called `scene` may name a file, wherever it is compiled: "" for its own. */
+/* Tells how a scene that is called `scene` may name a file, wherever it is compiled: "" for its own. */
 static uint64_t hash_named(uint64_t hash, const char *scene, const char *path, const void *bytes,
                            size_t length)
 {

@@ -142,7 +142,7 @@ static inline bool is_of_library(const Elaboration *e, const Shape *shape)
     return e->sources->items[shape->declaration->syntax->span.source].library;
 }
 
-/* Whether a limit was reached: everything is an error from here, silently. */
+/* Tells whether a limit was reached: everything is an error from here, silently. */
 static inline bool is_stopped(const Elaboration *e) { return e->builder->stopped; }
 
 /* Evaluates the first of e->files, whose names have been checked, into e->scene; e->scene is
@@ -172,7 +172,7 @@ bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax,
                    void *user);
 /* The environment with one more name, which hides any equal one. */
 Environment bind(Elaboration *e, const Environment *env, const char *name, Value value);
-/* Whether one may go through all shapes of a list and of the lists in it; false: reported. */
+/* Tells whether one may go through all shapes of a list and of the lists in it; false: reported. */
 bool check_shape_count(Elaboration *e, const List *list, Span span);
 /* The value of a top-level definition, evaluated when it is first needed, at `use`. */
 Value run_definition(Elaboration *e, Definition *definition, Span use);
@@ -220,7 +220,7 @@ typedef struct IterationLoop {
 } IterationLoop;
 /* What a statement shows. */
 Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show);
-/* Whether that may be tried: the shapes of this comprehension are joined. */
+/* Tells whether that may be tried: the shapes of this comprehension are joined. */
 bool iterations_possible(const Elaboration *e, const Syntax *comprehension);
 /* Behind the first element tries to make all of them; true: they are made. */
 bool iterations_made(Elaboration *e, const Comprehension *c);
@@ -244,7 +244,7 @@ Value value_authored(Elaboration *e, Value value);
 /* A number that an operation on others gives: the author may change it if one of them.  The same
    operation on the same numbers gives the same number. */
 Value value_from(Elaboration *e, Value value, Op op, const Value *arguments, uint32_t count);
-/* Whether it is such a number, or a list of some. */
+/* Tells whether it is such a number, or a list of some. */
 bool value_is_authored(Value value);
 /* The common case, which makes no node: an operation on numbers that are known now, though the author
    may change them.  False: some are not, or the result is not finite. */
@@ -270,7 +270,7 @@ Value value_list(Elaboration *e, Value *items, size_t count);
 Value value_vector(Elaboration *e, const double *numbers, uint32_t count);
 /* 1 for a number, 2 to 4 for a vector, 0 for anything else. */
 uint32_t value_size(const Elaboration *e, Value value);
-/* How many elements a vector has, all of them finite numbers that are known now; else 0. */
+/* Tells how many elements a vector has, all of them finite numbers that are known now; else 0. */
 uint32_t value_numbers(Value value, double numbers[4]);
 /* "a number", "a vector of 3", "a shape": for messages. */
 const char *value_type_name(Elaboration *e, Value value);
@@ -280,7 +280,7 @@ Node value_node(Elaboration *e, Value value);
 BindingTime value_time(const Elaboration *e, Value value);
 
 /* ---- units.c ---- */
-/* Whether a number in an expression has `deg` behind it. */
+/* Tells whether a number in an expression has `deg` behind it. */
 bool written_in_degrees(const Elaboration *e, const Syntax *syntax);
 /* "1.5", or "90deg". */
 void add_number(Text *text, double number, bool degrees);
@@ -300,7 +300,7 @@ const Definition *definition_of(const Elaboration *e, const Syntax *name);
 void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
 
 /* ---- members.c ---- */
-/* Whether `value.name` has the letters of components behind a vector: `v.x`, `c.rgb`. */
+/* Tells whether `value.name` has the letters of components behind a vector: `v.x`, `c.rgb`. */
 bool is_component(const Elaboration *e, Value value, const Syntax *syntax);
 /* A number, or a vector of as many components as the name has letters. */
 Value value_components(Elaboration *e, const Syntax *syntax, Value vector);
@@ -332,7 +332,7 @@ Value call_library(Elaboration *e, const char *name, Value first, const Syntax *
 bool made_for_author(const Elaboration *e, const char **name, Span *span);
 
 /* ---- empty.c ---- */
-/* Whether a shape can be empty though its parts are not. */
+/* Tells whether a shape can be empty though its parts are not. */
 bool may_vanish(const Shape *shape);
 /* Warns of a component, shown at `span`, that is known to be empty. */
 void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span);
@@ -397,7 +397,7 @@ size_t builtin_names(const char **names, size_t capacity);
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* builtins/csg.c */
-/* Whether it is `union`, `intersection` or `difference`. */
+/* Tells whether it is `union`, `intersection` or `difference`. */
 bool joins_shapes(const Builtin *builtin);
 /* `a | b`, `a & b` and `a - b` of shapes; `if` on a condition that frames know. */
 Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b);

@@ -77,7 +77,7 @@ static bool cells_are_empty(const Tape *tape, Node distance, Box box, NodeValue 
     return count == 0;
 }
 
-/* Whether a sharp union of distances has this one. */
+/* Tells whether a sharp union of distances has this one. */
 static bool least_has(const Graph *g, Node least, Node distance)
 {
     const Expr *e = &g->items[least];
@@ -85,7 +85,7 @@ static bool least_has(const Graph *g, Node least, Node distance)
                                                      least_has(g, e->operands[1], distance)));
 }
 
-/* Whether a shape is taken from itself: that leaves its surface, by which rays would be caught. */
+/* Tells whether a shape is taken from itself: that leaves its surface, by which rays would be caught. */
 static bool is_cancelled(const Graph *g, Node distance)
 {
     const Expr *e     = &g->items[distance];

@@ -13,7 +13,7 @@ EvaluationMark evaluation_mark(const Elaboration *e)
     return (EvaluationMark){arena_mark(e->values), e->kept};
 }
 
-/* Whether it refers to no other values. */
+/* Tells whether it refers to no other values. */
 static bool stands_alone(Value value)
 {
     switch (value.type) {

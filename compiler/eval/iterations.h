@@ -51,7 +51,7 @@ struct Iterated {
 bool iteration_condition(Elaboration *e, Iterated *iterated, Value condition);
 bool iteration_shape(Iterated *iterated, Value value);
 
-/* Whether some loop may be tried now. */
+/* Tells whether some loop may be tried now. */
 bool iterations_are_tried(const Elaboration *e);
 /* Tries to make the shapes of all iterations; `iterated` has its body and the witnesses. */
 bool iterations_try(Elaboration *e, Iterated *iterated);

@@ -230,7 +230,7 @@ bool is_of_author(const Elaboration *e, const Syntax *syntax)
     return !e->sources->items[syntax->span.source].library;
 }
 
-/* Whether a value is of the type of another; of those that no default shows, any is. */
+/* Tells whether a value is of the type of another; of those that no default shows, any is. */
 static bool is_alike(Elaboration *e, Value usual, Value value)
 {
     const bool shown = usual.type == VALUE_BOOLEAN || usual.type == VALUE_STRING ||
@@ -240,7 +240,7 @@ static bool is_alike(Elaboration *e, Value usual, Value value)
     return !shown || value.type == usual.type;
 }
 
-/* Whether the default of a parameter shows what it must be.  Functions of a scene may take more than
+/* Tells whether the default of a parameter shows what it must be.  Functions of a scene may take more than
    that, those of the library say it by a kind, and shapes that a default makes need not be made. */
 static bool is_shown_by_default(const Elaboration *e, const Function *function, const Syntax *call,
                                 const Syntax *parameter)

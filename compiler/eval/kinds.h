@@ -8,16 +8,16 @@
 
 #include "compiler/eval/elaborate.h"
 
-/* Whether a text is the scene's, not the library's. */
+/* Tells whether a text is the scene's, not the library's. */
 bool is_of_author(const Elaboration *e, const Syntax *syntax);
 
 /* ---- kinds.c ---- */
 /* A path of points becomes one of curves, straight from each to the next; one radius a list. */
 Value value_as_kind(Elaboration *e, ParameterKind kind, Value value, const Syntax *origin);
-/* Whether a parameter takes a value of this type, which may become another; false: reported. */
+/* Tells whether a parameter takes a value of this type, which may become another; false: reported. */
 bool fits_type(Elaboration *e, const Environment *env, const Function *function, const Syntax *call,
                const Syntax *parameter, Value *value, const Syntax *origin);
-/* Whether a number is in the range of its parameter, if that has one; `origin` is the argument, or
+/* Tells whether a number is in the range of its parameter, if that has one; `origin` is the argument, or
    where the default or the call is, if none is `given`.  False: reported. */
 bool fits_range(Elaboration *e, const Environment *env, const Function *function,
                 const Syntax *parameter, Value value, const Syntax *origin, bool given);

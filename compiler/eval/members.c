@@ -155,7 +155,7 @@ static Range range_of_node(Elaboration *e, Node node)
     return range;
 }
 
-/* Whether it is `floor(n * random)`.  The range of the product ends at n, as ranges are rounded up;
+/* Tells whether it is `floor(n * random)`.  The range of the product ends at n, as ranges are rounded up;
    in double precision n times the largest number below 1 is below n. */
 static bool is_part_of(Elaboration *e, Node index, size_t count)
 {
@@ -182,7 +182,7 @@ static bool is_required(Elaboration *e, Node index, size_t count)
     return iterations_require(e, graph_op2(g, OP_and, whole, between));
 }
 
-/* Whether the index, rounded down, is one of the list in all frames; false: reported. */
+/* Tells whether the index, rounded down, is one of the list in all frames; false: reported. */
 static bool check_index_range(Elaboration *e, const Syntax *syntax, Node index, size_t count)
 {
     if (is_required(e, index, count))

@@ -89,7 +89,7 @@ static void unknown_property(Elaboration *e, const Syntax *block, const Syntax *
     note_names(e, diag, "its properties", names, count);
 }
 
-/* Whether a block may have a property; false: reported. */
+/* Tells whether a block may have a property; false: reported. */
 static bool check_property(Elaboration *e, const Syntax *block, const Syntax *property)
 {
     for (size_t i = 0; i < BLOCK_PROPERTY_COUNT; i++) {

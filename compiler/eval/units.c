@@ -31,7 +31,7 @@ void add_number(Text *text, double number, bool degrees)
         text_number(text, number);
 }
 
-/* Whether an expression is a number as such, perhaps with a minus. */
+/* Tells whether an expression is a number as such, perhaps with a minus. */
 static bool is_literal(const Syntax *syntax)
 {
     if (syntax->kind == SYNTAX_UNARY && syntax->op == TOKEN_MINUS)
@@ -63,7 +63,7 @@ void warn_of_revolutions(Elaboration *e, const Syntax *syntax, Value value)
     diag->replacement = instead;
 }
 
-/* Whether it is a number of degrees that people write: 10 or more, and 360 or 15 go with it. */
+/* Tells whether it is a number of degrees that people write: 10 or more, and 360 or 15 go with it. */
 static bool looks_like_degrees(double number)
 {
     number = fabs(number);

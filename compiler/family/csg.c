@@ -13,7 +13,7 @@
 
 /* ---- how it is made ---- */
 
-/* How many operands of a blend can act at one point.  One that is farther than the reach acts only as the
+/* Tells how many operands of a blend can act at one point.  One that is farther than the reach acts only as the
    least of all, alone; and no distance is less than that to the box (lower_operand).  Of pairs two act, and
    the solid that others are taken from. */
 static uint32_t acting_at_once(ShapeBuilder *builder, const Shape *csg_node)

@@ -58,7 +58,7 @@ Lowered with_region(Lowering *l, Lowered result, Node offset);
 /* As much of a distance as a weight needs whose slope is `steep`: a fraction of the width of the solid
    where that is less.  *cost is what the weight adds to the slope. */
 Node cut_distance(Graph *g, Node distance, double width, Node steep, Node *cost);
-/* How far the solid reaches from the y axis. */
+/* Tells how far the solid reaches from the y axis. */
 double axis_radius(Box box);
 /* x and z scaled, y another. */
 Node across_scaled(Graph *g, Node point, Node y, Node factor);

@@ -24,7 +24,7 @@ static double bump_size(ShapeBuilder *builder, const Bump *bump, Box box)
         graph_facts(bump->graph, box, NULL, builder->scratch)[bump->root].value[0]);
 }
 
-/* How large the expression can be where the displaced surface can be; that grows with it. */
+/* Tells how large the expression can be where the displaced surface can be; that grows with it. */
 static double bump_reach(ShapeBuilder *builder, const Bump *bump, Box box)
 {
     enum { TRIALS = 40 };
@@ -109,7 +109,7 @@ const Shape *make_displace(ShapeBuilder *builder, const Shape *shape, Node formu
 
 /* ---- how it is lowered ---- */
 
-/* How far above the high side and below the low one, the most of all axes; negative within. */
+/* Tells how far above the high side and below the low one, the most of all axes; negative within. */
 static Node box_excess(Graph *g, Node point, Node low, Node high, Node *outside)
 {
     Node below = sub(g, low, point), above = sub(g, point, high);

@@ -162,7 +162,7 @@ static bool depends_on_point(const ShapeBuilder *builder, Node node)
     return builder->graph->items[node].time == TIME_POINT;
 }
 
-/* Whether nothing of the point is left, as in x - x. */
+/* Tells whether nothing of the point is left, as in x - x. */
 static bool series_is_constant(const Graph *g, const Series *s)
 {
     uint32_t k = s->degree;

@@ -75,7 +75,7 @@ static bool has_terms_among(const Graph *g, Node node, uint32_t *nodes)
            (e->op == OP_mul && has_terms_among(g, e->operands[1], nodes));
 }
 
-/* Whether there are terms below products and signs; one that is not found is no mistake, as a
+/* Tells whether there are terms below products and signs; one that is not found is no mistake, as a
    product can be a term itself. */
 static bool has_terms(const Graph *g, Node node)
 {
@@ -261,7 +261,7 @@ static double distance_along(const TrialMarch *m, const Tape *tape, Node root, c
     return values[root].v[0];
 }
 
-/* How far a ray goes through the box. */
+/* Tells how far a ray goes through the box. */
 static double length_through(Box box, const TrialRay *ray)
 {
     double length = HUGE_VAL;

@@ -124,7 +124,7 @@ static void point_above(Box box, int face, double u, double v, double above, dou
     point[second] = b.low + v * (b.high - b.low);
 }
 
-/* How many times longer than `distance` the way to the box is around it, at most. */
+/* Tells how many times longer than `distance` the way to the box is around it, at most. */
 static double stretch_around(const Tape *tape, Node distance, Box box, double reach,
                              NodeValue *values)
 {
@@ -223,7 +223,7 @@ static void add_term(Lowering *l, const Shape *meta, const Shape *child, LowerCo
     terms->entries[terms->count++] = graph_op2(g, OP_max, entry, zero);
 }
 
-/* How many shapes a step can reach: one each for those whose reach begins at once, less for others,
+/* Tells how many shapes a step can reach: one each for those whose reach begins at once, less for others,
    0 for those that the longest step, `most`, does not reach. */
 static Node count_reached(const MetaTerms *terms, Node nearest, Node most)
 {

@@ -45,7 +45,7 @@ const Shape *make_shell(ShapeBuilder *builder, const Shape *shape, Node thicknes
     return shell;
 }
 
-/* Whether normals follow from derivatives: differences see both sides of an open surface. */
+/* Tells whether normals follow from derivatives: differences see both sides of an open surface. */
 static bool is_derivable(ShapeBuilder *builder, const Shape *shape)
 {
     Node gradient, number = shape->formula != NODE_NONE ? shape->formula : shape->distance;
@@ -94,7 +94,7 @@ static Lowered thin_open_surface(Lowering *l, Lowered solid)
     return solid;
 }
 
-/* Whether something that is computed of the surface asks for its side. */
+/* Tells whether something that is computed of the surface asks for its side. */
 static bool asks_front(Lowering *l, Node node)
 {
     const Node front = graph_leaf(l->graph, OP_FRONT);

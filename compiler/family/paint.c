@@ -36,7 +36,7 @@ static Tape material_tape(const Graph *graph, const Material *material, Arena *a
     return tape_new(graph, roots, count, arena);
 }
 
-/* Whether a material uses `u` or `v` (OP_UV), or `orbit_trap` (OP_TRAP). */
+/* Tells whether a material uses `u` or `v` (OP_UV), or `orbit_trap` (OP_TRAP). */
 static bool material_needs(ShapeBuilder *builder, const Material *material, Op leaf)
 {
     bool needed = false;
@@ -47,7 +47,7 @@ static bool material_needs(ShapeBuilder *builder, const Material *material, Op l
     return needed;
 }
 
-/* Whether a material has highlights whose length depends on a direction. */
+/* Tells whether a material has highlights whose length depends on a direction. */
 static bool is_anisotropic(const Graph *graph, const Material *material)
 {
     const Node roughness = material->specular_roughness_anisotropy;

@@ -81,7 +81,7 @@ static Node tangent_by_formula(Lowering *l, const Shape *shape, LowerContext con
     return with_gradient(l, graph_op2(g, OP_div, f, steep), n, context.point);
 }
 
-/* Whether a distance is the length of a vector that vanishes at the surface, with a sign: rounding
+/* Tells whether a distance is the length of a vector that vanishes at the surface, with a sign: rounding
    decides which way that vector points. */
 static bool is_signed_length(const Graph *g, Node distance)
 {

@@ -81,7 +81,7 @@ static Lowered outside_of_box(Lowering *l, const Shape *shape, LowerContext cont
     return result;
 }
 
-/* Whether the content looks the same mirrored in the middle of its cell on an axis; `mapped`
+/* Tells whether the content looks the same mirrored in the middle of its cell on an axis; `mapped`
    is OP_POINT seen by the content, which may stand turned in its cell. */
 static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_t axis)
 {
@@ -341,7 +341,7 @@ Lowered lower_repeat(Lowering *l, const Shape *shape, LowerContext context)
 
 static bool range_is_finite(Range range) { return isfinite(range.low) && isfinite(range.high); }
 
-/* Whether a box ends in all directions across y. */
+/* Tells whether a box ends in all directions across y. */
 static bool ends_across(Box box)
 {
     return range_is_finite(box.axis[0]) && range_is_finite(box.axis[2]);
@@ -355,7 +355,7 @@ static Node rotate_about_y(Graph *g, Node point, double angle)
     return angle == 0 ? point : graph_op4(g, OP_rotate, point, r0, r1, r2);
 }
 
-/* How far the content, turned by -angle, stays from the walls of the sector around +x.  What has no
+/* Tells how far the content, turned by -angle, stays from the walls of the sector around +x.  What has no
    end across the axis is taken to cross them. */
 static double sector_margin(Box content, double angle, double half_sector)
 {

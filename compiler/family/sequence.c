@@ -246,7 +246,7 @@ static void join_kernel(Lowering *l, SequenceState *state, Lowered kernel)
     state->inside = nearer_of(l->graph, state->inside, kernel.distance);
 }
 
-/* How far from the surface distances must be right behind a map that inverts. */
+/* Tells how far from the surface distances must be right behind a map that inverts. */
 static double reach_behind_inversion(double reach) { return reach > 0 ? HUGE_VAL : 0; }
 
 static void take_kernel(Lowering *l, SequenceState *state, const Shape *shape)

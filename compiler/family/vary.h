@@ -7,9 +7,9 @@
 
 #include "compiler/lower/context.h"
 
-/* Whether an expression needs a leaf. */
+/* Tells whether an expression needs a leaf. */
 bool depends_on_leaf(const Graph *graph, Node root, Node leaf, Arena *scratch);
-/* Whether the content's distance depends on its cell, not its surface alone. */
+/* Tells whether the content's distance depends on its cell, not its surface alone. */
 bool content_varies(Lowering *l, const Shape *repeat);
 /* What becomes of an expression with a leaf in a copy. */
 typedef Node CopyWithLeaf(Lowering *l, Node node, const void *user);

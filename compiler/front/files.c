@@ -119,7 +119,7 @@ static void refuse(Files *files, Span place, const char *path, const Loaded *tex
         explain_file(files->diags, diag, path);
 }
 
-/* Whether one more text may be added; false: reported. */
+/* Tells whether one more text may be added; false: reported. */
 static bool check_length(Files *files, size_t length, Span place)
 {
     files->bytes += length;
@@ -153,7 +153,7 @@ static File *load_text(Files *files, const Syntax *use, const char *path)
     return file;
 }
 
-/* Whether names may be missing in a file, because something in another file could not be read.
+/* Tells whether names may be missing in a file, because something in another file could not be read.
    Then unknown names are not reported. */
 static bool may_miss_names(const Files *files, const File *file)
 {

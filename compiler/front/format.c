@@ -74,7 +74,7 @@ static bool is_wide(const Pieces *pieces, size_t index)
            end_from(&pieces->items[index - 1]) + natural_gap(pieces, index);
 }
 
-/* Whether two pieces may form a column: both the same, or values behind the same sign. */
+/* Tells whether two pieces may form a column: both the same, or values behind the same sign. */
 static bool are_alike(const Pieces *pieces, size_t a, size_t b)
 {
     PieceKind before = pieces->items[a - 1].kind;

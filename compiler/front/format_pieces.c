@@ -158,7 +158,7 @@ bool goes_on(PieceKind kind)
            kind == TOKEN_SEMICOLON || (closes(kind) && kind != TOKEN_RIGHT_BRACE);
 }
 
-/* Whether a value ends with this word, so that a bracket behind it calls or indexes it. */
+/* Tells whether a value ends with this word, so that a bracket behind it calls or indexes it. */
 static bool ends_value(const Pieces *pieces, size_t index)
 {
     const Piece *piece = &pieces->items[index], *before = word_before(pieces, index);

@@ -29,23 +29,23 @@ typedef struct Pieces {
     size_t      count, capacity;
 } Pieces;
 
-/* Whether nothing is seen of a character at the end of a line. */
+/* Tells whether nothing is seen of a character at the end of a line. */
 bool is_line_blank(char c);
 
 /* The pieces of a source without mistakes. */
 Pieces read_pieces(uint32_t source, const Sources *sources, Arena *arena);
-/* Whether both texts have the same words and comments. */
+/* Tells whether both texts have the same words and comments. */
 bool pieces_equal(const Pieces *a, const Pieces *b);
 
 /* The word before piece `index`, past comments, or NULL. */
 const Piece *word_before(const Pieces *pieces, size_t index);
 bool         opens(PieceKind kind);
 bool         closes(PieceKind kind);
-/* Whether a line that begins with this goes on with the statement above, even behind a `}`. */
+/* Tells whether a line that begins with this goes on with the statement above, even behind a `}`. */
 bool goes_on(PieceKind kind);
 /* Blanks between piece `index` and the one before it in the same line: 0 or 1. */
 uint32_t natural_gap(const Pieces *pieces, size_t index);
-/* Whether a value begins with piece `index`, such that lines below may begin in its column. */
+/* Tells whether a value begins with piece `index`, such that lines below may begin in its column. */
 bool begins_value(const Pieces *pieces, size_t index);
 
 #endif

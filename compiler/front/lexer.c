@@ -311,7 +311,7 @@ static void find_beginnings(Lexer *lexer)
             lexer->sign[(unsigned char)rows[kind].spelling[0]] = (uint8_t)kind;
 }
 
-/* Whether a token, a space or a lookalike begins here. */
+/* Tells whether a token, a space or a lookalike begins here. */
 static bool is_known_byte(const Lexer *lexer)
 {
     unsigned char c = (unsigned char)peek(lexer, 0);
@@ -611,7 +611,7 @@ static void lex_token(Lexer *lexer)
         lex_stray(lexer);
 }
 
-/* Whether this is a picture or a program instead of a scene: near its beginning there are zero bytes
+/* Tells whether this is a picture or a program instead of a scene: near its beginning there are zero bytes
    as well as bytes that are not UTF-8. */
 static bool is_binary(const Source *source)
 {

@@ -431,7 +431,7 @@ static void check_circles(Checker *c)
 
 /* ---- the file ---- */
 
-/* Whether a part of a statement could not be read: it may have defined names that the rest uses. */
+/* Tells whether a part of a statement could not be read: it may have defined names that the rest uses. */
 static bool contains_error(const Syntax *syntax)
 {
     bool found = syntax->kind == SYNTAX_ERROR;
@@ -440,7 +440,7 @@ static bool contains_error(const Syntax *syntax)
     return found;
 }
 
-/* Whether a top-level statement could not be read.  It may have defined names that others use. */
+/* Tells whether a top-level statement could not be read.  It may have defined names that others use. */
 static bool has_unread_statement(const Syntax *file)
 {
     for (uint32_t i = 0; i < file->count; i++)

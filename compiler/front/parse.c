@@ -267,7 +267,7 @@ static Syntax *stray_brace(Parser *p)
     return error;
 }
 
-/* Whether a token behind a name begins a change of its value, as in `a += 1`. */
+/* Tells whether a token behind a name begins a change of its value, as in `a += 1`. */
 static bool is_change(TokenKind kind)
 {
     return kind == TOKEN_PLUS || kind == TOKEN_MINUS || kind == TOKEN_STAR || kind == TOKEN_SLASH;

@@ -81,7 +81,7 @@ static ParameterKind parse_kind(Parser *p)
     return KIND_ANY;
 }
 
-/* Whether a kind of value follows, not a default behind a wrong sign. */
+/* Tells whether a kind of value follows, not a default behind a wrong sign. */
 static bool is_kind_next(const Parser *p)
 {
     const TokenKind after = kind_after(p);

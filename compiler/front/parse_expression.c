@@ -159,7 +159,7 @@ static Syntax *parse_range(Parser *p)
     return binary(p, op, from, to);
 }
 
-/* Whether a comparison operator is next.  A single `=` is reported and counts as `==`: behind an
+/* Tells whether a comparison operator is next.  A single `=` is reported and counts as `==`: behind an
    expression it cannot be a definition, since only names are defined. */
 static bool at_comparison(Parser *p)
 {

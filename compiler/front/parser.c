@@ -75,7 +75,7 @@ bool at_message(const Parser *p)
            kind_after(p) == TOKEN_LEFT_PAREN;
 }
 
-/* Whether the current token is the first on its line. */
+/* Tells whether the current token is the first on its line. */
 static bool begins_line(const Parser *p)
 {
     if (p->here.at == 0)
@@ -92,7 +92,7 @@ bool begins_declaration(const Parser *p)
            kind_at(p, p->here.at + 1) != TOKEN_COLON && before != TOKEN_DOT;
 }
 
-/* Whether a brace is closed anywhere.  This reads up to the end of the file, but only after a
+/* Tells whether a brace is closed anywhere.  This reads up to the end of the file, but only after a
    mistake. */
 static bool brace_is_closed(const Parser *p, size_t opener)
 {
@@ -305,7 +305,7 @@ void skip_declaration(Parser *p)
     while (p->here.braces > outer && token_here(p)->kind != TOKEN_END);
 }
 
-/* Whether recovery may end here, because a statement begins.  `let`, `for` and `if` may also begin
+/* Tells whether recovery may end here, because a statement begins.  `let`, `for` and `if` may also begin
    parts of expressions.  So they must begin a line, outside of brackets opened after `start`. */
 static bool may_resume(const Parser *p, Level start)
 {

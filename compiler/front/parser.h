@@ -53,14 +53,14 @@ const Token *token_before(const Parser *p);
 /* Moves to the next token and returns the one that was current; accept() only if it has a kind. */
 const Token *advance(Parser *p);
 bool         accept(Parser *p, TokenKind kind);
-/* Whether the current token can name a property or argument: a name, or a word that begins
+/* Tells whether the current token can name a property or argument: a name, or a word that begins
    statements elsewhere. */
 bool is_label(const Parser *p);
 bool is_word_here(const Parser *p, const char *word);
-/* Whether `print(` or `assert(` is next; without a parenthesis these are names. */
+/* Tells whether `print(` or `assert(` is next; without a parenthesis these are names. */
 bool at_message(const Parser *p);
 bool names_message(const char *name);
-/* Whether the current token begins a statement that cannot be part of an expression. */
+/* Tells whether the current token begins a statement that cannot be part of an expression. */
 bool begins_declaration(const Parser *p);
 
 /* ---- errors ---- */
@@ -86,7 +86,7 @@ void enter(Parser *p);
 void leave(Parser *p);
 
 /* ---- recovery ---- */
-/* Whether a statement begins here that this block cannot have, because its brace is missing. */
+/* Tells whether a statement begins here that this block cannot have, because its brace is missing. */
 bool block_is_left(const Parser *p, size_t opener, BlockKind kind);
 /* After a mistake: goes behind a declaration with a block that stands where none may. */
 void skip_declaration(Parser *p);

@@ -94,7 +94,7 @@ bool explain_parameter(Diags *diags, Diag *diag, const char *word, const char *o
 
 /* ---- the library ---- */
 
-/* Whether a line of a text defines the name, at its beginning. */
+/* Tells whether a line of a text defines the name, at its beginning. */
 static bool defines(const EmbeddedFile *file, const char *name)
 {
     static const char *const words[] = {"def ", "let ", "shape ", "material "};

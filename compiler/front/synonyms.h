@@ -38,7 +38,7 @@ const char *form_written(SynonymForm form);
 const char *form_example(SynonymForm form);
 const char *form_help(Diags *diags, SynonymForm form);
 
-/* Whether there is a row for a word without owner. */
+/* Tells whether there is a row for a word without owner. */
 bool is_synonym(SynonymPlace place, const char *word);
 /* Adds the help of the row for a word, if there is one: label, help and replacement.  `owner` is that
    of the row, "" where the place has none. */

@@ -94,10 +94,10 @@ const char *parameter_kind_name(ParameterKind kind);
 /* "comprehension", for dumps. */
 const char *syntax_kind_name(SyntaxKind kind);
 
-/* Whether a definition is called: a `def`, a shape, a material with a list of parameters. */
+/* Tells whether a definition is called: a `def`, a shape, a material with a list of parameters. */
 bool syntax_is_function(const Syntax *syntax);
 
-/* Whether a statement gives its name a meaning in the whole file. */
+/* Tells whether a statement gives its name a meaning in the whole file. */
 bool syntax_defines(const Syntax *syntax);
 
 /* Writes the tree as indented text, a node in each line: kind, name, number, line:column. */

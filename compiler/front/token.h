@@ -27,7 +27,7 @@ typedef struct Token {
 /* What messages call a token: "`let`", "a number", "the end of the file". */
 const char *token_kind_text(TokenKind kind);
 
-/* Whether a keyword begins a statement; behind `.` and before `:` such words are names. */
+/* Tells whether a keyword begins a statement; behind `.` and before `:` such words are names. */
 bool token_is_statement_word(TokenKind kind);
 
 typedef struct Tokens {

@@ -60,7 +60,7 @@ static double cubic_integral(double v)
     return v < 0.5 ? v * v * v / 1.5 : v - 0.5 + rest * rest * rest / 1.5;
 }
 
-/* How far an operand is below the threshold, as far as that counts. */
+/* Tells how far an operand is below the threshold, as far as that counts. */
 static double below_threshold(double threshold, double height)
 {
     return fmin(fmax(threshold - height, 0), 1);

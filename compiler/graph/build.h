@@ -16,7 +16,7 @@ static inline Node mul(Graph *g, Node a, Node b) { return graph_op2(g, OP_mul, a
 static inline Node over(Graph *g, Node a, Node b) { return graph_op2(g, OP_div, a, b); }
 static inline Node neg(Graph *g, Node a) { return graph_op1(g, OP_neg, a); }
 
-/* Whether a node is this constant; of vectors only 0 is known. */
+/* Tells whether a node is this constant; of vectors only 0 is known. */
 bool is_number(const Graph *g, Node node, double value);
 
 /* a + b, a b and a vector times a number, without what is 0 or 1; a a is a square. */

@@ -35,7 +35,7 @@ Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *a
    stands on it twice: before what it may leave out, and after. */
 Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
 
-/* How many nodes it has at points, those of functions that it calls included. */
+/* Tells how many nodes it has at points, those of functions that it calls included. */
 size_t tape_operations(const Tape *tape);
 
 /* What it costs at each point, in multiply-adds; what depends on the frame does not count. */
@@ -58,7 +58,7 @@ bool tape_depends_on(const Tape *tape, uint32_t slot);
 /* Runs the part of a tape that does not depend on the point.  `values` has graph->count
    elements, indexed by node; parameters[slot] is the parameter block (slot 0: time). */
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values);
-/* Whether a node's value is finite: elements of numbers, vectors and truth values count. */
+/* Tells whether a node's value is finite: elements of numbers, vectors and truth values count. */
 bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values);
 /* Of what the part of a tape that depends on the point gets from the frame, something that is not
    finite; NODE_NONE: all is.  A value that is chosen against, as in `if a == 0 then 1 else 1 / a`,

@@ -163,17 +163,17 @@ Node graph_power(Graph *graph, Node base, Node exponent);
 GraphType graph_op_type(Op op, const GraphType *operands, uint32_t count);
 
 const char *graph_op_name(Op op);
-/* Whether its value, `number`, is known now: OP_CONSTANT or OP_PARAMETERISED. */
+/* Tells whether its value, `number`, is known now: OP_CONSTANT or OP_PARAMETERISED. */
 bool graph_is_constant(const Graph *graph, Node node);
-/* Whether a component is such a number, which may be one of those that a vector is built of. */
+/* Tells whether a component is such a number, which may be one of those that a vector is built of. */
 bool graph_known_component(const Graph *graph, Node node, uint32_t component, double *number);
-/* Whether all are known, and finite. */
+/* Tells whether all are known, and finite. */
 bool graph_known_finite(const Graph *graph, Node node);
 
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);
 bool        op_has_traits(Op op, OpTraits traits);
-/* Whether the operand says how it works, not where: an exponent or a count. */
+/* Tells whether the operand says how it works, not where: an exponent or a count. */
 bool op_has_setting(Op op, int operand);
 /* What an operation costs, in multiply-adds of one component, as measured on lavapipe. */
 double op_cost(Op op, GraphType type, const GraphType *operands);

@@ -56,7 +56,7 @@ const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *cou
 
 /* ---- the lists of all cells that a ball meets ---- */
 
-/* How far a point is from a cell along an axis. */
+/* Tells how far a point is from a cell along an axis. */
 static double outside_cell(const Grid *grid, int axis, uint32_t cell, double coordinate)
 {
     double low = grid->low[axis] + cell * grid->size;
@@ -84,7 +84,7 @@ static void add_list(const Grid *grid, size_t cell, NearInstances *near)
         near->bits[(*list - near->first) / 64] |= (uint64_t)1 << (*list - near->first) % 64;
 }
 
-/* How far the far side of a cell is from a point along an axis. */
+/* Tells how far the far side of a cell is from a point along an axis. */
 static double far_side(const Grid *grid, int axis, uint32_t cell, double coordinate)
 {
     double low = grid->low[axis] + cell * grid->size;

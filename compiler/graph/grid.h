@@ -37,7 +37,7 @@ const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *cou
 
 size_t grid_cell_count(const Grid *grid);
 
-/* How far a point is from a box. */
+/* Tells how far a point is from a box. */
 double distance_to_box(const Box *box, const double point[3]);
 
 /* Which of `count` instances from number `first` on are near a point: bit i % 64 of bits[i / 64] is that
@@ -53,7 +53,7 @@ typedef struct NearInstances {
    instance meets.  `first` and `count` are set before. */
 void grid_near(const Grid *grid, const double point[3], double radius, double clear,
                NearInstances *near);
-/* Whether all cells are in the ball, so that no instance is left out. */
+/* Tells whether all cells are in the ball, so that no instance is left out. */
 bool grid_is_within(const Grid *grid, const double point[3], double radius);
 
 /* The cell along an axis with this coordinate, or the outermost one. */

@@ -81,7 +81,7 @@ typedef struct InstanceTable {
     Span     span; /* of the join */
 } InstanceTable;
 
-/* How many nodes a place has. */
+/* Tells how many nodes a place has. */
 static inline uint32_t place_nodes(PlaceKind kind)
 {
     return kind == PLACE_ROTATED ? 5 : kind == PLACE_SHIFT;
@@ -89,7 +89,7 @@ static inline uint32_t place_nodes(PlaceKind kind)
 
 /* How many texels of krs_cells the header of a table has for shaders. */
 enum { GRID_HEADER = 10 };
-/* How many texels, of four numbers each, a row has for shaders.  Tails are one more column. */
+/* Tells how many texels, of four numbers each, a row has for shaders.  Tails are one more column. */
 static inline size_t row_texels(const InstanceTable *table)
 {
     return (table->columns + (table->cells.tails ? 1 : 0) + 3) / 4;
@@ -156,9 +156,9 @@ void hand_on_instances(Graph *to, const Graph *from, const Node *all, Node *root
                        size_t root_count);
 /* Copies tables and functions into an arena as well, when that of the original is to be freed. */
 void instances_keep(Instances *instances, Arena *arena);
-/* Whether numbers or grids of tables depend on parameters or the time. */
+/* Tells whether numbers or grids of tables depend on parameters or the time. */
 bool instances_vary(const Instances *instances);
-/* Whether there is a column for what is taken from the point along this axis. */
+/* Tells whether there is a column for what is taken from the point along this axis. */
 bool relocates_along(const InstanceTable *table, int axis);
 /* The nodes of a column, one for each row; NULL: its numbers are known. */
 const Node *column_nodes(const Instances *instances, const InstanceTable *table, uint32_t column);
@@ -182,14 +182,14 @@ static inline uint32_t row_column(uint32_t id) { return id % MOST_TABLE_COLUMNS;
 /* The function and its state behind the index of OP_STATE. */
 static inline uint32_t function_of(uint32_t index) { return index / MOST_INSTANCE_STATES; }
 static inline uint32_t state_of(uint32_t index) { return index % MOST_INSTANCE_STATES; }
-/* How many bodies a function has. */
+/* Tells how many bodies a function has. */
 static inline uint32_t body_count(const InstanceFunction *function)
 {
     return function->state_count + function->joins;
 }
-/* Whether it calls a function. */
+/* Tells whether it calls a function. */
 static inline bool is_call(Op op) { return op >= OP_instance_distance && op <= OP_instance_vector; }
-/* Whether it is a leaf that bodies alone have. */
+/* Tells whether it is a leaf that bodies alone have. */
 static inline bool is_of_instances(Op op) { return op >= OP_INSTANCE_POINT && op <= OP_STATE; }
 
 #endif

@@ -40,7 +40,7 @@ static double how_far(const InstanceWalk *walk, double distance)
     return (walk->function->either ? fabs(distance) : distance) * walk->table->stretch;
 }
 
-/* Whether an instance may be nearer than what is found. */
+/* Tells whether an instance may be nearer than what is found. */
 static bool may_count(const InstanceWalk *walk, uint32_t instance, double distance)
 {
     const Box *boxes = walk->table->boxes;

@@ -189,7 +189,7 @@ Range range_log2(Range a)
     return widened(log2(a.low), log2(a.high));
 }
 
-/* Whether a holds peak + n * period for a whole n; in doubt, yes. */
+/* Tells whether a holds peak + n * period for a whole n; in doubt, yes. */
 static bool range_holds(Range a, double peak, double period)
 {
     double slack = 1e-12 * (1 + range_largest(a));
@@ -371,7 +371,7 @@ Range range_pow_slope_exponent(Range a, Range value)
     return a.low < 0 ? ANYTHING : range_mul(value, range_log(a));
 }
 
-/* Whether the half line b < 0, a = 0, across which the angle jumps, meets the inside. */
+/* Tells whether the half line b < 0, a = 0, across which the angle jumps, meets the inside. */
 static bool crosses_cut(Range a, Range b) { return a.low < 0 && a.high >= 0 && b.low < 0; }
 
 static double angle_of(double a, double b) { return atan2(a + 0.0, b + 0.0); } /* no -0 */

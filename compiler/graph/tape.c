@@ -18,7 +18,7 @@ typedef struct NodeSet {
     size_t count, capacity;
 } NodeSet;
 
-/* Whether the node is new; then it takes its slot. */
+/* Tells whether the node is new; then it takes its slot. */
 static bool set_take(NodeSet *set, Node node)
 {
     size_t i = node * (size_t)0x9E3779B97F4A7C15u >> 20 & (set->size - 1);

@@ -38,7 +38,7 @@ bool image_read_exr(Image *image, const unsigned char *bytes, size_t length);
 bool image_fail(Image *image, const char *fault);
 /* Makes the samples of an image whose size and `gray` are set; all are 0, alpha is 1. */
 bool image_make(Image *image);
-/* How many floats a pixel has. */
+/* Tells how many floats a pixel has. */
 static inline uint32_t image_channels(const Image *image) { return image->gray ? 2 : 4; }
 static inline size_t   image_pixels(const Image *image)
 {

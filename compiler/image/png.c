@@ -36,7 +36,7 @@ static void read_callback(png_structp png, png_bytep to, size_t length)
     reader->left -= length;
 }
 
-/* Whether a part, or the last of them, is behind the end: what libpng notices first depends on its version. */
+/* Tells whether a part, or the last of them, is behind the end: what libpng notices first depends on its version. */
 static bool is_cut_short(const unsigned char *bytes, size_t length)
 {
     uint32_t size;

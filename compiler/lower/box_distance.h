@@ -9,7 +9,7 @@
 
 /* The distance to a finite box, 0 inside. */
 Node box_distance(Graph *graph, Node point, Box box);
-/* How far outside of a box a point is along an axis, at most; negative inside.  Axes along which
+/* Tells how far outside of a box a point is along an axis, at most; negative inside.  Axes along which
    the box is infinite do not count; NODE_NONE when these are all. */
 Node sides_excess(Graph *graph, Node point, Box box);
 

@@ -39,7 +39,7 @@ static void find_tangents(Graph *g, Node normal, Node tangents[2])
     tangents[1]  = graph_op2(g, OP_cross, normal, tangents[0]);
 }
 
-/* How much an expression changes from one side of the point to the other. */
+/* Tells how much an expression changes from one side of the point to the other. */
 static Node change_of(Graph *g, Node expression, Pixel pixel, Node step, Arena *scratch)
 {
     Node ahead = graph_op2(g, OP_add, pixel.point, step);

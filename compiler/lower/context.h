@@ -88,7 +88,7 @@ double reach_behind(const Graph *graph, double reach, Node scale);
 /* Most nodes that one shape may add to the graph. */
 enum { MOST_LOWERED = 400000 };
 
-/* Whether a step along a ray that is safe for the parts of a shape is safe for the shape. */
+/* Tells whether a step along a ray that is safe for the parts of a shape is safe for the shape. */
 bool    rays_pass(const Shape *shape);
 Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context);
 

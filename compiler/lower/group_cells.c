@@ -17,7 +17,7 @@ typedef struct InstanceDistance {
     uint32_t first; /* parameter */
 } InstanceDistance;
 
-/* Whether nothing on the tape changes with the frame, or is another instance group or a texture. */
+/* Tells whether nothing on the tape changes with the frame, or is another instance group or a texture. */
 static bool is_of_columns(const Graph *g, const InstanceDistance *distance)
 {
     for (size_t i = 0; i < distance->tape.count; i++) {
@@ -62,7 +62,7 @@ static double *scalars_of(const InstanceDistance *distance, const LaneTape *lane
     return scalars;
 }
 
-/* Whether a blend has the slope of its operands, and what is far from the least of them does not act. */
+/* Tells whether a blend has the slope of its operands, and what is far from the least of them does not act. */
 static bool may_refine(const InstanceGroup *group, const GroupJoin *join, const GridBlend *blend,
                        const InstanceTable *table)
 {

@@ -90,7 +90,7 @@ static Node *frame_nodes(const Search *search, uint32_t slots, size_t *count)
     return nodes;
 }
 
-/* They have been renumbered. */
+/* Writes the new numbers of the nodes that stay into the slots. */
 static void set_frame_nodes(const Search *search, uint32_t slots, const Node *nodes)
 {
     for (uint32_t i = 0; i < slots; i++)
@@ -142,7 +142,7 @@ static Candidate *find_candidate(Search *search, uint64_t hash)
     return &search->candidates[number - 1];
 }
 
-/* Of a hash that was not there before. */
+/* Adds a candidate for a hash seen for the first time. */
 static void add_candidate(Search *search, uint64_t hash, const Node *roots, size_t first)
 {
     Structures *structures = search->finder->structures;
@@ -167,7 +167,7 @@ static bool all_known(const Search *search, uint32_t slots)
     return true;
 }
 
-/* Whether the numbers of a part are found; they are in search->contents. */
+/* Tells whether the numbers of a part are found; they are in search->contents. */
 static bool note_numbers(Search *search, uint64_t hash, const Node *roots, size_t first)
 {
     if (*candidate_slot(search, hash) == 0)
@@ -206,7 +206,7 @@ static int compare_hashes(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* How many hashes are less. */
+/* Tells how many hashes are less. */
 static uint32_t rank(const Search *search, uint64_t hash)
 {
     uint32_t low = 0, high = search->finder->count;

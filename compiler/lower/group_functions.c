@@ -25,7 +25,7 @@ PartLeaves part_leaves(Graph *graph)
 
 /* ---- what is asked ---- */
 
-/* How blends join what is known of surfaces: surface.def. */
+/* Tells how blends join what is known of surfaces: surface.def. */
 static bool is_mixed(uint32_t root)
 {
     static const bool mixed[PART_ROOTS] = {

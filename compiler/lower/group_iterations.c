@@ -54,7 +54,7 @@ static bool iterations(const Turning *t, Node node)
            t->depends[node - t->iteration->iteration];
 }
 
-/* Whether slots alone depend on the iteration. */
+/* Tells whether slots alone depend on the iteration. */
 static bool only_in_slots(const Turning *t, const Template *template)
 {
     bool good = true;

@@ -126,7 +126,7 @@ static uint32_t add_column(InstanceGroup *group, uint32_t slot, uint32_t element
     return group->column_count++;
 }
 
-/* Whether an operand is a place that is taken from the point. */
+/* Tells whether an operand is a place that is taken from the point. */
 static bool is_place(const TemplateNode *node, uint32_t operand, Node point)
 {
     return node->op == OP_sub && operand == 1 && node->uses[1].kind == USE_SLOT &&

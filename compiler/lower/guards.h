@@ -13,7 +13,7 @@ typedef struct GuardSite {
     Node so_far; /* distance to the kernels passed before it; NODE_NONE: there are none */
 } GuardSite;
 
-/* Whether a guard goes before a stage of the sequence `krs`. */
+/* Tells whether a guard goes before a stage of the sequence `krs`. */
 bool may_guard(const Lowering *l, const Shape *krs, uint32_t stage, LowerContext context);
 /* The distance to a sequence with guards at these sites, from the outermost to the innermost.
    `whole` is the distance without guards. */

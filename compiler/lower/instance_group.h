@@ -128,9 +128,9 @@ JoinedGroups find_joined_groups(Lowering *l, struct PartJoin *join, LowerContext
 
 /* group_functions.c: whether functions can be made for all that is asked of the surface. */
 bool group_has_functions(const InstanceGroup *group, const GroupJoin *join);
-/* Whether a blend mixes something in which the instances differ. */
+/* Tells whether a blend mixes something in which the instances differ. */
 bool group_mixes(const InstanceGroup *group, const GroupJoin *join);
-/* Whether its instances differ in anything but their distances. */
+/* Tells whether its instances differ in anything but their distances. */
 bool group_varies(const InstanceGroup *group, const GroupJoin *join);
 /* What is asked of the instances of a group where the context is: what they are joined to; of blends also
    their nearest distances, their threshold, the sum of their shares below one, and what is mixed by

@@ -52,7 +52,7 @@ uint32_t least_of_csg(const LoweredGroups *groups, bool sharp)
     return sharp ? groups->few : groups->least;
 }
 
-/* Whether a loop costs less than the instances of a group one by one. */
+/* Tells whether a loop costs less than the instances of a group one by one. */
 static bool is_worth_it(const PartFinder *finder, const InstanceGroup *group)
 {
     const size_t count = group->instances.count;
@@ -251,7 +251,7 @@ static GroupJoin group_join(const Lowering *l, const PartJoin *join)
                        join->csg_node->span};
 }
 
-/* Whether the instance groups of a CSG node in one context serve in another.  Surfaces need to know whether
+/* Tells whether the instance groups of a CSG node in one context serve in another.  Surfaces need to know whether
    there is a level, an instance and a smoothing. */
 static bool serves(const CsgGroups *made, const Lowering *l, LowerContext parts)
 {

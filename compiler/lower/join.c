@@ -28,7 +28,7 @@ Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
     return joined;
 }
 
-/* Whether outside of its box a distance is that to the sides of the box or more, whatever it is a bound of.
+/* Tells whether outside of its box a distance is that to the sides of the box or more, whatever it is a bound of.
    Operands of blends are made so (lower_operand), and blends that are no steeper are less than their
    operands by no more than their boxes grow.  A difference is no less than what it is taken from.  A
    sharp CSG node may have a part that is nowhere, which is far from no place. */

@@ -71,7 +71,7 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near,
                     struct LoweredGroups *groups, Arena *scratch);
 
-/* Whether a shape has open surfaces without thickness.  Their distance is 0, but nowhere near them is it
+/* Tells whether a shape has open surfaces without thickness.  Their distance is 0, but nowhere near them is it
    negative, so only lower_along finds where a ray meets them. */
 bool has_thin_open_surfaces(const Shape *shape);
 

@@ -309,7 +309,7 @@ static Node previous_point(Lowering *l, Ray ray)
     return sub(l->graph, ray.point, offset);
 }
 
-/* How far backwards open surfaces are looked for in an intersection.  `ahead` is the result of `along` for
+/* Tells how far backwards open surfaces are looked for in an intersection.  `ahead` is the result of `along` for
    its parts without open surfaces.  If the previous point is in these parts, too, the open surfaces are looked
    for back to it.  Else no farther than the parts certainly reach. */
 static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)

@@ -68,7 +68,7 @@ Lowered sphere_fold_out(Lowering *l, const SphereFold *fold, Lowered result)
     return result;
 }
 
-/* How deep a point is inside of the sphere. */
+/* Tells how deep a point is inside of the sphere. */
 static Node depth_of(Graph *g, const SequenceStage *stage, Node point)
 {
     Node length = graph_op1(g, OP_length, sub(g, point, stage->centre));

@@ -20,7 +20,7 @@ typedef struct SphereFold {
 SphereFold sphere_fold_at(Graph *g, const SequenceStage *stage, Node point, Ball ball);
 /* Turns a distance at `point` into one outside of the mirror. */
 Lowered sphere_fold_out(Lowering *l, const SphereFold *fold, Lowered result);
-/* Whether a point is inside of the sphere. */
+/* Tells whether a point is inside of the sphere. */
 Node sphere_front(Graph *g, const SequenceStage *stage, Node point);
 /* Adds the mirror to the path of the normal. */
 void normal_sphere(Lowering *l, NormalPath *path, const SequenceStage *stage, Node point,

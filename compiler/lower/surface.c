@@ -4,7 +4,7 @@
  */
 #include "compiler/lower/surface.h"
 
-/* Whether two values are the same costly operation, or vectors with such parts.  Then it is better to
+/* Tells whether two values are the same costly operation, or vectors with such parts.  Then it is better to
    choose between operands: each branch of a tree would have an arc of its own, and all would be computed. */
 static bool have_same_structure(const Graph *g, Node a, Node b)
 {

@@ -137,7 +137,7 @@ static double longest_side(const Span2 *span)
                 fabs(span->ends[0][1] - span->ends[1][1]));
 }
 
-/* How far a part leaves its chord, at most. */
+/* Tells how far a part leaves its chord, at most. */
 static double bulge(const Cutter *cutter, const Span2 *span)
 {
     const Curve *curve = &cutter->making->edges.items[span->edge].curve;
@@ -161,7 +161,7 @@ static void halve(const Cutter *cutter, const Span2 *span, Span2 halves[2])
     memcpy(halves[1].ends[0], halves[0].ends[1], sizeof halves[1].ends[0]);
 }
 
-/* Whether both are so near to the lines through the other's chord that they may cross. */
+/* Tells whether both are so near to the lines through the other's chord that they may cross. */
 static bool may_cross(const Span2 *a, const Span2 *b, double slack)
 {
     const Span2 *pair[2] = {a, b};

@@ -96,7 +96,7 @@ static double crosses_at(const Curve *curve, int axis, double level)
     return point[axis];
 }
 
-/* How many times what the ray from a point on edge `own` crosses goes around, without that edge. */
+/* Tells how many times what the ray from a point on edge `own` crosses goes around, without that edge. */
 static int count_crossings(const Strips *strips, const double point[2], uint32_t own)
 {
     int      axis = strips->axis, k = 1 - axis, winding = 0;

@@ -17,7 +17,7 @@
 
 /* ---- fonts of the system ---- */
 
-/* Whether a match has a family that was asked for, and not another one instead. */
+/* Tells whether a match has a family that was asked for, and not another one instead. */
 static bool has_family(const FcPattern *asked, const FcPattern *match)
 {
     FcChar8 *wanted, *family;

@@ -36,7 +36,7 @@ typedef struct OutlineInstances {
 
 OutlineInstances outline_instances(const Outline *outline, Arena *arena, Arena *scratch);
 
-/* Whether points are inside, in rows of `count` points from `low` on, `step` apart; for points that are
+/* Tells whether points are inside, in rows of `count` points from `low` on, `step` apart; for points that are
    not on the outline.  `inside` has them row by row. */
 void outline_fill(const Outline *outline, const double low[2], double step, const uint32_t count[2],
                   bool *inside, Arena *scratch);

@@ -288,7 +288,7 @@ static void read_paint(Reader *reader, const SvgElement *element, const char *na
     }
 }
 
-/* Whether a property is a share of nothing: nothing in between is known of areas. */
+/* Tells whether a property is a share of nothing: nothing in between is known of areas. */
 static bool is_clear(Reader *reader, const SvgElement *element, const char *name)
 {
     const char *text = property(reader, element, name);

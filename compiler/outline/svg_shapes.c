@@ -254,7 +254,7 @@ typedef struct PathReader {
     char        before;                      /* the letter of what was drawn last, in capitals */
 } PathReader;
 
-/* How many numbers stand behind a letter, and how many of them, from which on, are coordinates. */
+/* Tells how many numbers stand behind a letter, and how many of them, from which on, are coordinates. */
 static int numbers_of(char letter)
 {
     static const char letters[] = "MLHVCSQTAZ";

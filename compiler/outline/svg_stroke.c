@@ -174,7 +174,7 @@ static void draw_bent(Stroker *stroker, const Curve *piece, const Way *a, const 
     }
 }
 
-/* Whether the sides of a piece end where they should, not behind where they began. */
+/* Tells whether the sides of a piece end where they should, not behind where they began. */
 static bool goes_on(const Stroker *stroker, const Way *a, const Way *b)
 {
     for (int side = -1; side <= 1; side += 2) {
@@ -210,7 +210,7 @@ static void draw_piece(Stroker *stroker, const Curve *piece)
     draw_contour(stroker->pen, &contour);
 }
 
-/* How far a parabola turns up to t, from its first tangent. */
+/* Tells how far a parabola turns up to t, from its first tangent. */
 static double turn_up_to(const Curve *curve, double t)
 {
     Way a = way_at(curve, 0), b = way_at(curve, t);

@@ -71,7 +71,7 @@ static Pyramid pyramid_of(const KrsCamera *camera, double aspect)
     return pyramid;
 }
 
-/* Whether all of a box is beyond one of the planes. */
+/* Tells whether all of a box is beyond one of the planes. */
 static bool is_outside(const Pyramid *pyramid, Box box)
 {
     for (int i = 0; i < pyramid->planes; i++) {
@@ -119,7 +119,7 @@ static bool is_in_view(const Pyramid *pyramids, size_t count, Box box)
     return in_view;
 }
 
-/* Whether another component of the same `show`, in a loop, is in view. */
+/* Tells whether another component of the same `show`, in a loop, is in view. */
 static bool is_partly_in_view(const Scene *scene, const Pyramid *pyramids, size_t count, Span span)
 {
     for (size_t i = 0; i < scene->components.count; i++) {

@@ -65,7 +65,7 @@ const KrsPass *krs_pass(size_t index);
 /* The pass with this name or form, or NULL. */
 const KrsPass *krs_find_pass(const char *word);
 
-/* Whether a text is a scene: errors are those of krs_compile_text.  No camera is placed in a scene
+/* Tells whether a text is a scene: errors are those of krs_compile_text.  No camera is placed in a scene
    without one, which casts rays and may take longer than all the rest, and nothing is said of what
    cameras see. */
 KrsStatus krs_check_text(const char *text, size_t length, const char *name,

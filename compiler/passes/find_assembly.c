@@ -125,7 +125,7 @@ static uint32_t take_sequence(Finder *f, const Shape *krs)
     return item == NO_ITEM ? add_part(f, krs) : item;
 }
 
-/* Whether the time moves parts of a shape. */
+/* Tells whether the time moves parts of a shape. */
 static bool moves(const Finder *f, const Shape *shape)
 {
     const Map *map = &shape->map;

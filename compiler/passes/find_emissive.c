@@ -17,7 +17,7 @@ static bool has_light(const Fact *emission)
     return found;
 }
 
-/* Whether light is emitted at some point of a box, for some values of the parameters. */
+/* Tells whether light is emitted at some point of a box, for some values of the parameters. */
 static bool may_emit(const Graph *graph, Node emission, Box box, Arena *scratch)
 {
     if (graph->items[emission].time != TIME_POINT) {

@@ -137,7 +137,7 @@ static bool check_operations(Compilation *c)
 
 /* ---- numbers ---- */
 
-/* Whether a node is a constant beyond the range of single precision, or an operation on constants.
+/* Tells whether a node is a constant beyond the range of single precision, or an operation on constants.
    The latter would have been folded if its result were finite. */
 static bool is_beyond_numbers(const Graph *graph, const Expr *expr)
 {
@@ -183,7 +183,7 @@ static Node find_overflow(Compilation *c, size_t first, size_t count)
     return found;
 }
 
-/* Whether a component was written where a span is, or around it. */
+/* Tells whether a component was written where a span is, or around it. */
 static bool is_around(const Component *shown, Span span)
 {
     return shown->span.source == span.source && shown->span.start <= span.start &&

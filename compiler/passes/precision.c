@@ -133,7 +133,7 @@ static double lines_of(const Scene *s)
     return TIMES_HEIGHT * (s->image.height ? s->image.height : USUAL_HEIGHT);
 }
 
-/* Whether a camera needs rebasing with the default values of the parameters. */
+/* Tells whether a camera needs rebasing with the default values of the parameters. */
 static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *camera)
 {
     const double *eye     = view->values[camera->nodes.eye].v;
@@ -158,7 +158,7 @@ static double size_of(const Scene *s)
     return size;
 }
 
-/* Whether a camera that the compiler places needs rebasing.  Its distance is about the size of the
+/* Tells whether a camera that the compiler places needs rebasing.  Its distance is about the size of the
    scene (framing.c). */
 static bool scene_needs_rebase(const Scene *s)
 {

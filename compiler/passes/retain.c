@@ -56,7 +56,7 @@ static void retain_lowered(Compilation *c)
     }
 }
 
-/* Whether the graph uses a slope.  Those of shapes that were later cut to a smaller region may be
+/* Tells whether the graph uses a slope.  Those of shapes that were later cut to a smaller region may be
    unused. */
 static bool is_needed(const Graph *graph, uint32_t slot)
 {

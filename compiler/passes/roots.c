@@ -97,7 +97,7 @@ static void lower_marches(Compilation *c, Graph *g, LoweredGroups *groups)
     }
 }
 
-/* Whether a property may be above 0.  At points it may be anything that pictures permit. */
+/* Tells whether a property may be above 0.  At points it may be anything that pictures permit. */
 static bool may_exceed_zero(const Graph *g, Node property, Arena *scratch)
 {
     if (is_number(g, property, 0))
@@ -164,7 +164,7 @@ static void lower_planes(Compilation *c, Graph *g)
     }
 }
 
-/* Whether rays march by the roots of polynomials and there are no mirrors or inversions.  Then
+/* Tells whether rays march by the roots of polynomials and there are no mirrors or inversions.  Then
    derivatives cost less than differences of the distance, and a polynomial's distance is only a
    bound, which is no more accurate than its series. */
 static bool is_algebraic(const Scene *s, const Roots *roots)

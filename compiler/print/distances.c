@@ -14,7 +14,7 @@ Node emit_zone(const Emitter *e)
                : m->zone;
 }
 
-/* How deep p is in the zones of the scene, and then what distances must not be below: that, and the
+/* Tells how deep p is in the zones of the scene, and then what distances must not be below: that, and the
    depth in those of the caller. */
 void emit_zones(Emitter *e)
 {
@@ -112,7 +112,7 @@ bool emit_wants_gradient(const Emitter *e)
     return e->wanted[KRS_FUNCTION_GRADIENT] || e->wanted[KRS_FUNCTION_TANGENT];
 }
 
-/* Whether overflow may make of the distance to the gradient's plane what it likes: of a polynomial's,
+/* Tells whether overflow may make of the distance to the gradient's plane what it likes: of a polynomial's,
    which is not the distance itself. */
 static bool may_overflow(const Emitter *e, uint32_t component)
 {

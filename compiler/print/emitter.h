@@ -175,7 +175,7 @@ const char *emit_call_with(Emitter *e, FunctionKind kind, uint32_t component, co
 
 /* krs_prepare, and the globals that it sets: frame values that the roots read. */
 void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues *values);
-/* Whether functions need the zones of the caller. */
+/* Tells whether functions need the zones of the caller. */
 bool emit_reads_zones(const Emitter *e);
 /* Slots that are in the block of a variant before zones of the caller. */
 uint32_t emit_slot_count(const Emitter *e);
@@ -185,7 +185,7 @@ uint32_t emit_slot_count(const Emitter *e);
 /* The expression of a mirror (OP_fold), and statements before it; NULL: as the operation's row
    has it. */
 const char *mirror_text(Emitter *e, const Expr *fold);
-/* Whether that may name the point more than once. */
+/* Tells whether that may name the point more than once. */
 bool mirror_repeats(const Emitter *e, const Expr *fold);
 /* What a mirror needs of the frame besides its operands; NULL: nothing. */
 const MirrorNodes *mirror_nodes(const Emitter *e, Node fold);
@@ -198,11 +198,11 @@ const char *emit_cut(Emitter *e, const char *distance);
 void        need_distance(Emitter *e);
 void        need_gradient(Emitter *e);
 void        need_tangent(Emitter *e);
-/* Whether krs_tangent keeps the distance to a component's plane from overflow by the box around the component. */
+/* Tells whether krs_tangent keeps the distance to a component's plane from overflow by the box around the component. */
 bool emit_keeps_plane(const Emitter *e, uint32_t component);
-/* Whether a function is wanted that finds the gradient of what is nearest. */
+/* Tells whether a function is wanted that finds the gradient of what is nearest. */
 bool emit_wants_gradient(const Emitter *e);
-/* Whether the gradient of a component is known by derivatives. */
+/* Tells whether the gradient of a component is known by derivatives. */
 bool emit_has_gradient(const Emitter *e, uint32_t component);
 /* Whether krs_surface takes the plane of that gradient for the distance.  Outside of the box around the component the
    box counts: far away polynomials are beyond all numbers. */
@@ -212,7 +212,7 @@ const char *emit_box_distance(Emitter *e, uint32_t component);
 void        emit_distance_of(Emitter *e, const ModuleFunction *function);
 void        emit_gradient_of(Emitter *e, const ModuleFunction *function);
 void        emit_zones(Emitter *e);
-/* How deep points of the variant are in the zones of the scene; NODE_NONE: there are none. */
+/* Tells how deep points of the variant are in the zones of the scene; NODE_NONE: there are none. */
 Node emit_zone(const Emitter *e);
 void emit_distance(Emitter *e);
 void emit_gradient(Emitter *e);
@@ -262,9 +262,9 @@ void emit_lod_of(Emitter *e, const ModuleFunction *function);
 void emit_lod(Emitter *e);
 
 /* media.c: distances and surfaces of rays that are inside of glass, or are not. */
-/* Whether a component is a medium of the variant. */
+/* Tells whether a component is a medium of the variant. */
 bool emit_is_medium(const Emitter *e, uint32_t component);
-/* Whether rays of the variant are in media. */
+/* Tells whether rays of the variant are in media. */
 bool emit_has_media(const Emitter *e);
 /* The globals of media. */
 void emit_media_globals(Emitter *e);
@@ -307,9 +307,9 @@ ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t compo
 const Node *emit_planes(const Emitter *e);
 /* What a function computes first. */
 Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component);
-/* Whether a component is of the variant's march group, which may be that of the planes. */
+/* Tells whether a component is of the variant's march group, which may be that of the planes. */
 bool emit_is_of_group(const Emitter *e, uint32_t component);
-/* Whether distances of the variant leave a component out that is a plane, or of another group. */
+/* Tells whether distances of the variant leave a component out that is a plane, or of another group. */
 bool emit_leaves_out(const Emitter *e, uint32_t component);
 
 #endif

@@ -27,9 +27,9 @@ typedef struct FrameValues {
     Tape        tape;              /* of all of them */
 } FrameValues;
 
-/* Whether shaders read it where it is already: a parameter, or a component of one. */
+/* Tells whether shaders read it where it is already: a parameter, or a component of one. */
 bool frame_value_is_given(const Graph *graph, Node node);
-/* Whether it only arranges its operands: shaders do that. */
+/* Tells whether it only arranges its operands: shaders do that. */
 bool frame_value_is_arranged(const Graph *graph, Node node);
 /* Places for `wanted`, or for what those arrange. */
 void frame_values_assign(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,

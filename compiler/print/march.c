@@ -100,7 +100,7 @@ void emit_scene_part_box(Emitter *e)
 
 /* ---- along rays ---- */
 
-/* Whether a component has more to tell than its distance. */
+/* Tells whether a component has more to tell than its distance. */
 static bool has_own_step(const Emitter *e, FunctionKind kind, uint32_t component)
 {
     return emit_root(e, kind, component) != emit_root(e, OF_DISTANCE, component);

@@ -25,7 +25,7 @@ static void emit_global(Emitter *e, GraphType type, const char *name)
     emit_template(e, TEMPLATE_GLOBAL, (Operands){e->printer->types[type], name});
 }
 
-/* Whether a function that is wanted knows the ray's medium. */
+/* Tells whether a function that is wanted knows the ray's medium. */
 static bool reads_medium(const Emitter *e)
 {
     static const KrsFunction functions[] = {

@@ -181,7 +181,7 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
 
 /* ---- what is called ---- */
 
-/* Whether a function that is wanted is cut by zones. */
+/* Tells whether a function that is wanted is cut by zones. */
 static bool needs_cut(const Emitter *e)
 {
     static const KrsFunction cut[] = {

@@ -14,13 +14,13 @@ enum { MOST_ITERATIONS = 256 };
 
 static bool is_noise(const Expr *expr) { return expr->op == OP_noise2 || expr->op == OP_noise3; }
 
-/* Whether the function that is being written has to compute it. */
+/* Tells whether the function that is being written has to compute it. */
 static bool is_computed(const Emitter *e, Node n)
 {
     return e->graph->items[n].time == TIME_POINT && !e->given[n];
 }
 
-/* How many noises stand between a value and the point, one in the other.  Returns the most. */
+/* Tells how many noises stand between a value and the point, one in the other.  Returns the most. */
 static uint32_t find_ranks(Emitter *e)
 {
     uint32_t most = 0;

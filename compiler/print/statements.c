@@ -164,7 +164,7 @@ const char *emit_expression(Emitter *e, const Expr *expr)
 
 /* ---- uses ---- */
 
-/* Whether a template names an operand twice: what stands twice is computed twice.  Where nothing is
+/* Tells whether a template names an operand twice: what stands twice is computed twice.  Where nothing is
    printed there is none. */
 static bool repeats_operand(const Emitter *e, const Expr *user, Node operand)
 {

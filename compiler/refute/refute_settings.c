@@ -95,7 +95,7 @@ void prepare_frames(Refuter *r)
     r->frame_values    = arena_new_array(arena, NodeValue, simple->count);
 }
 
-/* Whether a frame can have these parameters; finds its slopes. */
+/* Tells whether a frame can have these parameters; finds its slopes. */
 static bool is_possible(const Refuter *r, NodeValue *parameters)
 {
     if (!find_slopes(r, parameters))

@@ -10,7 +10,7 @@
 void prepare_slopes(Refuter *r);
 void prepare_frames(Refuter *r);
 
-/* Whether what it computes depends on parameters of the scene. */
+/* Tells whether what it computes depends on parameters of the scene. */
 bool needs_parameters(const Tape *tape);
 /* Defaults in the first trial, then anything that is permitted. */
 void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values);

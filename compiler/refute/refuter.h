@@ -51,7 +51,7 @@ typedef struct Refuter {
     bool stopped;
 } Refuter;
 
-/* Whether a shape adds nothing to the distance of what it holds. */
+/* Tells whether a shape adds nothing to the distance of what it holds. */
 bool is_wrapper(const Shape *shape);
 
 /* The distance of a shape in its own space; NODE_NONE: of nothing, or of too much. */

@@ -26,7 +26,7 @@ bool search_start(Search *search, const NodeValue *parameters);
 void search_run(Search *search, uint64_t operations);
 /* Makes the most of a pair that others found. */
 void search_from(Search *search, const double p[3], const double q[3], uint64_t operations);
-/* Whether `worst` is more than rounding. */
+/* Tells whether `worst` is more than rounding. */
 bool search_refuted(const Search *search);
 /* A point of the surface that is nearer to p than the distance at p: false when none is found. */
 bool search_surface(Search *search, const double p[3], double surface[3]);

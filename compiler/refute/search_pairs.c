@@ -46,7 +46,7 @@ void random_point(Search *s, double point[3])
 
 /* ---- what is claimed at a point ---- */
 
-/* How far outside of the box a point is, at most along one axis. */
+/* Tells how far outside of the box a point is, at most along one axis. */
 static double outside(const Search *s, const double p[3])
 {
     double most = -INFINITY;
@@ -105,7 +105,7 @@ static void aim_along(Search *s, const double from[3], const double to[3])
         s->aim[i] = (to[i] - from[i]) / length;
 }
 
-/* How much of its claim a pair uses up; 0 where it says nothing. */
+/* Tells how much of its claim a pair uses up; 0 where it says nothing. */
 static double ratio_of(const Search *s, const PointPair *pair)
 {
     double length = distance3(pair->p, pair->q), rounding = rounding_at(s, pair->p);

@@ -15,7 +15,7 @@ double any_scale(Search *s, double least);
 void   random_direction(Search *s, double direction[3]);
 void   random_point(Search *s, double point[3]);
 
-/* Whether nothing worse can be found than was. */
+/* Tells whether nothing worse can be found than was. */
 bool is_decided(const Search *s);
 /* The distance at a point; what one point alone refutes is noted at once. */
 double distance_at(Search *s, double p[3]);

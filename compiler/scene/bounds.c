@@ -80,7 +80,7 @@ static const char *rule_of(Listing *l, const Shape *shape)
     return rule.bytes;
 }
 
-/* Whether two shapes were made in the same place of the text, all through. */
+/* Tells whether two shapes were made in the same place of the text, all through. */
 static bool are_alike(const Shape *a, const Shape *b)
 {
     a = shape_in_iterations(a);

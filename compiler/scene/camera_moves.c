@@ -158,7 +158,7 @@ void krs_camera_roll(KrsCamera *camera, double angle)
     memcpy(camera->up, top, sizeof top);
 }
 
-/* How far the eye must be from the center of a box, for each of its corners to be in the picture. */
+/* Tells how far the eye must be from the center of a box, for each of its corners to be in the picture. */
 static double distance_for(const KrsCamera *camera, const double half[3], double aspect)
 {
     double       forward[3], side[3], top[3], farthest = 0;

@@ -241,7 +241,7 @@ static bool same_methods(const KrsProgram *a, const KrsProgram *b)
            a->expensive == b->expensive;
 }
 
-/* Whether shaders treat the boxes alike; corners are numbers of the frame. */
+/* Tells whether shaders treat the boxes alike; corners are numbers of the frame. */
 static bool same_kinds_of_boxes(const KrsScene *a, const KrsScene *b)
 {
     bool same = true;
@@ -288,7 +288,7 @@ static bool same_text(Comparison *c, const KrsVariant *variant)
                   scene_plain_text(c->b, variant, &c->arena)) == 0;
 }
 
-/* Whether shaders of the same info have the same text. */
+/* Tells whether shaders of the same info have the same text. */
 static bool same_texts(Comparison *c)
 {
     return same_text(c, &(KrsVariant){.values = true}) &&

@@ -127,14 +127,14 @@ char *krs_scene_plain_text(const KrsScene *scene, const KrsAllocator *allocator)
 enum { KRS_MAX_ENTRY_POINTS = 5 };
 size_t krs_entry_points(const KrsScene *scene, bool many_threads,
                         KrsFunction entry_points[KRS_MAX_ENTRY_POINTS]);
-/* Whether a camera of the scene is a panorama. */
+/* Tells whether a camera of the scene is a panorama. */
 bool krs_scene_is_panoramic(const KrsScene *scene);
-/* Whether a camera of the scene may have an aperture or a shift. */
+/* Tells whether a camera of the scene may have an aperture or a shift. */
 bool krs_scene_has_lens(const KrsScene *scene);
-/* How many components before this one are one component of the shaders with it, as many that are alike
+/* Tells how many components before this one are one component of the shaders with it, as many that are alike
    are; 0 where it is the first, or alone. */
 size_t krs_joined_rank(const KrsScene *scene, size_t component);
-/* Whether drivers compile the shaders of a scene without its numbers in a reasonable time. */
+/* Tells whether drivers compile the shaders of a scene without its numbers in a reasonable time. */
 bool krs_structure_is_affordable(const KrsScene *scene);
 /* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
@@ -145,13 +145,13 @@ KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
    elsewhere is not in them. */
 size_t krs_frame_emissive(KrsFrame *frame, const double low[3], const double high[3],
                           double least_radius, KrsEmissive balls[KRS_MOST_EMISSIVE]);
-/* Whether the rounding error of such a coordinate in single precision is visible in pixels of this
+/* Tells whether the rounding error of such a coordinate in single precision is visible in pixels of this
    width.  Then points must be relative to an origin near the camera. */
 bool krs_needs_rebase(double coordinate, double pixel);
-/* How far the taps for a normal reach at such a coordinate, for the sake of rounding, relative to what a
+/* Tells how far the taps for a normal reach at such a coordinate, for the sake of rounding, relative to what a
    pixel of this width wants: above 1 normals are blurred, below it those at edges may be. */
 double krs_normal_blur(double coordinate, double pixel);
-/* How large camera-relative coordinates are about, at this distance from the eye: no larger, and in narrow
+/* Tells how large camera-relative coordinates are about, at this distance from the eye: no larger, and in narrow
    views and orthographic ones twice the height of so many lines of pixels of this width. */
 double krs_seen_reach(double distance, double pixel, double lines);
 /* Camera-relative coordinates are not worth their cost where others are less than KRS_LEAST_GAIN times as
@@ -182,7 +182,7 @@ typedef struct KrsRay {
 } KrsRay;
 KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direction[3],
                double farthest);
-/* Whether krs_raycast accepts these arguments. */
+/* Tells whether krs_raycast accepts these arguments. */
 bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance);
 /* The 64-bit FNV-1a hash of the scene and the files that it uses, as 16 hexadecimal digits. */

@@ -202,7 +202,7 @@ KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
 
 double krs_frame_time(const KrsFrame *frame) { return frame->parameters[0].v[0]; }
 
-/* Whether a parameter of a frame has another value than its default. */
+/* Tells whether a parameter of a frame has another value than its default. */
 static bool is_set(const KrsFrame *frame, const Parameter *parameter)
 {
     return memcmp(frame->parameters[parameter->slot].v, parameter->value,

@@ -159,7 +159,7 @@ static void cut_cell(Cells *cells, size_t number)
     add_cell(cells, high, cell.first, 1);
 }
 
-/* How urgent it is to cut a cell.  Where no light was found there may be none. */
+/* Tells how urgent it is to cut a cell.  Where no light was found there may be none. */
 static double find_urgency(const Cell *cell, double least_radius)
 {
     const bool   may_be_dark = cell->count == 1 && cell->radiance == 0;
@@ -247,7 +247,7 @@ static void shrink(const Cells *cells, Cell *cell)
                             0.01 * cell->radius);
 }
 
-/* How much larger a ball may look that is within glass: at most by the index of refraction, where the
+/* Tells how much larger a ball may look that is within glass: at most by the index of refraction, where the
    glass is a ball around it. */
 static double find_magnified(const Cells *cells, const double middle[3])
 {

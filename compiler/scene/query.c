@@ -115,7 +115,7 @@ static double clearance_at(KrsFrame *frame, const double point[3])
     return fmax(least, zone_depth(frame, point));
 }
 
-/* Whether questions are answered in many points at once. */
+/* Tells whether questions are answered in many points at once. */
 static bool by_lanes(const KrsFrame *frame, size_t count)
 {
     return count >= FEWEST_POINTS && frame->scene->component_count > 0;
@@ -492,7 +492,7 @@ static void end_march(RayMarch *march, RayLimits limits, KrsHit *hit)
     hit->unresolved = march->state == MARCHING;
 }
 
-/* Whether clearances of rays are distances, which lanes tell.  Open surfaces have other ones, and guards and
+/* Tells whether clearances of rays are distances, which lanes tell.  Open surfaces have other ones, and guards and
    cells of instance groups make them shorter. */
 static bool march_by_lanes(const KrsFrame *frame)
 {

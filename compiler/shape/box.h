@@ -20,7 +20,7 @@ Box    box_rotate(Box box, Range rows[3][3]);
 double box_diagonal(Box box);
 /* Of a finite box. */
 void box_centre(Box box, double centre[3]);
-/* How far the side `content` of a box stays from the walls of a cell that is centred at 0;
+/* Tells how far the side `content` of a box stays from the walls of a cell that is centred at 0;
    < 0: it sticks out. */
 double cell_margin(Range content, double period);
 

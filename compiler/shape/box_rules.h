@@ -30,7 +30,7 @@ const Shape *box_part(const Shape *shape, uint32_t index);
 enum { MOST_BOX_NODES = 12 };
 uint32_t box_nodes(const Shape *shape, Node nodes[MOST_BOX_NODES]);
 uint32_t map_box_nodes(const Map *map, Node *nodes, uint32_t count);
-/* Whether there is a rule: else the box is found where the shape is made. */
+/* Tells whether there is a rule: else the box is found where the shape is made. */
 bool has_box_rule(const Shape *shape);
 Box  shape_box(const BoxInput *input);
 /* A map without `first`; the box around the image of a box under a similarity. */

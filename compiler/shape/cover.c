@@ -322,7 +322,7 @@ static MapRange inversion_in(const Range centre[3], Range radius)
     return map;
 }
 
-/* Whether nothing of a cell is outside of a sphere. */
+/* Tells whether nothing of a cell is outside of a sphere. */
 static bool is_swallowed(CoverCell cell, const double centre[3], double radius)
 {
     double offset[3];

@@ -125,7 +125,7 @@ static Shape shape_for_rule(const Shape *shape, Arena *arena)
     return copy;
 }
 
-/* Whether the box depends on parameters alone; only then its parts and numbers are planned. */
+/* Tells whether the box depends on parameters alone; only then its parts and numbers are planned. */
 static bool plan_shape(Plan *plan, const Shape *shape, size_t at)
 {
     FrameBoxes *boxes             = plan->boxes;

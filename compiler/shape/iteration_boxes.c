@@ -91,7 +91,7 @@ static bool stage_is_iterated(const Iterations *t, const SequenceStage *stage)
     }
 }
 
-/* Whether anything in the tree of a shape without a rule depends on the iteration. */
+/* Tells whether anything in the tree of a shape without a rule depends on the iteration. */
 static bool is_iterated(const Iterations *t, const Shape *shape)
 {
     const Node others[] = {shape->distance, shape->bound, shape->formula, shape->blend.steps,

@@ -13,7 +13,7 @@ Box sequence_box(const BoxInput *in, ReachStage *reach, LevelBound *bounds);
 /* The numbers that are asked for: at most MOST_STAGE_NODES of each stage. */
 enum { MOST_STAGE_NODES = 5 };
 uint32_t sequence_nodes(const Shape *krs, Node *nodes);
-/* Whether all of its stages are such. */
+/* Tells whether all of its stages are such. */
 bool sequence_is_rigid(const Shape *krs);
 
 #endif

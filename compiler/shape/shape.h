@@ -89,9 +89,9 @@ BlendMany blend_many(BlendKind kind);
    result an operand no longer changes it. */
 double blend_bulge(BlendKind kind, uint32_t count);
 double blend_reach(BlendKind kind, double n);
-/* How far above the least of the others one of them changes nothing. */
+/* Tells how far above the least of the others one of them changes nothing. */
 double blend_acts(BlendKind kind, double n);
-/* Whether what an operand adds falls by e with each width. */
+/* Tells whether what an operand adds falls by e with each width. */
 bool blend_fades(BlendKind kind);
 
 /* How the shapes of a metasurface fade; falloffs.def has a row for each. */
@@ -239,7 +239,7 @@ static inline const Shape *shape_in_iterations(const Shape *shape)
     return shape->iterated ? shape->iterated : shape;
 }
 
-/* Whether it is curved nearly everywhere, or finer than a pixel as a rule, so that where its normal
+/* Tells whether it is curved nearly everywhere, or finer than a pixel as a rule, so that where its normal
    turns there need be no edge: blends, sequences, fields, and what is bent or stretched. */
 bool shape_is_curved(const Shape *shape);
 

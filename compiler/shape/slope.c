@@ -40,7 +40,7 @@ double frame_slope_upward(double slope)
     return slope > 0 ? (double)nextafterf((float)(slope * SLACK), HUGE_VALF) : 0;
 }
 
-/* Whether some value of the frame that the expression needs can be any number. */
+/* Tells whether some value of the frame that the expression needs can be any number. */
 static bool needs_the_endless(const Graph *graph, Node root, Arena *scratch)
 {
     Tape tape = tape_new(graph, &root, 1, scratch);
@@ -139,7 +139,7 @@ static Graph with_own_ranges(const Graph *plain, Arena *scratch)
     return own;
 }
 
-/* Whether frames have a slope over a region; `found` gets the first one, or whom to blame. */
+/* Tells whether frames have a slope over a region; `found` gets the first one, or whom to blame. */
 static bool bounded_in_frames(ShapeBuilder *builder, const Graph *plain, Node root, Box region,
                               Span span, Steepness *found)
 {
@@ -188,7 +188,7 @@ static Node frame_slot(ShapeBuilder *builder, Node formula, Box region, Span spa
     return graph_parameter(builder->graph, slope.slot, TYPE_FLOAT);
 }
 
-/* Whether the expression depends on the frame by nothing but the time and the author's parameters.
+/* Tells whether the expression depends on the frame by nothing but the time and the author's parameters.
    Cells and turns have slots as well, but no single value in a frame. */
 static bool needs_the_frame_alone(const Parameters *parameters, const Graph *plain, Node root,
                                   Arena *scratch)

@@ -13,7 +13,7 @@ typedef struct Dominators {
 } Dominators;
 
 Dominators dominators_find(const ShaderModule *module);
-/* Whether each way to instruction `later` passes instruction `earlier`. */
+/* Tells whether each way to instruction `later` passes instruction `earlier`. */
 bool dominators_order(const Dominators *dominators, size_t earlier, size_t later);
 
 #endif

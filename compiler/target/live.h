@@ -8,7 +8,7 @@
 
 /* For each id whether it is needed; the module is flat, and its stores are forwarded. */
 bool *find_live(const ShaderModule *module);
-/* Whether an instruction of the module is needed. */
+/* Tells whether an instruction of the module is needed. */
 bool is_live(const ShaderModule *module, const bool *live, const Instruction *instruction);
 
 #endif

@@ -118,7 +118,7 @@ const char *import_vector_text(Import *import, const double *numbers, int count)
 
 /* ---- writing ---- */
 
-/* How many of its parts are seen: the region of a clipped one is not. */
+/* Tells how many of its parts are seen: the region of a clipped one is not. */
 static size_t seen_items(const Part *part)
 {
     return part->join == PART_CLIP ? 1 : part->parts.count;

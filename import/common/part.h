@@ -103,9 +103,9 @@ void part_add(Import *import, Part *part, Part *item);
 Part *part_around(Import *import, unsigned line, const char *stem, Part *what);
 /* Places it anew, behind where it is. */
 void part_move(Part *part, const Transform *transform);
-/* Whether a point is inside, as far as that is told; if not, it counts as outside. */
+/* Tells whether a point is inside, as far as that is told; if not, it counts as outside. */
 bool part_holds(const Part *part, const double point[3]);
-/* Whether all that it is made of has looks; nothing may be added to it after that. */
+/* Tells whether all that it is made of has looks; nothing may be added to it after that. */
 bool part_is_painted(Part *part);
 
 /* "[1, 2, 3]", "2.5": rounded numbers, to be put into formats. */

@@ -66,18 +66,18 @@ void import_note(Import *import, unsigned line, const char *format, ...)
 /* Notes why a slope may have no bound at a line, for words about it. */
 void import_blame(Import *import, unsigned line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Whether to go on without a part that was just refused, which stands on this line: notes why, and
+/* Tells whether to go on without a part that was just refused, which stands on this line: notes why, and
    forgets the refusal. */
 bool import_leaves_out(Import *import, unsigned line);
-/* Whether a part of this line was found to be no scene. */
+/* Tells whether a part of this line was found to be no scene. */
 bool import_was_left_out(const Import *import, unsigned line);
 /* "From FILE." and the notes, as comments. */
 void import_write_head(Import *import);
 
-/* How the scene is compiled: where a folder is all that may be read, it reads no file but the one
+/* Tells how the scene is compiled: where a folder is all that may be read, it reads no file but the one
    that it comes from.  The import must live as long as they are used. */
 KrsOptions import_options(Import *import);
-/* Whether a text is a scene. */
+/* Tells whether a text is a scene. */
 bool import_compiles(Import *import, const char *scene);
 
 /* What is added to the scene now comes from this line. */

@@ -54,7 +54,7 @@ static bool read_number(WordReader *reader)
                          reader->word.text);
 }
 
-/* Whether an odd number of `\` stands before. */
+/* Tells whether an odd number of `\` stands before. */
 static bool is_escaped(const char *text, size_t at)
 {
     size_t count = 0;

@@ -39,7 +39,7 @@ void words_advance(WordReader *reader);
 /* The same word by word, whatever `next` is. */
 void words_advance_plain(WordReader *reader);
 
-/* Whether the next word is this name or sign. */
+/* Tells whether the next word is this name or sign. */
 bool word_is(const WordReader *reader, const char *text);
 /* Goes on if it is. */
 bool word_accept(WordReader *reader, const char *text);

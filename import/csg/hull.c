@@ -77,7 +77,7 @@ bool csg_polygon(const CsgNode *node, Part **part)
 
 /* ---- polyhedra ---- */
 
-/* Whether all points are on one side of a face. */
+/* Tells whether all points are on one side of a face. */
 static bool face_is_outside(double (*const points)[3], size_t count, const double *a,
                             const double *b, const double *c)
 {
@@ -207,7 +207,7 @@ static bool collect(Import *import, const Part *part, const Transform *outer, Pa
     return all->count <= MOST_POINTS;
 }
 
-/* Whether all balls have one size; then `radii` is not needed. */
+/* Tells whether all balls have one size; then `radii` is not needed. */
 static bool are_of_one_size(PartBalls *balls)
 {
     for (size_t i = 0; i < balls->count; i++)
@@ -284,7 +284,7 @@ static bool hull_of_figures(const CsgNode *node, PartBalls *balls, Part **part)
     return true;
 }
 
-/* Whether something in it is round, and stands for points that OpenSCAD has for it. */
+/* Tells whether something in it is round, and stands for points that OpenSCAD has for it. */
 static bool has_columns(const Part *part)
 {
     bool found = part->column.figure && part->column.figure->figure_radius > 0;
@@ -433,7 +433,7 @@ static Part *sum_of_columns(const CsgNode *node, const Part *a, const Part *b)
     return sum;
 }
 
-/* Whether a part is the hull of its balls, not some part of it: polygons may be hollow. */
+/* Tells whether a part is the hull of its balls, not some part of it: polygons may be hollow. */
 static bool is_convex(const Part *part)
 {
     bool polygon = part->shape && strcmp(part->stem, "polygon") == 0;

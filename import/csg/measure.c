@@ -225,7 +225,7 @@ static bool refuse_projection(const Projection *projection, const Part *part)
                          part->stem);
 }
 
-/* Whether z stays z. */
+/* Tells whether z stays z. */
 static bool is_upright(const Transform *transform)
 {
     double across = fabs(transform->rows[0][2]) + fabs(transform->rows[1][2]) +

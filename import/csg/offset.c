@@ -43,7 +43,7 @@ static double side_of(const double a[3], const double b[3], const double c[3])
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* Whether no two sides cross. */
+/* Tells whether no two sides cross. */
 static bool is_simple(const double (*corners)[3], size_t count)
 {
     for (size_t i = 0; i < count; i++)

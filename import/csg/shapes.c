@@ -405,7 +405,7 @@ bool csg_linear_extrude(const CsgNode *node, Part **part)
     return true;
 }
 
-/* How far a part reaches from low to high in x; what is cut away counts. */
+/* Tells how far a part reaches from low to high in x; what is cut away counts. */
 static void reach_in_x(const Part *part, const Transform *outer, double reach[2])
 {
     Transform transform = transform_chain(&part->transform, outer);

@@ -92,7 +92,7 @@ static bool skip_to_else(PovReader *reader)
     return false;
 }
 
-/* Whether a name between parentheses, with its indices, stands for anything. */
+/* Tells whether a name between parentheses, with its indices, stands for anything. */
 static bool read_defined(PovReader *reader, double *defined)
 {
     WordReader *words = &reader->words;

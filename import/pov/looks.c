@@ -370,7 +370,7 @@ static bool reflection(PovReader *reader, PovFinish *finish)
     return true;
 }
 
-/* How wide a highlight is: a cosine with phong_size for its exponent, between the mirrored ray and
+/* Tells how wide a highlight is: a cosine with phong_size for its exponent, between the mirrored ray and
    the light, is about one with four times that between the normal and their middle; 1 / roughness is
    such an exponent. */
 static bool finish_word(PovReader *reader, PovLook *look)

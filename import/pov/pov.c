@@ -140,7 +140,7 @@ static void add_seen(PovReader *reader, Part *part, const Transform *transform, 
         add_seen(reader, part->parts.items[i], &all, part->look ? part->look : look);
 }
 
-/* How far the planes of a part are from a point at most. */
+/* Tells how far the planes of a part are from a point at most. */
 static double farthest_plane(const Part *part, const Transform *around, const double point[3])
 {
     Transform transform = transform_chain(&part->transform, around), back = transform;

@@ -216,7 +216,7 @@ PovCell *pov_take(PovReader *reader, PovKind kind);
 
 /* ---- values: values.c ---- */
 
-/* Whether the next word begins a number or a vector. */
+/* Tells whether the next word begins a number or a vector. */
 bool pov_value_follows(PovReader *reader);
 bool pov_value(PovReader *reader, PovValue *value);
 /* The same between parentheses, where values may be compared. */
@@ -281,7 +281,7 @@ bool pov_object(PovReader *reader, Part **part);
 typedef bool PovBuild(PovReader *reader, unsigned line, Part **part);
 PovBuild     pov_prism, pov_lathe, pov_text, pov_disc, pov_blob, pov_superellipsoid, pov_julia;
 PovBuild     pov_polygon, pov_triangle, pov_smooth_triangle;
-/* Whether what is next changes an object as a whole, or ends it. */
+/* Tells whether what is next changes an object as a whole, or ends it. */
 bool     pov_modifier_follows(const PovReader *reader);
 PovBuild pov_sphere, pov_box, pov_cylinder, pov_cone, pov_torus, pov_plane, pov_quadric, pov_cubic,
     pov_quartic, pov_poly;

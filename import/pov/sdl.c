@@ -94,7 +94,7 @@ static PovCell *new_name(PovReader *reader, const char *name, PovCell *cell, boo
     array_push(reader->import->arena, &reader->names, fresh);
     if (local)
         return cell;
-    /* It goes before all that are local, so that it stays when they go. */
+    /* The name goes before all that are local, so that it stays when they go. */
     size_t at = reader->names.count - 1;
     size_t to = reader->sources.count > 1 ? reader->sources.items[1].names_before : at;
     for (; at > to; at--)

@@ -20,7 +20,7 @@ static bool vector_of(PovReader *reader, const char *name, double v[3], bool *ta
     return pov_vector(reader, v);
 }
 
-/* How far away the picture is that is `right` wide and `up` high. */
+/* Tells how far away the picture is that is `right` wide and `up` high. */
 static double distance_of_picture(const PovView *view)
 {
     return view->angle > 0 ? length3(view->right) / 2 / tan(view->angle * DEGREE / 2)

@@ -96,7 +96,7 @@ typedef bool KrsVisitBrick(void *user, const KrsGridBrick *brick);
  * the band is not evaluated.
  */
 KrsStatus krs_grid_visit(KrsGrid *grid, KrsVisitBrick *visit, void *user);
-/* How many bricks are near, without computing what is in them. */
+/* Tells how many bricks are near, without computing what is in them. */
 KrsStatus krs_grid_count_near(KrsGrid *grid, size_t *count);
 
 #ifdef __GNUC__

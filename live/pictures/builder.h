@@ -22,7 +22,7 @@ void     builder_free(Builder *builder);
 /* Compiles what the view needs, unless it is being compiled, or was and failed.  A build of another
    structure is given up; one of the same goes on. */
 void builder_start(Builder *builder, const View *view);
-/* Whether a canvas was built that has these needs. */
+/* Tells whether a canvas was built that has these needs. */
 bool builder_has(Builder *builder, const Needs *needs);
 /* Gives up what is being compiled. */
 void builder_cancel(Builder *builder);

@@ -51,7 +51,7 @@ typedef struct Needs {
 } Needs;
 Needs view_needs(const View *view);
 bool  needs_are_equal(const Needs *a, const Needs *b);
-/* Whether a canvas shows what has these needs without compiling shaders. */
+/* Tells whether a canvas shows what has these needs without compiling shaders. */
 bool canvas_meets(const Canvas *canvas, const Needs *needs);
 
 /* The structure that a canvas has shaders of; 0: none. */
@@ -83,7 +83,7 @@ uint32_t  canvas_samples(const Canvas *canvas, FilmKind kind);
 /* The picture of a film, with these planes (0: all that it has); the caller frees it. */
 KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t planes, KrsPicture **picture);
 
-/* How fast the distance changes along the normal of each pixel of a picture, of how fast it may; 0
+/* Tells how fast the distance changes along the normal of each pixel of a picture, of how fast it may; 0
    where nothing is hit.  The caller frees the numbers; NULL: it failed. */
 float *canvas_slopes(Canvas *canvas, const KrsPicture *picture);
 

@@ -83,7 +83,7 @@ static Range find_range(const KrsPicture *picture, ShadingMode shading)
     return range;
 }
 
-/* How much a surface faces the viewer tells the shape where the colour is flat. */
+/* Tells how much a surface faces the viewer tells the shape where the colour is flat. */
 static double shade_of(const KrsPicture *picture, size_t at)
 {
     const float *n = &picture->normal[3 * at];

@@ -68,7 +68,7 @@ static void wake(const Painter *painter)
         painter->options.wake(painter->options.user);
 }
 
-/* Whether there is something to do: another view, or news of the builder. */
+/* Tells whether there is something to do: another view, or news of the builder. */
 static bool is_outdated(const Painter *painter)
 {
     return atomic_load(&painter->number) != painter->shown || atomic_load(&painter->told);
@@ -328,7 +328,7 @@ static void change_canvas(Painter *painter, Canvas *built)
     painter->resolution = (Resolution){.divisor = painter->resolution.divisor};
 }
 
-/* Whether a canvas has the shaders of a view: the one that is shown, or the one that was built.  If
+/* Tells whether a canvas has the shaders of a view: the one that is shown, or the one that was built.  If
    there is none, it is built; one that has some of them is better than one of another text. */
 static bool choose_canvas(Painter *painter, const View *next)
 {

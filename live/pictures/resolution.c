@@ -67,7 +67,7 @@ double resolution_divide(Resolution *resolution, double pixels, double budget)
     if (resolution->coarse_ms > LATE * budget &&
         resolution->coarse_pixels * resolution->pixel_ms > WORTH_TRYING * budget)
         needed = fmax(needed, 1.01 * resolution->divisor);
-    /* It stays where it would do, so that the picture does not flicker. */
+    /* The divisor stays where it would do, so that the picture does not flicker. */
     if (resolution->divisor > needed && resolution->divisor < 2.2 * needed)
         return resolution->divisor;
     int i = 0;

@@ -19,7 +19,7 @@ typedef struct Resolution {
 void resolution_learn_coarse(Resolution *resolution, double ms, double pixels);
 /* After a sample of a whole picture took `ms`, behind a coarse one of the same view. */
 void resolution_learn_whole(Resolution *resolution, double ms, double pixels);
-/* How many times fewer pixels each side of a coarse picture has, for it to take `budget` ms; `pixels`
+/* Tells how many times fewer pixels each side of a coarse picture has, for it to take `budget` ms; `pixels`
    are those of a whole one.  1: whole ones are in time. */
 double resolution_divide(Resolution *resolution, double pixels, double budget);
 

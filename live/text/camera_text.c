@@ -68,7 +68,7 @@ static void print_value(FILE *out, Property property, const KrsCamera *camera)
     }
 }
 
-/* Whether a block without it would be another camera. */
+/* Tells whether a block without it would be another camera. */
 static bool is_needed(Property property, const KrsCamera *camera)
 {
     const bool needed[PROPERTIES] = {

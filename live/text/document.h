@@ -54,12 +54,12 @@ Version *document_version(Document *document);
 /* A copy of what was said when the file was last read, which the caller frees; for any thread. */
 Diagnostics document_diagnostics(Document *document);
 void        diagnostics_free(Diagnostics *diagnostics);
-/* How often the file was read; for any thread. */
+/* Tells how often the file was read; for any thread. */
 unsigned document_readings(Document *document);
 
 /* Watches a file as if it had been read.  False: the system refuses. */
 bool document_watch(Document *document, const char *path);
-/* Whether the file, or one that it uses, has changed since the last call; waits for nothing. */
+/* Tells whether the file, or one that it uses, has changed since the last call; waits for nothing. */
 bool document_changed(Document *document);
 /* Waits for that.  False: a signal has come, the time is over, or document_wake was called. */
 bool document_wait(Document *document, double seconds);

@@ -64,7 +64,7 @@ static bool is_default(const KrsParameter *parameter, const double *value)
     return memcmp(parameter->value, value, parameter->components * sizeof *value) == 0;
 }
 
-/* Whether the text still has "NAME =" before these bytes, and `in` or `;` behind them. */
+/* Tells whether the text still has "NAME =" before these bytes, and `in` or `;` behind them. */
 static bool stands_there(const Bytes *bytes, const KrsParameter *parameter)
 {
     size_t       before = parameter->start, behind = parameter->end;

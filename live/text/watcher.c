@@ -138,7 +138,7 @@ bool watcher_changed(Watcher *watcher)
     return changed;
 }
 
-/* Whether something happens, to whatever file, within this time. */
+/* Tells whether something happens, to whatever file, within this time. */
 static bool wait_for_event(Watcher *watcher, double seconds)
 {
     struct pollfd events = {.fd = watcher->inotify, .events = POLLIN};

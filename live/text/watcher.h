@@ -20,7 +20,7 @@ bool watcher_add(Watcher *watcher, const char *path);
 /* Becomes readable when something may have changed: for poll(). */
 int watcher_descriptor(const Watcher *watcher);
 
-/* Whether files have changed since the last call; waits for nothing. */
+/* Tells whether files have changed since the last call; waits for nothing. */
 bool watcher_changed(Watcher *watcher);
 
 /* Waits until files have changed.  False: `seconds` are over, or a signal has come. */

@@ -7,9 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Whether the program was built with libchafa. */
+/* Tells whether the program was built with libchafa. */
 bool cells_exist(void);
-/* Whether the terminal shows pixels, not characters alone. */
+/* Tells whether the terminal shows pixels, not characters alone. */
 bool cells_have_pixels(void);
 /* What a terminal of so many columns and rows is to be sent, for free(); its cells have so many pixels
    each.  NULL: without memory. */

@@ -20,7 +20,7 @@ void gui_stop(void);
 void gui_begin(void); /* of a frame */
 void gui_end(void);   /* and draw it */
 
-/* Whether mouse or keys are used by a panel just now. */
+/* Tells whether mouse or keys are used by a panel just now. */
 bool gui_has_mouse(void);
 bool gui_has_keys(void);
 /* Keys go to the panel of this name; NULL: to none. */
@@ -56,7 +56,7 @@ void  gui_panel(const char *name, GuiPlace place, bool quiet);
 float gui_panel_end(void);
 /* What a panel of this width needs of the window's, with its margins. */
 float gui_panel_space(float width);
-/* How wide and high the window is, but for the margins. */
+/* Tells how wide and high the window is, but for the margins. */
 float gui_window_width(void);
 float gui_window_height(void);
 

@@ -41,7 +41,7 @@ void window_end(Window *window);
 /* Keeps so much of the window free, at its right; in the units of gui.h.  Not of a window
    in which little would be left for the picture. */
 void window_reserve(Window *window, double right);
-/* Whether the picture stands beside that; in a narrow window it lies behind. */
+/* Tells whether the picture stands beside that; in a narrow window it lies behind. */
 bool window_has_room_beside(const Window *window);
 /* The picture behind everything, stretched to the rest of the window; four bytes a pixel. */
 void window_set_picture(Window *window, const uint8_t *pixels, uint32_t width, uint32_t height);

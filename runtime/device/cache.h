@@ -45,7 +45,7 @@ typedef struct CacheKey {
 /* Opens the folder, which is made if it is missing; NULL or "" is a cache that keeps nothing. */
 void cache_open(Cache *cache, const char *folder, KrsAllocator allocator);
 void cache_close(Cache *cache);
-/* Whether nothing is kept in a folder, as before the first picture. */
+/* Tells whether nothing is kept in a folder, as before the first picture. */
 bool cache_is_empty(const char *folder);
 
 /* The key of what is made from `content` by whatever `maker` names, versions included. */

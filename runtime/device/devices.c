@@ -25,7 +25,7 @@ static uint32_t needed_buffers(const VkPhysicalDeviceLimits *limits)
     return STORAGE_BUFFERS + (devices_read_texels(limits) ? 0 : STORAGE_BUFFERS_FOR_TEXELS);
 }
 
-/* Whether the device has what all shaders need. */
+/* Tells whether the device has what all shaders need. */
 static bool is_capable(const VkPhysicalDeviceProperties *properties)
 {
     const VkPhysicalDeviceLimits *limits = &properties->limits;
@@ -100,7 +100,7 @@ static bool all_digits(const char *text)
     return *text == '\0';
 }
 
-/* Whether `device`, of number `index`, is one that the words ask for. */
+/* Tells whether `device`, of number `index`, is one that the words ask for. */
 static bool wanted(const KrsDevice *device, uint32_t index, const char *words)
 {
     if (!words || !*words)

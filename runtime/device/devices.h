@@ -10,7 +10,7 @@
 bool      gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count);
 KrsDevice gpu_describe(VkPhysicalDevice physical);
 
-/* Whether shaders read texels on a device with these limits; else they read storage buffers. */
+/* Tells whether shaders read texels on a device with these limits; else they read storage buffers. */
 bool devices_read_texels(const VkPhysicalDeviceLimits *limits);
 
 /* Takes the device that the words ask for, and its queue family, into gpu; see krs devices. */

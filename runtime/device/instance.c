@@ -46,7 +46,7 @@ bool vulkan_offers(Gpu *gpu, VkPhysicalDevice physical, const char *extension)
     return found;
 }
 
-/* How the layers are listened to. */
+/* Tells how the layers are listened to. */
 static VkDebugUtilsMessengerCreateInfoEXT listener(Gpu *gpu)
 {
     return (VkDebugUtilsMessengerCreateInfoEXT){

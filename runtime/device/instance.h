@@ -13,7 +13,7 @@
 /* Into gpu->instance; with validation, what its layers say goes to gpu->validation_message. */
 bool instance_create(Gpu *gpu, bool validation);
 void instance_destroy(Gpu *gpu);
-/* Whether an extension is among those that are offered: by a device, or without one by Vulkan. */
+/* Tells whether an extension is among those that are offered: by a device, or without one by Vulkan. */
 bool vulkan_offers(Gpu *gpu, VkPhysicalDevice physical, const char *extension);
 
 #endif

@@ -13,7 +13,7 @@
 void pipelines_open(Gpu *gpu);
 void pipelines_close(Gpu *gpu);
 
-/* Whether a driver's data is of this device: drivers trust what they are given. */
+/* Tells whether a driver's data is of this device: drivers trust what they are given. */
 bool pipelines_fit(const VkPhysicalDeviceProperties *device, const void *bytes, size_t length);
 
 #endif

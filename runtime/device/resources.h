@@ -6,14 +6,14 @@
 
 #include <stdbool.h>
 
-/* How many of `wanted` threads can be there at the same time. */
+/* Tells how many of `wanted` threads can be there at the same time. */
 unsigned threads_available(unsigned wanted);
 
-/* How many a driver that computes on the processor makes: for each core one for triangles and one
+/* Tells how many a driver that computes on the processor makes: for each core one for triangles and one
    for shaders, of up to 32 cores, and one for the queue. */
 unsigned threads_of_software_device(void);
 
-/* Whether there is as much memory as drivers take to start at all. */
+/* Tells whether there is as much memory as drivers take to start at all. */
 bool memory_suffices_to_start(void);
 
 #endif

@@ -145,7 +145,7 @@ static void take_counters(Job *job)
     control->clamped                                                       = 0;
 }
 
-/* Whether the first ray of each pixel, which goes through the middle of the lens, is not among the
+/* Tells whether the first ray of each pixel, which goes through the middle of the lens, is not among the
    samples.  With a few hundred of them it would be seen: as a sharp picture in the blurred one. */
 static bool spares_first(const Job *job)
 {

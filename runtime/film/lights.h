@@ -6,7 +6,7 @@
 
 #include "runtime/film/resident.h"
 
-/* How many numbers of four members the light of all lights is. */
+/* Tells how many numbers of four members the light of all lights is. */
 size_t lights_numbers(const KrsFilm *film);
 /* Makes room for the light of each light of a film's scene, in place of what there was; none where
    the options do not ask for it.  False with the failure noted. */

@@ -7,7 +7,7 @@
 #include "runtime/tracer/job.h"
 #include "runtime/tracer/plan.h"
 
-/* Whether the error of pixels is estimated, for these options. */
+/* Tells whether the error of pixels is estimated, for these options. */
 bool noise_is_wanted(const KrsRenderOptions *options);
 /* Before samples are added to the band in the buffers, whose pixels have `samples` so far.  Clears
    *goes_on if all of them have ended. */

@@ -7,7 +7,7 @@
 #include "runtime/film/resident.h"
 #include "runtime/tracer/job.h"
 
-/* Whether the plate of a film catches shadows. */
+/* Tells whether the plate of a film catches shadows. */
 bool plate_catches(const KrsFilm *film);
 /* So many rows of results are of the plate: 0, 2 or 4. */
 uint32_t plate_rows(const KrsFilm *film);

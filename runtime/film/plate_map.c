@@ -48,7 +48,7 @@ static float nearness_of(const Map *map, size_t x, size_t y)
     return map->perspective ? 1 / depth : -depth;
 }
 
-/* How much the nearness of a surface changes from pixel to pixel that rises by one of its widths. */
+/* Tells how much the nearness of a surface changes from pixel to pixel that rises by one of its widths. */
 static float change_of_pixel(const Map *map, float nearness)
 {
     const FrameBlock *frame = &map->job->frame;
@@ -61,7 +61,7 @@ static float change_of(float from, float to)
     return from == NOWHERE || to == NOWHERE ? 0 : fabsf(to - from);
 }
 
-/* Whether the middle two of four pixels in a row belong to the same surface. */
+/* Tells whether the middle two of four pixels in a row belong to the same surface. */
 static bool are_joined(const Map *map, const float row[4])
 {
     if (row[1] == NOWHERE || row[2] == NOWHERE)

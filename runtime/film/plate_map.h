@@ -6,7 +6,7 @@
 
 #include "runtime/tracer/job.h"
 
-/* Whether rays of a job's paths may meet the plate: it catches something, its depths and its colours
+/* Tells whether rays of a job's paths may meet the plate: it catches something, its depths and its colours
    are known, and its camera is no panorama. */
 bool plate_map_exists(const Job *job);
 /* The rows of the map, of four numbers each (blocks.h). */

@@ -26,7 +26,7 @@ struct KrsFilm {
 /* The crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels of a tile go
    on together (noise.comp), which must not depend on the crop. */
 KrsWindow resident_cover(const KrsRenderOptions *options);
-/* How many numbers of four members `kept` has: of each pixel of these tiles in the rows of colours,
+/* Tells how many numbers of four members `kept` has: of each pixel of these tiles in the rows of colours,
    noise and earlier sums. */
 size_t resident_kept(const KrsRenderOptions *options);
 

@@ -288,7 +288,7 @@ static bool add_mirrors(Preview *p)
 
 /* ---- the plan ---- */
 
-/* Whether there are secondary rays: for occlusion, or to a light that casts shadows. */
+/* Tells whether there are secondary rays: for occlusion, or to a light that casts shadows. */
 static bool needs_secondary(const Job *job)
 {
     bool needed = !job->options.no_occlusion;

@@ -65,7 +65,7 @@ vec3 find_start(HitPoint hit, vec3 direction, vec4 facing, float side, float dis
     return hit.position + ahead * direction + side * (height - ahead * cosine) * facing.xyz;
 }
 
-// How long a path's ray has been on its way from the last surface.  It began somewhat beyond that,
+// Tells how long a path's ray has been on its way from the last surface.  It began somewhat beyond that,
 // but the camera's did not (`first`).
 float find_way(uint index, HitPoint hit, float t, bool first)
 {

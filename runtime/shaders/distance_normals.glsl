@@ -48,7 +48,7 @@ void begin_normal()
 #ifdef GRADIENT
     // Differences are used where derivatives are not finite.
     vec3 gradient = krs_gradient(hit.position, t);
-    // They are also used where rounding makes a visible surface face away from the eye.
+    // Differences are also used where rounding makes a visible surface face away from the eye.
     float facing_eye = hit.side * dot(gradient, find_backwards());
 #ifdef SHEETS // both sides are visible
     gradient *= facing_eye < 0.0 ? -1.0 : 1.0;
@@ -62,7 +62,7 @@ void begin_normal()
 #endif
 }
 
-// How even the surface is: 1 where it is flat.  There opposite taps cancel in `level`.  On an edge,
+// Tells how even the surface is: 1 where it is flat.  There opposite taps cancel in `level`.  On an edge,
 // or on detail finer than the distance between taps, they do not.
 float find_evenness()
 {

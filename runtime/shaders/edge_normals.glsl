@@ -101,7 +101,7 @@ void take_difference(float distance)
     direction = stencil(wide ? taps : taps - 1u);
 }
 
-// Whether the wide taps see the plane of the nearer ones, up to an edge.
+// Tells whether the wide taps see the plane of the nearer ones, up to an edge.
 bool is_confirmed()
 {
     vec3 rise = reach / t * 0.5 * sum;
@@ -122,7 +122,7 @@ uint end_wide_taps()
     return bend_wide > SHARP && bend_wide < THIN ? FIRST : WIDE;
 }
 
-// Whether the nearer taps see one side of an edge.  If they are flat they may also see the seam
+// Tells whether the nearer taps see one side of an edge.  If they are flat they may also see the seam
 // inside of touching solids, but that has another normal.
 bool is_one_side(float bend)
 {

@@ -105,7 +105,7 @@ vec3 sample_cones(Cones cones, vec2 square_point)
                      (1.0 - gap) * chosen.axis);
 }
 
-// How likely a path goes on.  Its weight is small where it goes towards a bright light, as many do.
+// Tells how likely a path goes on.  Its weight is small where it goes towards a bright light, as many do.
 // What the surface keeps of light from directions of its own choice tells that it counts.
 float find_survival(vec3 weight, float kept) { return max(largest(weight), kept); }
 #else

@@ -132,7 +132,7 @@ vec3 find_light_before(Path path, bool hits, bool lost, float end, uint index)
 }
 
 #ifdef CATCHES
-// How far along its ray a path meets the plate; INFINITE: nowhere.  The first ray of what the plate scatters
+// Tells how far along its ray a path meets the plate; INFINITE: nowhere.  The first ray of what the plate scatters
 // as a dull surface does not: that light is the same with the scene and without it.
 float find_plate_of_path(Path path)
 {

@@ -134,7 +134,7 @@ void load_frame()
 #endif
 }
 
-// How wide a pixel counts that is so wide at t.
+// Tells how wide a pixel counts that is so wide at t.
 float width_at(float t, float width)
 {
     return frame.snaps != 0u ? min(width, MOST_WIDTH * t) : width;
@@ -189,7 +189,7 @@ uint find_sampled(uint quarter)
     return control.sampled_at != 0u ? load_tile_word(control.sampled_at + quarter) : 0xffffu;
 }
 
-// Whether a pixel of a quarter, by its number, has a ray; or whether a whole tile has any.
+// Tells whether a pixel of a quarter, by its number, has a ray; or whether a whole tile has any.
 bool has_rays(uint tile, uint quarter, bool is_pixel, uint number)
 {
     uvec4 sampled = load_tile_row(control.sampled_at + 4u * tile);
@@ -335,7 +335,7 @@ void find_ray_of_picture(vec2 image_point, out vec3 origin, out vec3 direction, 
 }
 #endif
 
-// Whether the rays are those of paths.  Shaders with MIXED_RAYS are for both.
+// Tells whether the rays are those of paths.  Shaders with MIXED_RAYS are for both.
 bool are_of_paths()
 {
 #ifdef MIXED_RAYS

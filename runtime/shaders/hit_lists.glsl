@@ -74,7 +74,7 @@ uint cone_of_quarter(uint number)
     return 64u * (number / 4u) + 18u + 3u * (number & 1u) + 24u * (number >> 1u & 1u);
 }
 
-// Whether the pixel at which a quarter's cone starts hits something.
+// Tells whether the pixel at which a quarter's cone starts hits something.
 bool has_cone(uint number)
 {
     uint column = 2u - (number & 1u), row = 2u - (number >> 1u & 1u);

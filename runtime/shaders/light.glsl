@@ -13,7 +13,7 @@ vec3 sky_radiance(vec3 direction)
     return mix(above, frame.ground.rgb, smoothstep(0.0, 0.25, -rise));
 }
 
-// How much light of the zenith and of the ground there is in light of the sky; the rest is the
+// Tells how much light of the zenith and of the ground there is in light of the sky; the rest is the
 // horizon's.
 vec3 mix_sky(vec2 parts)
 {

@@ -56,7 +56,7 @@ void place_on_rectangle(Light light, vec2 square, inout vec2 point, inout vec3 r
 }
 
 #ifdef LIGHT_SAMPLES
-// It sends nothing behind it.
+// The light sends nothing behind it.
 float weight_of_rectangle(Light light, vec3 way)
 {
     return dot(cross(light.right, light.up), way) <= 0.0 ? 0.0 : 1.0;

@@ -7,7 +7,7 @@
 #define LIGHT_SAMPLES
 #include "light_types.glsl"
 
-// How often a path chooses this light, relative to others: never where it sends nothing.
+// Tells how often a path chooses this light, relative to others: never where it sends nothing.
 float find_importance(Light light, vec3 place)
 {
     return luminance(find_irradiance(light, place)) * find_weight(light, place - light.vector);

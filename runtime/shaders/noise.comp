@@ -125,7 +125,7 @@ void begin_quarter(uvec2 corner, uint exist)
     }
 }
 
-// Whether a pixel goes on in a tile or next to it: passes share what they find with neighbours.
+// Tells whether a pixel goes on in a tile or next to it: passes share what they find with neighbours.
 bool is_near_sampled(uint tile)
 {
     uvec2 count = (work.extent + 7u) / 8u, cell = find_cell(tile, count.x);

@@ -9,7 +9,7 @@ vec4 find_plate_plane(uint index)
     return uintBitsToFloat(load_input(control.plate_planes + index));
 }
 
-// Whether a ray has ended at the plate (limit.comp).
+// Tells whether a ray has ended at the plate (limit.comp).
 bool is_of_plate(RayEnd ray)
 {
     return ray.state == STATE_HIT && ray.march_group == MARCH_GROUP_OF_PLATE;

@@ -63,7 +63,7 @@ vec4 find_plate_at(vec2 place)
                   : nearest;
 }
 
-// Whether the pixels of two places, which are neighbours at most, are joined.
+// Tells whether the pixels of two places, which are neighbours at most, are joined.
 bool are_joined(ivec2 a, ivec2 b)
 {
     ivec2 low = min(a, b);
@@ -116,7 +116,7 @@ float place_on_ray(vec2 range, vec3 from, vec3 to, float part)
     return mix(range.x, range.y, part);
 }
 
-// How far along a ray the plate is; INFINITE: the ray does not meet it before its end.  `left`: it begins
+// Tells how far along a ray the plate is; INFINITE: the ray does not meet it before its end.  `left`: it begins
 // on the plate.
 float find_plate_ahead(vec3 origin, vec3 direction, float end, bool left)
 {

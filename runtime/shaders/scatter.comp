@@ -118,7 +118,7 @@ vec3 find_tint_to(LightPoint point, HitPoint hit, vec3 facing)
 // How the path has come here (media.glsl).
 float come_by;
 
-// How a path of direct light goes on from glass, or from a surface.
+// Tells how a path of direct light goes on from glass, or from a surface.
 float go_by(Bsdf bsdf, Boundary boundary, bool beyond)
 {
     bool stays = bsdf.glass > 0.0 && (beyond || boundary.absorbs);
@@ -131,7 +131,7 @@ bool is_direct() { return true; }
 bool is_direct() { return false; }
 #endif
 
-// Whether a path of direct light ends here.
+// Tells whether a path of direct light ends here.
 bool ends_here(Bsdf bsdf) { return is_direct() && come_by != STRAIGHT && bsdf.glass == 0.0; }
 
 // Whether the path began at the plate: densities are negative then.  If it is there now, it begins.
@@ -153,7 +153,7 @@ void find_whether_caught(uvec2 pixel, uint index)
 #endif
 }
 
-// Whether the plate is before a point of a light.  What it casts on itself it shows already.
+// Tells whether the plate is before a point of a light.  What it casts on itself it shows already.
 bool is_behind_plate(LightPoint point, HitPoint hit)
 {
 #ifdef CATCHES
@@ -295,7 +295,7 @@ void store_seen(uint index, vec3 radiance, HitPoint hit, vec3 normal, KrsSurface
                  surface);
 }
 
-// How the surface scatters light.
+// Tells how the surface scatters light.
 Bsdf find_bsdf(KrsSurface surface, HitPoint hit, Boundary boundary, Axes axes)
 {
     Bsdf bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));

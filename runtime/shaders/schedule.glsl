@@ -23,7 +23,7 @@
  * steps ends when REFILL_THRESHOLD lanes can take an item.  All lanes execute whatever is in these
  * loops, so saving and resuming are outside.  On a graphics card a lane has one item.
  */
-// Whether the lane's item takes another step, after this many iterations.
+// Tells whether the lane's item takes another step, after this many iterations.
 bool may_take_step(uint iterations, uint allowed)
 {
     return item_needs_step() && (SAVES == 0 || iterations < allowed);

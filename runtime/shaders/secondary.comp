@@ -122,7 +122,7 @@ float find_end_of_cone()
     return min(min(ends.x, ends.y), min(ends.z, end));
 }
 
-// How high a ray starts above a surface of this evenness.
+// Tells how high a ray starts above a surface of this evenness.
 float find_lift(float evenness)
 {
     float pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, evenness));
@@ -299,7 +299,7 @@ float relax(float around)
     return max(2.0 * SAFETY / (1.0 - clamp(slope, -1.0, STEEPEST)) * lateral, around);
 }
 
-// Whether the empty balls of this step and the last are too narrow where they meet (math.md 6).
+// Tells whether the empty balls of this step and the last are too narrow where they meet (math.md 6).
 // That is `behind` this position; `lateral` is how far they reach from the axis there, squared.
 bool has_overstepped(float around, float per_gap)
 {
@@ -311,7 +311,7 @@ bool has_overstepped(float around, float per_gap)
            (narrow || last_step > last_radius + around);
 }
 
-// Whether a ray is inside of a solid, or a cone is not empty.  Near the start the distance may be
+// Tells whether a ray is inside of a solid, or a cone is not empty.  Near the start the distance may be
 // small in the open as well, where it is only a bound.
 bool is_blocked(float distance)
 {

@@ -92,7 +92,7 @@ float roughen(float roughness, float mean_length)
     return sqrt(sqrt(min(square * square + spread, 1.0)));
 }
 
-// Whether one sample stands for all that its pixel shows.
+// Tells whether one sample stands for all that its pixel shows.
 bool filters_detail() { return frame.normal_reach > LEAST_NORMAL_REACH; }
 
 Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)

@@ -27,7 +27,7 @@ void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
     find_ray(image_point, origin, axis, base, slope);
 }
 
-// How far a hit is along the axis of its pixel.
+// Tells how far a hit is along the axis of its pixel.
 float find_depth(HitPoint hit) { return find_end(index_of(pixel_of(hit.slot))).t; }
 #else
 void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
@@ -45,7 +45,7 @@ void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
 #endif
 }
 
-// How far a hit is along the axis of its pixel.
+// Tells how far a hit is along the axis of its pixel.
 float find_depth(HitPoint hit)
 {
     float along = dot(hit.position - frame.eye, frame.forward.xyz);

@@ -80,7 +80,7 @@ vec3 sky_map_mirrored(vec3 direction, float roughness)
     return mix(sky_map_level(finer, place), sky_map_level(finer + 1u, place), fract(level));
 }
 
-// How dense the directions are that are chosen within a cell, relative to those that are even in solid
+// Tells how dense the directions are that are chosen within a cell, relative to those that are even in solid
 // angle, at a place of the picture in parts of its height: they are chosen by their latitude.
 float crowding_on_sky(float down)
 {

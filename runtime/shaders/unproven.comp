@@ -14,7 +14,7 @@
 // with a similar normal (the least cosine).
 const float PROVEN_NEAR = 3.0, PROVEN_ON_PLANE = 1.0, FACING_ALIKE = 0.9;
 
-// Whether the empty cone of a pixel with normal `facing` proves that another pixel sees all of the
+// Tells whether the empty cone of a pixel with normal `facing` proves that another pixel sees all of the
 // light.
 bool is_proven(HitPoint here, vec3 normal, HitPoint cone, vec3 facing)
 {

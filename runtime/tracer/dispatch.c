@@ -65,7 +65,7 @@ static bool has_scene(const Job *job, const Shader *shader)
     return !is_pixels;
 }
 
-/* How many items of this shader make a slice, as learned so far.  Shaders without the scene cost next
+/* Tells how many items of this shader make a slice, as learned so far.  Shaders without the scene cost next
    to nothing, so they are counted apart from the others of a phase. */
 static double *items_at_once(Job *job, KrsPhase phase, const Shader *shader)
 {

@@ -10,7 +10,7 @@
 
 #include "runtime/tracer/job.h"
 
-/* Whether dispatches form chains.  If so, the host knows the counters only after
+/* Tells whether dispatches form chains.  If so, the host knows the counters only after
    dispatch_finish. */
 bool dispatch_chains(const Job *job);
 

@@ -57,7 +57,7 @@ static bool is_camera_relative(const Job *job)
     return job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 || job->rebase_origin[2] != 0;
 }
 
-/* Whether all rays begin outside of all solids.  A ray from inside of a solid hits the inner wall
+/* Tells whether all rays begin outside of all solids.  A ray from inside of a solid hits the inner wall
    of the union, which no march group or scene part knows by itself.  Rays of a list may begin
    anywhere, and are not tested one by one. */
 static bool begins_outside(const Job *job, KrsFrame *frame)

@@ -75,7 +75,7 @@ bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera);
 double job_pixel(const Job *job, double distance);
 /* The shader without a scene for the rays of this frame. */
 const Shader *job_pixel_shader(const Job *job, PixelShader shader);
-/* Whether beams march the empty space that the rays of a tile share. */
+/* Tells whether beams march the empty space that the rays of a tile share. */
 bool job_has_beams(const Job *job);
 
 /* The number of 8x8 tiles of a band. */

@@ -10,31 +10,31 @@
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule);
 /* The steps of a lane in a dispatch: `wanted`, or the most that its loops permit. */
 uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted);
-/* Whether a primary ray is saved when the steps of its dispatch are used up.  Else it is marched to
+/* Tells whether a primary ray is saved when the steps of its dispatch are used up.  Else it is marched to
    its end; the steps of the dispatch and those of a ray are few enough for that. */
 bool rendering_saves_rays(const KrsRendering *rendering, KrsSchedule schedule);
 /* The schedule for the rays of a march group that is marched by itself. */
 KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, KrsSchedule asked,
                                               uint32_t march_group);
-/* Whether rays intersect planes without a march, by shaders for MARCH_WITHOUT_PLANES. */
+/* Tells whether rays intersect planes without a march, by shaders for MARCH_WITHOUT_PLANES. */
 bool rendering_knows_planes(const KrsRendering *rendering);
-/* Whether march groups are marched one after the other; false where they cannot be. */
+/* Tells whether march groups are marched one after the other; false where they cannot be. */
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components);
-/* Whether each ray marches scene part by scene part with this method; false where it cannot. */
+/* Tells whether each ray marches scene part by scene part with this method; false where it cannot. */
 bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,
                               KrsTrace trace);
-/* Whether rays by this method have beams before them. */
+/* Tells whether rays by this method have beams before them. */
 bool rendering_has_beams(const KrsRendering *rendering, KrsTrace trace);
-/* Whether rays step by what lies ahead in their direction (krs_along), not by the distance. */
+/* Tells whether rays step by what lies ahead in their direction (krs_along), not by the distance. */
 bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace);
-/* Whether shaders for all march groups are for the rays of the picture and for those of its paths. */
+/* Tells whether shaders for all march groups are for the rays of the picture and for those of its paths. */
 bool rendering_mixes_rays(const KrsRendering *rendering);
-/* Whether many noises of a surface are one loop: less for the driver to translate, but turns cost. */
+/* Tells whether many noises of a surface are one loop: less for the driver to translate, but turns cost. */
 bool rendering_gathers_noises(const KrsRendering *rendering);
 /* The kind of normals to compute.  The default is by derivatives in algebraic scenes, else by the
    octahedron.  Scenes with sheets have no choice: by derivatives. */
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals);
-/* Whether primary rays by this method go from root to root.  If so, secondary rays do, too. */
+/* Tells whether primary rays by this method go from root to root.  If so, secondary rays do, too. */
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);
 
 #endif

@@ -64,7 +64,7 @@ static bool blurs(const Viewer *viewer, double coordinate, double distance, doub
            krs_normal_blur(coordinate, pixel) > blur;
 }
 
-/* Whether normals are blurred too much somewhere, or most of them are. */
+/* Tells whether normals are blurred too much somewhere, or most of them are. */
 static bool blurs_normals(const Viewer *viewer, const Sight *sight)
 {
     size_t blurred = 0;

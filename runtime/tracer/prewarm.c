@@ -29,7 +29,7 @@ typedef struct PrewarmQueue {
     bool                 helped;                     /* which runs */
 } PrewarmQueue;
 
-/* Whether a second device is worth its cost.  There must be a core for it, and more than one shader
+/* Tells whether a second device is worth its cost.  There must be a core for it, and more than one shader
    that the driver probably does not have yet.  The callback of the validation layers works for one
    thread only. */
 static bool worth_second_device(const PrewarmQueue *queue)
@@ -96,7 +96,7 @@ static bool prewarm_all(KrsRenderer *renderer, VkDescriptorSet scene_set, Prewar
     const size_t         count    = queue->count;
     bool                 ready = true, taken[SHADERS_AT_ONCE] = {false};
     while (queue->helped && ready) {
-        /* It takes a shader only when it can run it. */
+        /* This device takes a shader only when it can run it. */
         ready    = gpu_wait(&renderer->gpu) && tell_prewarmed(renderer, taken_so_far(queue), count);
         size_t i = atomic_fetch_add(&queue->next, 1);
         if (i >= count)

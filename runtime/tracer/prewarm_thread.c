@@ -34,7 +34,7 @@ bool shader_prewarm(KrsRenderer *renderer, VkDescriptorSet scene_set, Shader *sh
                                            &work, sizeof work, &shader->prewarm);
 }
 
-/* Whether the driver had to compile the first shader, which its cache gives in a few milliseconds.  Where
+/* Tells whether the driver had to compile the first shader, which its cache gives in a few milliseconds.  Where
    that is empty, ours is as well. */
 static bool finds_no_cache(const PrewarmThread *prewarm)
 {

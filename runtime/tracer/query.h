@@ -10,7 +10,7 @@
 enum { POINTS_AT_ONCE = 16384 };
 /* Makes room for that many points, and their answers. */
 bool point_query_prepare(KrsRendering *rendering);
-/* How large what is asked about is: the longest side of the box around all but planes; 1 where that has
+/* Tells how large what is asked about is: the longest side of the box around all but planes; 1 where that has
    no end. */
 double point_query_size(const KrsRendering *rendering);
 /* What is at the first `count` of them, with normals by differences over a thousandth of the coordinates and
@@ -19,7 +19,7 @@ bool point_query_run(KrsRendering *rendering, uint32_t count, double step);
 #define POINT_QUERY_STEP 1e-4
 
 /* ---- query.c ---- */
-/* Whether what the device says of `count` rays can be used: each has missed, or has its own place
+/* Tells whether what the device says of `count` rays can be used: each has missed, or has its own place
    among the `ends` of rays. */
 bool ray_hits_are_valid(const RayHitBlock *ray_hits, uint32_t count, uint32_t ends);
 

@@ -72,7 +72,7 @@ static double weigh(const Directions *sky, double *weights)
     return sum;
 }
 
-/* How many cells of a side there are in a width. */
+/* Tells how many cells of a side there are in a width. */
 static uint32_t cells_in(uint32_t width, uint32_t side) { return (width + side - 1) / side; }
 
 static uint32_t coarsest_side(uint32_t width, uint32_t height)
@@ -157,7 +157,7 @@ static void resample(const Directions *from, const Directions *to)
     }
 }
 
-/* How much light counts from an angle.  Around a normal (roughness below 0) it is the cosine, else what
+/* Tells how much light counts from an angle.  Around a normal (roughness below 0) it is the cosine, else what
    microfacets mirror that are seen along the normal: GGX's lobe at half the angle. */
 static double lobe(double cosine, double roughness)
 {

@@ -7,7 +7,7 @@
 
 #include "runtime/tracer/handles.h"
 
-/* How many rows the table of a map has. */
+/* Tells how many rows the table of a map has. */
 size_t sky_table_rows(const KrsSkyMap *map);
 /* Fills in such a table.  Returns the irradiance by half of the sky, on the average over all
    halves; negative: there is no memory. */

@@ -6,7 +6,7 @@
 
 #include "runtime/tracer/handles.h"
 
-/* Whether points may be camera-relative: the scene may need it, and the device has room for the slots. */
+/* Tells whether points may be camera-relative: the scene may need it, and the device has room for the slots. */
 bool rendering_rebases(const KrsRendering *rendering);
 /* The slots of frame values that the host computes.  Where the device has no room for all of them
    it is 0, and shaders compute them. */

@@ -277,7 +277,7 @@ ShaderVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
     return to;
 }
 
-/* Whether normals at hits are by derivatives, which tell the nearest component as well.  Boundaries
+/* Tells whether normals at hits are by derivatives, which tell the nearest component as well.  Boundaries
    of media are told by distances. */
 static bool knows_tangents(const KrsRendering *rendering)
 {

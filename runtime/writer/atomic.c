@@ -115,7 +115,7 @@ bool output_is_same(const char *a, const char *b)
 
 static bool is_standard_output(const char *path) { return strcmp(path, OUTPUT_STANDARD) == 0; }
 
-/* Whether standard output can be written: a caller may have closed it. */
+/* Tells whether standard output can be written: a caller may have closed it. */
 static bool check_standard_output(OutputFile *file)
 {
     const int flags = fcntl(STDOUT_FILENO, F_GETFL);

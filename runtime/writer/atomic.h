@@ -72,7 +72,7 @@ KrsStatus output_make_folder(const char *path, OutputError *error);
    temporary files that killed processes have left in that folder. */
 KrsStatus output_check(const char *path, OutputError *error);
 
-/* Whether two paths lead to the same file, which need not exist. */
+/* Tells whether two paths lead to the same file, which need not exist. */
 bool output_is_same(const char *a, const char *b);
 
 #endif

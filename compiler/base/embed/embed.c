@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* How much of a path the first prefix is that it begins with; prefixes end with "--". */
+/* Tells how much of a path the first prefix is that it begins with; prefixes end with "--". */
 static size_t prefix_length(const char *path, char **prefixes)
 {
     for (; strcmp(*prefixes, "--") != 0; prefixes++)

@@ -26,7 +26,7 @@ BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin
 /* ---- cells.c ---- */
 /* The period of a lattice and its counts, 0 for endless; false: reported. */
 bool want_lattice(Elaboration *e, const Call *call, Node *period, uint32_t cells[3]);
-/* Whether functions have this method: `.repeat` and `.repeat_polar` of one that makes the shape of a
+/* Tells whether functions have this method: `.repeat` and `.repeat_polar` of one that makes the shape of a
    cell. */
 bool  repeats_functions(const char *method);
 Value repeat_function(Elaboration *e, const Environment *env, const Syntax *syntax,

@@ -65,7 +65,7 @@ static bool add_pieces(Elaboration *e, const Outline *outline, Corners *corners)
 
 /* ---- convexity ---- */
 
-/* Whether the corners are known now, and the polygon turns to the left all the way around, once. */
+/* Tells whether the corners are known now, and the polygon turns to the left all the way around, once. */
 static bool turns_left_once(const Elaboration *e, const Corners *corners)
 {
     double at[MOST_CORNERS][2], size = 0, around = 0;

@@ -99,7 +99,7 @@ static bool cut_all(Extremes *x)
     return x->count > before;
 }
 
-/* Whether something on the tape differs from frame to frame. */
+/* Tells whether something on the tape differs from frame to frame. */
 static bool depends_on_frame(const Graph *graph, const Tape *tape)
 {
     for (size_t i = 0; i < tape->frame_count; i++)

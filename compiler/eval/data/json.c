@@ -125,7 +125,7 @@ static bool another(DataText *data, char closer, bool *good)
     return false;
 }
 
-/* Whether nothing is between the brackets, which are skipped then. */
+/* Tells whether nothing is between the brackets, which are skipped then. */
 static bool is_empty(DataText *data, char closer)
 {
     data->at++;

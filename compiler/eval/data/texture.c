@@ -99,7 +99,7 @@ Value builtin_texture(Elaboration *e, Call *call)
 
 /* ---- the footprint ---- */
 
-/* How far each component of a node changes within a pixel. */
+/* Tells how far each component of a node changes within a pixel. */
 static Node footprint_of(Graph *g, Node node)
 {
     const GraphType type = (GraphType)g->items[node].type;

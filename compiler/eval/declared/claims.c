@@ -91,7 +91,7 @@ static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *
 
 /* ---- slope and box ---- */
 
-/* Whether a point lies farther than `rounding` from the box of the shape. */
+/* Tells whether a point lies farther than `rounding` from the box of the shape. */
 static bool is_outside(const Shape *shape, const double point[3], double rounding)
 {
     for (int i = 0; i < (shape->figure ? 2 : 3); i++) {

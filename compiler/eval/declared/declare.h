@@ -6,7 +6,7 @@
 
 #include "compiler/eval/elaborate.h"
 
-/* Whether a declaration or property has not been put to the test yet; it counts as tested from
+/* Tells whether a declaration or property has not been put to the test yet; it counts as tested from
    here on. */
 bool needs_check(Elaboration *e, const Syntax *syntax);
 

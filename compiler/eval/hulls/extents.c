@@ -106,7 +106,7 @@ static bool known_vector(const Graph *g, Node node, double numbers[3])
     return known;
 }
 
-/* Whether two unit vectors are one, or opposite to each other. */
+/* Tells whether two unit vectors are one, or opposite to each other. */
 static bool are_parallel(const Graph *g, Node a, Node b)
 {
     double u[3], v[3], across[3];

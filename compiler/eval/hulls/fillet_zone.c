@@ -54,7 +54,7 @@ static bool find_distances(Elaboration *e, const Shape *const parts[2], Distance
     return !depends_on_frame(&distances->tape);
 }
 
-/* Whether something may be added in a ball. */
+/* Tells whether something may be added in a ball. */
 static bool adds_in(const Distances *distances, double width, const ZoneCell *cell)
 {
     double away[2];

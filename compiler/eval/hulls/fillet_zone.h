@@ -24,7 +24,7 @@ typedef struct FilletZone {
 /* Of parts whose circular blend differs from their union in this box alone.  So many points are looked at. */
 FilletZone fillet_zone(Elaboration *e, const Shape *a, const Shape *b, double width, Box box,
                        size_t most);
-/* Whether a convex function of the point, with slope 1, may be above 0 there. */
+/* Tells whether a convex function of the point, with slope 1, may be above 0 there. */
 bool zone_goes_beyond(Elaboration *e, const FilletZone *zone, Node distance);
 /* The same of dot(normal, p) - offset, in numbers. */
 bool zone_goes_beyond_plane(const FilletZone *zone, const double normal[3], double offset);

@@ -272,7 +272,7 @@ static bool turned_hull(const Hulling *h, const Axis *axis, double slack, Value 
     return true;
 }
 
-/* Whether each part has one at the other end that is alike. */
+/* Tells whether each part has one at the other end that is alike. */
 static bool ends_match(const HullParts *parts, double (*places)[3], double middle, double slack)
 {
     for (size_t i = 0; i < parts->count; i++) {

@@ -240,7 +240,7 @@ static bool add_shape(const Gathering *g, const Shape *shape, const Place *place
 
 /* ---- arguments ---- */
 
-/* Whether solids, or figures, are all that there is. */
+/* Tells whether solids, or figures, are all that there is. */
 static bool goes_with(const Gathering *g, bool figure)
 {
     if (g->parts->count == 0 || g->parts->figure == figure) {

@@ -42,7 +42,7 @@ static Value point_value(Elaboration *e, const coordT *point)
     return value_list(e, numbers, 3);
 }
 
-/* Whether the corners are counterclockwise as seen from where the normal points. */
+/* Tells whether the corners are counterclockwise as seen from where the normal points. */
 static bool faces_outwards(coordT *const corners[3], const coordT *normal)
 {
     double first[3], second[3], across[3];

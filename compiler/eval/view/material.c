@@ -82,7 +82,7 @@ static Range property_range(Elaboration *e, Node property)
     return varies ? (Range){0, 1} : node_range(e->builder, property, 0);
 }
 
-/* Whether previews may have to follow a ray that this material mirrors or refracts (mirrors.glsl). */
+/* Tells whether previews may have to follow a ray that this material mirrors or refracts (mirrors.glsl). */
 static bool sends_rays(Elaboration *e, const Material *material)
 {
     const bool metal = property_range(e, material->metallic).high > 0;
@@ -92,7 +92,7 @@ static bool sends_rays(Elaboration *e, const Material *material)
             property_range(e, material->coat_roughness).low < 0.12);
 }
 
-/* Whether previews see more of this material than a body and a usual mirror (layers.glsl). */
+/* Tells whether previews see more of this material than a body and a usual mirror (layers.glsl). */
 static bool has_layers(Elaboration *e, const Material *material)
 {
 #define IS_USUAL(property) (material->property == root_otherwise(e->graph, ROOT_##property))

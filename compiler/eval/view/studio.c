@@ -48,7 +48,7 @@ static Box box_of_defaults(Elaboration *e)
     return box_around(boxes, e->scene->components.count);
 }
 
-/* Whether all cameras are above a height, in all frames. */
+/* Tells whether all cameras are above a height, in all frames. */
 static bool cameras_are_above(Elaboration *e, double height)
 {
     for (size_t i = 0; i < e->scene->cameras.count; i++) {

@@ -111,7 +111,7 @@ static void set_image(Elaboration *e, const Environment *env, const Syntax *synt
         set_white_balance(e, white, evaluate(e, env, white));
 }
 
-/* How deep a point is in the deepest of all zones: what the distance must not be below. */
+/* Tells how deep a point is in the deepest of all zones: what the distance must not be below. */
 static void add_zone(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Graph        *g      = e->graph;

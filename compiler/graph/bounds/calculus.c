@@ -181,7 +181,7 @@ Fact fact_agreed(Fact fact, uint32_t size)
 
 /* ---- means, sums and products ---- */
 
-/* Whether the first two are weights whose sum is not above 1. */
+/* Tells whether the first two are weights whose sum is not above 1. */
 static bool mixes(Norm norm, const Partials *rows, uint32_t size)
 {
     for (uint32_t i = 0; i < size; i++)

@@ -111,7 +111,7 @@ static void find_range(const Graph *graph, Node node, Range *result)
 
 /* ---- what the graph keeps ---- */
 
-/* Whether an operand has no range, or one that is not this; it is put on the stack, if there is one. */
+/* Tells whether an operand has no range, or one that is not this; it is put on the stack, if there is one. */
 static bool push_operands(const Graph *graph, Node node, const Range *missing, NodeStack *rest,
                           Arena *scratch)
 {

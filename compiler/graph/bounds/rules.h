@@ -46,7 +46,7 @@ Fact fact_unknown(uint32_t size);
 Range length_range(const Range *sides, uint32_t size);
 /* Room for the rounding of a computation with numbers of this size. */
 Range loosened(Range range, double scale);
-/* Whether the operands from `first` up to `count` are the same all over the box. */
+/* Tells whether the operands from `first` up to `count` are the same all over the box. */
 bool operands_constant(const RuleInput *input, uint32_t first, uint32_t count);
 
 /* How slopes combine: ops.def. */

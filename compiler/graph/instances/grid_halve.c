@@ -156,7 +156,7 @@ static void join_all(const Halver *halver, const HalvingDesk *desk, uint8_t *nee
 
 enum { PER_WIDTH = 4, STEPS = 32 * PER_WIDTH };
 
-/* How far an instance is at least above all results that must be right, in parts of a width. */
+/* Tells how far an instance is at least above all results that must be right, in parts of a width. */
 static double steps_above(const Halver *halver, const Halving *h, double distance, double result,
                           double away)
 {

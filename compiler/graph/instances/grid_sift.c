@@ -119,7 +119,7 @@ static Cube part_of(const Sieve *sieve, const Cube *cube, int part)
     return half;
 }
 
-/* Whether a processor looks at a cube of the levels below. */
+/* Tells whether a processor looks at a cube of the levels below. */
 static bool is_dealt(Hand hand, const Cube *cube)
 {
     return cube->level != hand.sifter->shared || hand.sieve->dealt++ % hand.parts == hand.part;

@@ -10,7 +10,7 @@
 
 #include "compiler/graph/instances/grid_blend.h"
 
-/* Whether sums are numbers of single precision anywhere in a cell of this size. */
+/* Tells whether sums are numbers of single precision anywhere in a cell of this size. */
 bool grid_may_have_tails(const GridBlend *blend, double size);
 
 /* Lists and tails of a refined grid; `tails` has the distances of instances in the middles of cells before.  Single precision

@@ -9,7 +9,7 @@
 
 #include "compiler/graph/instance_table.h"
 
-/* Whether the instances of some table move. */
+/* Tells whether the instances of some table move. */
 bool instances_move(const Instances *instances);
 
 /* A copy with tables of its own, which share all that they have; NULL of NULL. */

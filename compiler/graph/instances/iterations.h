@@ -19,10 +19,10 @@ void graph_at_iterations(const Graph *graph, const Node *roots, size_t root_coun
                          Arena *scratch);
 /* A root in one iteration.  Random numbers in it are numbers of the scene's text then, where that has some. */
 Node graph_in_iteration(Graph *graph, Node root, Node leaf, double iteration, Arena *scratch);
-/* Whether roots need a parameter but this leaf. */
+/* Tells whether roots need a parameter but this leaf. */
 bool graph_needs_parameters(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
                             Arena *scratch);
-/* How many numbers that are for each iteration. */
+/* Tells how many numbers that are for each iteration. */
 size_t graph_numbers_of(const Graph *graph, const Node *roots, size_t root_count);
 
 #endif

@@ -72,7 +72,7 @@ Template *template_new(Structures *structures, const Node *roots, uint32_t count
 /* Makes a template independent of nodes from this one on, which may be dropped then: it serves
    template_match alone.  False: it cannot be. */
 bool template_detach(Structures *structures, Template *template, size_t first, Arena *arena);
-/* Whether as many roots are alike.  What is in their slots goes to `contents`, slot_count of them;
+/* Tells whether as many roots are alike.  What is in their slots goes to `contents`, slot_count of them;
    for its elements nodes may be made. */
 bool template_match(Structures *structures, const Template *template, const Node *roots,
                     SlotContent *contents);
@@ -86,7 +86,7 @@ typedef struct LeafPair {
    become NODE_NONE. */
 void template_copy(Graph *graph, const Template *template, const Node *slots, const LeafPair *pairs,
                    uint32_t pair_count, const bool *wanted, Node *roots, Arena *scratch);
-/* Whether the wanted roots need this leaf. */
+/* Tells whether the wanted roots need this leaf. */
 bool template_needs(const Template *template, Node leaf, const bool *wanted, Arena *scratch);
 /* Marks the slots that the wanted roots need. */
 void template_slots_of(const Template *template, const bool *wanted, bool *needed, Arena *scratch);

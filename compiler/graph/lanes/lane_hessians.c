@@ -142,7 +142,7 @@ static uint32_t without_corner(const Run *run, uint32_t operand)
     return step->op == OP_abs ? step->operands[0] : operand;
 }
 
-/* Whether a square of its derivatives is not that of what is squared: abs(a) grows as fast as a or -a. */
+/* Tells whether a square of its derivatives is not that of what is squared: abs(a) grows as fast as a or -a. */
 static bool sign_counts(const Run *run, uint32_t operand)
 {
     const LaneStep *step = lane_step_of(run->tape, operand);

@@ -81,7 +81,7 @@ typedef struct Operands {
     double          steepest; /* of the first */
 } Operands;
 
-/* How fast the result of a step changes at most. */
+/* Tells how fast the result of a step changes at most. */
 static void bound_step(Builder *b, uint32_t value, double steepest)
 {
     if (value == NODE_NONE || (value & LANE_SCALAR) || value < LANE_INPUTS || !isfinite(steepest))

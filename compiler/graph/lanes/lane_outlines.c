@@ -196,7 +196,7 @@ static bool nearest_tangent(const View *view, const InstanceArc *arc, double tan
     return fabs(change) <= 1e-12 && length > 0;
 }
 
-/* Whether the nearest point is never an end. */
+/* Tells whether the nearest point is never an end. */
 static bool is_within_ends(const View *view, const InstanceArc *arc)
 {
     double end[2];

@@ -2,7 +2,7 @@
 #include "compiler/graph/lanes/lane_partials.h"
 #include "compiler/graph/bounds/rules.h"
 
-/* Whether one operand is taken all over the box: min, max and clamp have the derivatives 1 and 0. */
+/* Tells whether one operand is taken all over the box: min, max and clamp have the derivatives 1 and 0. */
 static bool chooses_one(Range da, Range db, Range dc)
 {
     return range_is_single(da) && range_is_single(db) && range_is_single(dc) &&

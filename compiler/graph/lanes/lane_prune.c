@@ -312,14 +312,14 @@ static bool prune_shares(Pruning *p, size_t i)
 
 /* ---- instance groups ---- */
 
-/* Whether an instance function takes the least distance of all instances, one after the other. */
+/* Tells whether an instance function takes the least distance of all instances, one after the other. */
 static bool takes_least(const InstanceFunction *function)
 {
     return function->slope > 0 && function->state_count == 1 && !function->either &&
            !function->joins && !function->sums && function->type == TYPE_FLOAT;
 }
 
-/* How far a box is from a range of points at least. */
+/* Tells how far a box is from a range of points at least. */
 static double distance_of_boxes(const Box *box, const Range at[3])
 {
     double square = 0;

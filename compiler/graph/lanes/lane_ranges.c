@@ -41,7 +41,7 @@ static Operand operand_of(const LaneTape *tape, const LaneRanges *ranges, uint32
     return isnan(scalar) ? (Operand){ANYTHING, false} : (Operand){range_of(scalar), true};
 }
 
-/* Whether the result is a number only if all operands are.  A minimum is not like that. */
+/* Tells whether the result is a number only if all operands are.  A minimum is not like that. */
 static bool needs_numbers(uint16_t op)
 {
     enum { TAKES = false, NEEDS = true };
@@ -173,7 +173,7 @@ static Range range_by_rule(uint16_t op, const Operand *o, uint32_t count)
     return op_fact((Op)op, TYPE_FLOAT, 0, types, facts, NULL).value[0];
 }
 
-/* Whether an operand is the same everywhere: some rules know values only then. */
+/* Tells whether an operand is the same everywhere: some rules know values only then. */
 static bool is_scalar(const LaneCall *call, uint32_t operand, GraphType type)
 {
     uint32_t scalars = 0;
@@ -182,7 +182,7 @@ static bool is_scalar(const LaneCall *call, uint32_t operand, GraphType type)
     return scalars == type_size(type);
 }
 
-/* How much farther an instance group may be if lengths are longer. */
+/* Tells how much farther an instance group may be if lengths are longer. */
 static double stretch_of_instances(const LaneTape *tape, const LaneRanges *ranges,
                                    const LaneCall *call, double value, double radius)
 {
@@ -314,7 +314,7 @@ static Range range_of_step(const LaneRanges *ranges, const LaneStep *step, const
     }
 }
 
-/* Whether it is a number wherever its operands are. */
+/* Tells whether it is a number wherever its operands are. */
 static bool is_defined(const LaneStep *step, const Operand *o)
 {
     Range a = o[0].range, b = o[1].range;

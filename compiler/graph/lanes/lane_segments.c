@@ -23,7 +23,7 @@ static bool is_clamp(const LaneTape *tape, uint32_t operand)
            (step->operands[2] & LANE_SCALAR);
 }
 
-/* Whether an operand is a clamped number times a scalar. */
+/* Tells whether an operand is a clamped number times a scalar. */
 static bool split_product(const LaneTape *tape, uint32_t operand, uint32_t *clamped, double *factor)
 {
     const LaneStep *step = lane_step_of(tape, operand);
@@ -90,7 +90,7 @@ static bool add_weights(Segment *s, uint32_t operand, double factor, int depth)
     }
 }
 
-/* Whether t is q.d / d.d, but for rounding. */
+/* Tells whether t is q.d / d.d, but for rounding. */
 static bool is_projection(const Segment *s)
 {
     double square = 0, length;

@@ -175,7 +175,7 @@ static int only_component(const Run *run)
     return only;
 }
 
-/* It is no longer than the derivative of the vector. */
+/* The slope of a length: no more than the derivative of the vector. */
 static LaneSlope slope_of_length(const Run *run)
 {
     int only = only_component(run);

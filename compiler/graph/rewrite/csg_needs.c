@@ -66,7 +66,7 @@ static double greatest(const double *sides, uint32_t count)
     return most;
 }
 
-/* It grows with each side. */
+/* The value at the corner, which grows with each side. */
 static double corner_at(const double *sides, uint32_t count)
 {
     double square = 0;
@@ -202,7 +202,7 @@ static uint32_t find_sharers(const Search *s, const CsgPart *part, const bool *m
     return bits;
 }
 
-/* Whether two of those that matter may share where it was not needed yet; `mark`: now it is. */
+/* Tells whether two of those that matter may share where it was not needed yet; `mark`: now it is. */
 static bool finds_shares(const Search *s, CsgPart *part, const bool *matters, bool mark)
 {
     const uint32_t bits = find_sharers(s, part, matters);
@@ -278,7 +278,7 @@ typedef struct Size {
     bool least, least_at_edges;
 } Size;
 
-/* Whether there is more to be found out about a part that matters. */
+/* Tells whether there is more to be found out about a part that matters. */
 static bool is_in_question(Search *s, const Cell *cell, uint32_t i, const bool *matters, Size size)
 {
     CsgPart *part = &s->tree->parts[i];

@@ -45,7 +45,7 @@ typedef struct CsgTree {
     uint32_t count;
 } CsgTree;
 
-/* Whether something of it may be left out.  A side may be where the whole gets larger by it: so a march
+/* Tells whether something of it may be left out.  A side may be where the whole gets larger by it: so a march
    has no smaller steps. */
 static inline bool csg_node_is_candidate(const CsgPart *part)
 {

@@ -46,7 +46,7 @@ static Node beside_zero(const Making *m, Node node, Op op)
                                         : NODE_NONE;
 }
 
-/* Whether a node is a maximum of exactly these nodes. */
+/* Tells whether a node is a maximum of exactly these nodes. */
 static bool is_greatest(const Making *m, Node node, const Node *sides, uint32_t count)
 {
     Node     open[2 * MOST_SIDES] = {node};
@@ -368,7 +368,7 @@ static bool depends_on_frame(const Graph *graph, const Tape *tape)
     return false;
 }
 
-/* Whether there is anything to be left out. */
+/* Tells whether there is anything to be left out. */
 static bool has_candidates(const CsgTree *tree)
 {
     for (uint32_t i = 0; i < tree->count; i++)

@@ -144,7 +144,7 @@ static Node compare_values(Graph *g, const Expr *e, SplitValue a, SplitValue b)
     return graph_op2(g, e->op, difference.relative, precise(g, limit));
 }
 
-/* Whether all operands but one stand still. */
+/* Tells whether all operands but one stand still. */
 static bool others_are_held_constant(const Graph *g, const Expr *e, const SplitValue *values,
                                      int but)
 {

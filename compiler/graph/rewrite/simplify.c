@@ -39,7 +39,7 @@ static bool        constant(const Rewrite *s, Node node) { return is(s, node, OP
 
 static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
-/* Whether a node is the constant with all components equal to this number. */
+/* Tells whether a node is the constant with all components equal to this number. */
 static bool equals(const Rewrite *s, Node node, double number)
 {
     const Expr *e = expr(s, node);
@@ -177,7 +177,7 @@ static Node simplify_square(const Rewrite *s)
     return NODE_NONE;
 }
 
-/* Whether a sum has only squares as terms, at most 4; what is squared goes to `roots`, the oldest
+/* Tells whether a sum has only squares as terms, at most 4; what is squared goes to `roots`, the oldest
    first, as they are when they are the components of one vector. */
 static bool sum_of_squares(const Rewrite *s, Node sum, Node *roots, uint32_t *count)
 {
@@ -411,7 +411,7 @@ static Graph *rebuild_all(const Graph *old, Node *roots, size_t root_count, bool
     return simplifier.graph;
 }
 
-/* Whether the roots need so little of a graph that arrays of its size would cost more than a copy
+/* Tells whether the roots need so little of a graph that arrays of its size would cost more than a copy
    of what they need. */
 static bool is_small_part(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
 {

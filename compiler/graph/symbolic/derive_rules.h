@@ -27,7 +27,7 @@ Node between_jumps(Derivation *d, Node derivative);
 Node not_zero(Derivation *d, Node length);
 bool is_zero(const Graph *graph, Node node);
 Node zero_of(Graph *graph, GraphType type);
-/* Whether the operands from `from` up to `count` do not depend on the point. */
+/* Tells whether the operands from `from` up to `count` do not depend on the point. */
 bool others_are_constant(const Graph *g, const Node *inner, int from, int count);
 
 #endif

@@ -31,7 +31,7 @@ typedef struct BallTerms {
 
 /* ---- kinks ---- */
 
-/* How much steeper what has a kink at w = 0 may be than on this side of it. */
+/* Tells how much steeper what has a kink at w = 0 may be than on this side of it. */
 static Node over_kink(const BallContext *x, Node w, Node steep)
 {
     Graph *g    = x->graph;
@@ -318,7 +318,7 @@ static void find_operation(BallContext *x, Node node, const BallTerms *operands,
     }
 }
 
-/* Whether an operation does not ask for the sign of what it is applied to. */
+/* Tells whether an operation does not ask for the sign of what it is applied to. */
 static bool is_even(const Graph *g, const Expr *e)
 {
     if (e->op != OP_pow)

@@ -23,7 +23,7 @@ typedef enum ParityRule {
 
 ParityRule op_parity(Op op);
 
-/* Whether `root` (a FLOAT) has the same value at the point mirrored in the plane where
+/* Tells whether `root` (a FLOAT) has the same value at the point mirrored in the plane where
    coordinate `axis` is 0: proven by the parity of its parts, so "no" may mean "not seen". */
 bool graph_is_even(const Graph *graph, Node root, uint32_t axis, Arena *scratch);
 

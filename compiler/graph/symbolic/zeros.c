@@ -71,7 +71,7 @@ static Box middle_of(Box box)
     return box;
 }
 
-/* Whether the leading form can have no 0 in a cell: it has one sign in its middle. */
+/* Tells whether the leading form can have no 0 in a cell: it has one sign in its middle. */
 static bool may_be_definite(ZeroSearch *search, Box cell)
 {
     if (!run(search, middle_of(cell)))
@@ -137,7 +137,7 @@ static double cut_of(Range side)
     return isfinite(side.low) ? fmax(2 * side.low, 1) : fmin(2 * side.high, -1);
 }
 
-/* Whether the polynomial has this sign all over a box. */
+/* Tells whether the polynomial has this sign all over a box. */
 static bool has_sign(ZeroSearch *search, Box box, int sign, int depth)
 {
     if (!run(search, box))
