@@ -50,7 +50,7 @@ void begin_normal()
     vec3 gradient = krs_gradient(hit.position, t);
     // Differences are also used where rounding makes a visible surface face away from the eye.
     float facing_eye = hit.side * dot(gradient, find_backwards());
-#ifdef SHEETS // both sides are visible
+#ifdef OPEN_SURFACES // both sides are visible
     gradient *= facing_eye < 0.0 ? -1.0 : 1.0;
     facing_eye = abs(facing_eye);
 #endif

@@ -25,7 +25,7 @@ vec4 find_gradient(vec3 p)
         float distance = krs_distance(p + step * direction);
         found += axis == 0u ? vec4(0.0, 0.0, 0.0, distance) : vec4(distance * direction, 0.0);
     }
-#ifdef SHEETS // the distance is nowhere negative: differences see both sides
+#ifdef OPEN_SURFACES // the distance is nowhere negative: differences see both sides
     vec3 gradient = krs_gradient(p, step);
     found.xyz = work.taps > 1u && dot(gradient, gradient) > 0.0 ? gradient : found.xyz;
 #endif
@@ -55,7 +55,7 @@ void main()
 
     vec3 p = points[index].point;
     vec4 gradient_and_distance = find_gradient(p);
-#ifdef SHEETS // they are seen from both sides
+#ifdef OPEN_SURFACES // they are seen from both sides
     if (dot(gradient_and_distance.xyz, points[index].direction) > 0.0)
         gradient_and_distance.xyz = -gradient_and_distance.xyz;
 #endif

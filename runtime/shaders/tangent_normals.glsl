@@ -58,7 +58,7 @@ void take_nearer(vec3 uphill, float distance, vec3 facing)
 {
     uint turn = (taps - 3u) % POINT_TAPS;
     if (turn < MOVES) {
-#ifndef SHEETS // distances do not tell the side of a sheet
+#ifndef OPEN_SURFACES // distances do not tell the side of an open surface
         place -= clamp(distance, -t, t) * uphill;
 #endif
     } else if (turn == MOVES) {
@@ -84,7 +84,7 @@ void take_tangent(vec3 gradient, float distance)
     float facing_eye = hit.side * dot(uphill, find_backwards());
     // Rounding may make a visible surface face away from the eye; 0: nothing is known of it.
     vec3 facing = (facing_eye > 0.0 ? hit.side : 0.0) * uphill;
-#ifdef SHEETS // both sides are visible
+#ifdef OPEN_SURFACES // both sides are visible
     facing = sign(facing_eye) * hit.side * uphill;
 #endif
     bool known = dot(facing, facing) > 0.0;
@@ -94,7 +94,7 @@ void take_tangent(vec3 gradient, float distance)
     } else if (taps == 1u) {
         sum = facing;
         place += t * facing;
-#ifndef SHEETS
+#ifndef OPEN_SURFACES
         tap_limit = 2u;
 #endif
         if (!known)

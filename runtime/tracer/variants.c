@@ -163,7 +163,7 @@ static ShaderVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
            schedule == KRS_SCHEDULE_REFILL ? (int)gpu->refill_lanes : 0);
     define(&to, "%s%s%s%s", read_defines[variants_reads(gpu)],
            sums_lanes(gpu) ? "#define SUBGROUPS\n" : "", ray_defines[rendering->rays],
-           rendering->program->open_surfaces ? "#define SHEETS\n" : "");
+           rendering->program->open_surfaces ? "#define OPEN_SURFACES\n" : "");
     return to;
 }
 
