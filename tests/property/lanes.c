@@ -344,6 +344,33 @@ static void ranges_of_waves_hold(void **state)
     }
 }
 
+/* Tapers leave quotients of a length with itself, once it is known where it is clamped. */
+static void quotients_with_themselves_are_one(void **state)
+{
+    Bench *b    = *state;
+    Pair   pair = {0};
+    b->graph    = graph_new(&b->arena);
+    Node x      = graph_component(b->graph, graph_leaf(b->graph, OP_POINT), 0);
+    Node y      = graph_op2(b->graph, OP_min, x, graph_number(b->graph, 3));
+    for (int i = 0; i < ROOTS; i++)
+        pair.roots[i] = graph_op2(b->graph, OP_div, y, x);
+    pair_finish(b, &pair, NULL);
+    for (int i = 0; i < 100; i++) {
+        Tally      tally  = {0};
+        double     low    = random_between(&b->random, -2, 2.9);
+        Box        box    = {{{low, random_between(&b->random, low, 2.9)}, {0, 1}, {0, 1}}};
+        LaneRanges ranges = lane_ranges_new(&pair.lanes, &b->arena);
+        lane_ranges_run(&pair.lanes, &ranges, box);
+        LaneTape shorter = lane_prune(&pair.lanes, &ranges, 1, &b->arena);
+        lane_ranges_run(&shorter, &ranges, box);
+        Range range = lane_ranges_output(&shorter, &ranges, 0);
+        bool  zero  = box.axis[0].low <= 0 && box.axis[0].high >= 0;
+        assert_true(zero ? range.low < 1 && range.high > 1 : range.low == 1 && range.high == 1);
+        try_box(b, &pair, box, box, &tally);
+        assert_true(tally.outside + tally.different + tally.unsure == 0);
+    }
+}
+
 static void what_is_pruned_for_less_is_seen(void **state)
 {
     Bench *b     = *state;
@@ -625,6 +652,7 @@ int main(void)
                                         bench_stop),
         cmocka_unit_test_setup_teardown(copies_around_an_axis_have_ranges, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(ranges_of_waves_hold, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(quotients_with_themselves_are_one, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(what_is_pruned_for_less_is_seen, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(slopes_hold, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(hessians_hold, bench_start, bench_stop),

@@ -275,24 +275,26 @@ static Range range_by_row(uint16_t op, const Operand *o, uint32_t count)
 
 /* ---- steps ---- */
 
-/* A quotient by 0 is infinite, of either sign. */
-static Range range_quotient(Range a, Range b)
-{
-    return b.low <= 0 && b.high >= 0 ? ANYTHING : range_div(a, b);
-}
-
-/* Pruning leaves such differences, of a number and what is clamped of it. */
-static bool is_less_itself(const LaneStep *step, Range a)
+/* Pruning leaves differences of a number and what is clamped of it, and such quotients. */
+static bool is_with_itself(const LaneStep *step, Range a)
 {
     return step->operands[0] == step->operands[1] && is_finite(a);
+}
+
+/* A quotient by 0 is infinite, of either sign. */
+static Range range_quotient(const LaneStep *step, Range a, Range b)
+{
+    if (b.low <= 0 && b.high >= 0)
+        return ANYTHING;
+    return is_with_itself(step, a) ? range_of(1) : range_div(a, b);
 }
 
 static Range range_of_step(const LaneRanges *ranges, const LaneStep *step, const Operand *o)
 {
     Range a = o[0].range, b = o[1].range;
     switch (step->op) {
-    case OP_div: return range_quotient(a, b);
-    case OP_sub: return is_less_itself(step, a) ? range_of(0) : range_sub(a, b);
+    case OP_div: return range_quotient(step, a, b);
+    case OP_sub: return is_with_itself(step, a) ? range_of(0) : range_sub(a, b);
     case OP_smoothstep: /* infinite / infinite counts as 0 */
         return is_finite(a) && is_finite(b) && is_finite(o[2].range)
                    ? range_by_row(OP_smoothstep, o, 3)
