@@ -23,7 +23,7 @@ static const KrsRenderOptions methods[] = {
 #include "bench/methods.def"
 #undef METHOD
 };
-enum { METHODS = sizeof methods / sizeof methods[0], MOST_ENTRIES = METHODS + 2 };
+enum { METHODS = sizeof methods / sizeof methods[0], MAX_ENTRIES = METHODS + 2 };
 
 /* Permitted errors of shaders by hand, from that of ours down to the reference's. */
 static const double errors[] = {PERMITTED_ERROR, 0.1, 0.03, 0.01, 0.003, REFERENCE_ERROR};
@@ -230,7 +230,7 @@ void contest_run(Bench *bench, const SceneRow *row, Contest *contest)
 {
     Subject subject;
     Image   reference;
-    *contest = (Contest){.row = row, .entries = arena_new_array(bench->arena, Entry, MOST_ENTRIES)};
+    *contest = (Contest){.row = row, .entries = arena_new_array(bench->arena, Entry, MAX_ENTRIES)};
     tell("%s: compiling", row->name);
     subject_open(bench, &subject, row->path, row->levels);
     contest->flops_per_evaluation = subject.program->flops;

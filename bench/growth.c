@@ -68,9 +68,9 @@ static void run_in_turns(Bench *bench, Tree *trees, size_t count, const KrsRende
 
 void growth_run(Bench *bench, Growth *growth)
 {
-    const uint32_t        *sizes             = bench->quick ? quick_sizes : all_sizes;
-    const KrsRenderOptions options           = {.error = PERMITTED_ERROR};
-    Tree                   trees[MOST_SIZES] = {0};
+    const uint32_t        *sizes            = bench->quick ? quick_sizes : all_sizes;
+    const KrsRenderOptions options          = {.error = PERMITTED_ERROR};
+    Tree                   trees[MAX_SIZES] = {0};
     Buffer                 ends;
     *growth = (Growth){.count = bench->quick ? sizeof quick_sizes / sizeof quick_sizes[0]
                                              : sizeof all_sizes / sizeof all_sizes[0]};

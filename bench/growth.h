@@ -7,14 +7,14 @@
 #include "bench/bench.h"
 #include "bench/measure.h"
 
-enum { MOST_SIZES = 8 };
+enum { MAX_SIZES = 8 };
 
 typedef struct Growth {
     size_t count;
-    double levels[MOST_SIZES];
-    double ns_per_distance[MOST_SIZES];   /* of a shader that does nothing else */
-    double ns_per_evaluation[MOST_SIZES]; /* beams and primary rays, by their evaluations */
-    double total_ms[MOST_SIZES];          /* without shadows and occlusion */
+    double levels[MAX_SIZES];
+    double ns_per_distance[MAX_SIZES];   /* of a shader that does nothing else */
+    double ns_per_evaluation[MAX_SIZES]; /* beams and primary rays, by their evaluations */
+    double total_ms[MAX_SIZES];          /* without shadows and occlusion */
     Line   distance_line, evaluation_line, total_line;
 } Growth;
 

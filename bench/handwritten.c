@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-enum { TILE_SIDE = 8, MOST_STEPS = 1024 };
+enum { TILE_SIDE = 8, MAX_STEPS = 1024 };
 
 static void define_vector(Text *text, const char *name, const double v[3])
 {
@@ -20,8 +20,8 @@ static char *view_text(Bench *bench, const KrsView *view, double error, bool cou
         view->camera.projection != KRS_PERSPECTIVE)
         fail("hand-written shaders have one directional light and a perspective camera");
     Text text = {.arena = bench->arena};
-    text_format(&text, "#define WIDTH %u\n#define HEIGHT %u\n#define MOST_STEPS %d\n", bench->width,
-                bench->height, MOST_STEPS);
+    text_format(&text, "#define WIDTH %u\n#define HEIGHT %u\n#define MAX_STEPS %d\n", bench->width,
+                bench->height, MAX_STEPS);
     text_format(&text, "#define ERROR %.9g\n#define FOV %.9g\n#define SUN_SOFTNESS %.9g\n", error,
                 view->camera.fov, view->lights->softness);
     define_vector(&text, "EYE", view->camera.eye);
@@ -121,7 +121,7 @@ void handwritten_count(Bench *bench, Handwritten *written, const char *path, con
     double steps            = 0;
     for (size_t i = 0; i < count; i++) {
         steps += pixels[i][0];
-        written->unresolved += pixels[i][0] >= MOST_STEPS;
+        written->unresolved += pixels[i][0] >= MAX_STEPS;
     }
     written->evaluations_per_ray = steps / (double)count;
 }

@@ -118,12 +118,12 @@ static void set_out(Bench *bench, Runner *runners, int stand, uint32_t levels)
     Runner         *runner = &runners[stand];
     KrsRenderStats  stats;
     *runner = (Runner){.options = row->options};
-    if (levels > row->most_levels)
+    if (levels > row->max_levels)
         return;
     runner->options.error        = PERMITTED_ERROR;
     runner->options.no_occlusion = true; /* which is not told either */
     runner->subject              = find_subject(bench, runners, stand, levels);
-    runner->runs                 = arena_new_array(bench->arena, Times, MOST_TURNS);
+    runner->runs                 = arena_new_array(bench->arena, Times, MAX_TURNS);
     subject_prewarm(bench, runner->subject, &runner->options, &stats);
 }
 
@@ -181,7 +181,7 @@ static Line line_of(const Sequences *sequences, int stand)
 void sequences_run(Bench *bench, Sequences *sequences)
 {
     const uint32_t *levels = bench->quick ? quick_levels : all_levels;
-    *sequences = (Sequences){.turns = bench->repeats < MOST_TURNS ? bench->repeats : MOST_TURNS,
+    *sequences = (Sequences){.turns = bench->repeats < MAX_TURNS ? bench->repeats : MAX_TURNS,
                              .count = bench->quick ? sizeof quick_levels / sizeof quick_levels[0]
                                                    : sizeof all_levels / sizeof all_levels[0]};
     for (size_t i = 0; i < sequences->count; i++) {

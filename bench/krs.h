@@ -8,7 +8,7 @@
 #include "bench/bench.h"
 #include "bench/measure.h"
 
-enum { MOST_LEVELS = 8, MOST_TURNS = 3 };
+enum { MAX_LEVELS = 8, MAX_TURNS = 3 };
 
 typedef enum Stand {
     STAND_TREE_STRAIGHTFORWARD,
@@ -34,8 +34,8 @@ typedef enum Stand {
 
 typedef struct StandRow {
     const char      *name, *path;
-    uint32_t         most_levels; /* what has more is left out: it takes minutes */
-    Stand            yardstick;   /* what its time is told beside; itself for none */
+    uint32_t         max_levels; /* what has more is left out: it takes minutes */
+    Stand            yardstick;  /* what its time is told beside; itself for none */
     KrsRenderOptions options;
 } StandRow;
 extern const StandRow stand_rows[STAND_COUNT];
@@ -43,14 +43,14 @@ extern const StandRow stand_rows[STAND_COUNT];
 /* What is not a number was left out. */
 typedef struct Sequences {
     size_t count, turns; /* numbers of levels; pictures of each */
-    double levels[MOST_LEVELS];
-    double ms[STAND_COUNT][MOST_LEVELS];     /* beams, primary rays and normals: the median */
-    double cpu_ms[STAND_COUNT][MOST_LEVELS]; /* of all threads, for the whole picture */
-    double beams_ms[STAND_COUNT][MOST_LEVELS];
-    double coverage[STAND_COUNT][MOST_LEVELS];
-    double flops[STAND_COUNT][MOST_LEVELS];       /* of a distance */
-    double evaluations[STAND_COUNT][MOST_LEVELS]; /* for a ray */
-    Line   lines[STAND_COUNT];                    /* of ms by the levels */
+    double levels[MAX_LEVELS];
+    double ms[STAND_COUNT][MAX_LEVELS];     /* beams, primary rays and normals: the median */
+    double cpu_ms[STAND_COUNT][MAX_LEVELS]; /* of all threads, for the whole picture */
+    double beams_ms[STAND_COUNT][MAX_LEVELS];
+    double coverage[STAND_COUNT][MAX_LEVELS];
+    double flops[STAND_COUNT][MAX_LEVELS];       /* of a distance */
+    double evaluations[STAND_COUNT][MAX_LEVELS]; /* for a ray */
+    Line   lines[STAND_COUNT];                   /* of ms by the levels */
     double unresolved;
 } Sequences;
 

@@ -16,7 +16,7 @@
 
 extern char **environ;
 
-enum { MOST_RUNS = 5 };
+enum { MAX_RUNS = 5 };
 
 /* What says where caches are, or that there are none. */
 static const char *const cache_variables[] = {
@@ -92,8 +92,8 @@ static int remove_entry(const char *path, const struct stat *info, int kind, str
 
 void latency_run(Bench *bench, Latency *latency)
 {
-    size_t count = bench->repeats < MOST_RUNS ? bench->repeats : MOST_RUNS;
-    double cold[MOST_RUNS], warm[MOST_RUNS];
+    size_t count = bench->repeats < MAX_RUNS ? bench->repeats : MAX_RUNS;
+    double cold[MAX_RUNS], warm[MAX_RUNS];
     tell("first picture, %zu times", count);
     for (size_t i = 0; i < count; i++) {
         const char *base   = getenv("TMPDIR");

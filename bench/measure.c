@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-enum { MEMBERS = sizeof(Times) / sizeof(double), MOST_RUNS = 64 };
+enum { MEMBERS = sizeof(Times) / sizeof(double), MAX_RUNS = 64 };
 
 double times_without_secondary(const Times *times)
 {
@@ -30,10 +30,10 @@ double median(double *numbers, size_t count)
 
 Times times_median(const Times *times, size_t count)
 {
-    assert(count > 0 && count <= MOST_RUNS);
+    assert(count > 0 && count <= MAX_RUNS);
     double middle[MEMBERS];
     for (size_t member = 0; member < MEMBERS; member++) {
-        double column[MOST_RUNS];
+        double column[MAX_RUNS];
         for (size_t run = 0; run < count; run++)
             memcpy(&column[run], (const char *)&times[run] + member * sizeof(double),
                    sizeof(double));

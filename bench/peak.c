@@ -9,7 +9,7 @@
 enum { TURNS = 1024, STEPS_A_TURN = 8, LANES = 64, VECTOR = 4 };
 
 /* A dispatch lasts this long at least. */
-static const double LEAST_MS = 50;
+static const double MIN_MS = 50;
 
 static void compile(Bench *bench, Peak *peak, uint32_t chains)
 {
@@ -26,7 +26,7 @@ static void compile(Bench *bench, Peak *peak, uint32_t chains)
 static double run(Bench *bench, Peak *peak)
 {
     double ms = bench_shader_run(bench, &peak->shader, peak->groups);
-    while (ms < LEAST_MS && peak->groups < 1u << 15) {
+    while (ms < MIN_MS && peak->groups < 1u << 15) {
         peak->groups *= 2;
         ms = bench_shader_run(bench, &peak->shader, peak->groups);
     }

@@ -99,8 +99,8 @@ void questions_run(Bench *bench, Questions *questions)
     Inquiry      in;
     const size_t most = bench->quick ? 4096 : 65536, host = bench->quick ? 100 : 1000;
     const size_t counts[ANSWERER_COUNT] = {host, most};
-    enum { MOST_REPEATS = 50 };
-    double ms[ANSWERER_COUNT][2][MOST_REPEATS], alone[MOST_REPEATS];
+    enum { MAX_REPEATS = 50 };
+    double ms[ANSWERER_COUNT][2][MAX_REPEATS], alone[MAX_REPEATS];
     tell("questions, %u times", bench->repeats);
     inquiry_open(bench, &in, most);
     make_questions(&in);

@@ -221,8 +221,8 @@ static void tell_levels(const Bench *bench, const Results *results, size_t i, Te
 /* The time of each beside that of what it is measured by, a column for each number of levels. */
 static void tell_beside(const Sequences *s, Text *text)
 {
-    char   titles[MOST_LEVELS][24];
-    Column columns[MOST_LEVELS];
+    char   titles[MAX_LEVELS][24];
+    Column columns[MAX_LEVELS];
     for (size_t i = 0; i < s->count; i++) {
         snprintf(titles[i], sizeof titles[i], "%.0f levels", s->levels[i]);
         columns[i] = (Column){titles[i], "%.2f", 9};
@@ -233,7 +233,7 @@ static void tell_beside(const Sequences *s, Text *text)
                    " section 11).\n\n");
     add_titles(text, "scene", BESIDE_WIDTH, columns, s->count);
     for (int k = 0; k < STAND_COUNT; k++) {
-        double      times[MOST_LEVELS];
+        double      times[MAX_LEVELS];
         const Stand by   = stand_rows[k].yardstick;
         Text        name = {.arena = text->arena};
         if ((int)by == k)

@@ -33,7 +33,7 @@ static bool is_there(const TriangleRow *row, int scene)
 
 static Line line_of(const double *times, size_t count)
 {
-    double doublings[MOST_EQUIVALENTS], there[MOST_EQUIVALENTS];
+    double doublings[MAX_EQUIVALENTS], there[MAX_EQUIVALENTS];
     size_t kept = 0;
     for (size_t i = 0; i < count; i++)
         if (!isnan(times[i])) {

@@ -8,7 +8,7 @@
 #include "bench/bench.h"
 #include "bench/measure.h"
 
-enum { MOST_EQUIVALENTS = 12 };
+enum { MAX_EQUIVALENTS = 12 };
 
 /* What a branch or a piece of terrain is counted as, in doublings: the 2016 paper counts hundreds
    of triangles a branch (section 11); a facet of the terrain is two. */
@@ -26,7 +26,7 @@ extern const TriangleRow triangle_rows[];
 
 typedef struct Triangles {
     size_t count;
-    double ns_per_ray[GROWING_COUNT][MOST_EQUIVALENTS];      /* NAN: left out */
+    double ns_per_ray[GROWING_COUNT][MAX_EQUIVALENTS];       /* NAN: left out */
     Line   lines[GROWING_COUNT], paper_lines[GROWING_COUNT]; /* ns, by doublings; theirs in us */
 } Triangles;
 

@@ -12,9 +12,9 @@
 /* Cells along the longest side, and in a band, where nothing else is asked for. */
 static const double USUAL_CELLS = 128, USUAL_BAND = 3;
 /* Samples of a file that has all, and bricks of those that are looked at for one that has those near the surface. */
-static const double MOST_SAMPLES = 2147483648.0, MOST_BRICKS = 1073741824.0;
+static const double MAX_SAMPLES = 2147483648.0, MAX_BRICKS = 1073741824.0;
 /* Along the longest side; the library takes twice as many. */
-static const double MOST_CELLS = 0.5 * KRS_MOST_CELLS;
+static const double MAX_CELLS = 0.5 * KRS_MOST_CELLS;
 
 typedef struct GridOutput {
     const char       *path;
@@ -171,11 +171,10 @@ static KrsStatus take_options(Gridding *gridding)
     gridding->how.cell = options->grid_cell > 0 ? options->grid_cell
                          : longest > 0          ? longest / USUAL_CELLS
                                                 : 1;
-    if (longest / gridding->how.cell > MOST_CELLS) {
+    if (longest / gridding->how.cell > MAX_CELLS) {
         char what[64];
         snprintf(what, sizeof what, "%.3g cells along an axis", longest / gridding->how.cell);
-        return refuse_cell(gridding, options->files.items[0], what, MOST_CELLS,
-                           longest / MOST_CELLS);
+        return refuse_cell(gridding, options->files.items[0], what, MAX_CELLS, longest / MAX_CELLS);
     }
     return KRS_OK;
 }
@@ -188,7 +187,7 @@ static KrsStatus check_size(const Gridding *gridding, const KrsGridShape *shape,
 {
     const GridFormat *format = output->format;
     const char       *path   = output->path;
-    double longest = 0, samples = 1, most = format->sparse ? 512 * MOST_BRICKS : MOST_SAMPLES;
+    double longest = 0, samples = 1, most = format->sparse ? 512 * MAX_BRICKS : MAX_SAMPLES;
     char   what[128];
     for (int k = 0; k < 3; k++) {
         longest = fmax(longest, (double)shape->count[k]);
@@ -198,16 +197,16 @@ static KrsStatus check_size(const Gridding *gridding, const KrsGridShape *shape,
              shape->count[2]);
     if (samples > most)
         return refuse_cell(gridding, path, what, most, shape->cell * cbrt(1.1 * samples / most));
-    if (longest > format->most_side) {
+    if (longest > format->max_side) {
         snprintf(what, sizeof what, "%.0f samples along an axis", longest);
-        return refuse_cell(gridding, path, what, format->most_side,
-                           shape->cell * 1.01 * longest / format->most_side);
+        return refuse_cell(gridding, path, what, format->max_side,
+                           shape->cell * 1.01 * longest / format->max_side);
     }
-    if (shape->cell < format->least_cell)
+    if (shape->cell < format->min_cell)
         return say_usage(gridding->options,
                          "`%s` would have cells of %.3g, and OpenVDB has none below %.3g; other "
                          "files have, or a larger scene",
-                         path, shape->cell, format->least_cell);
+                         path, shape->cell, format->min_cell);
     return KRS_OK;
 }
 

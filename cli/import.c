@@ -25,8 +25,8 @@ static KrsStatus refuse_reading(const Import *import, const Loaded *loaded)
 /* The text with a NUL behind it. */
 static KrsStatus take_text(Import *import, const Loaded *loaded)
 {
-    if (loaded->length > MOST_SOURCE_BYTES) {
-        say("`%s` is longer than %d MiB", import->path, MOST_SOURCE_BYTES >> 20);
+    if (loaded->length > MAX_SOURCE_BYTES) {
+        say("`%s` is longer than %d MiB", import->path, MAX_SOURCE_BYTES >> 20);
         return KRS_BAD_SCENE;
     }
     if (memchr(loaded->text, '\0', loaded->length)) {

@@ -16,7 +16,7 @@ static void print_vector(const double *values, size_t count)
 }
 
 /* Of the bounds of one component, and of the components of one loop; JSON has all. */
-enum { MOST_LINES = 48, MOST_ALIKE = 50 };
+enum { MAX_LINES = 48, MAX_ALIKE = 50 };
 
 static bool is_box(const KrsBound *bound)
 {
@@ -53,8 +53,8 @@ static void print_bound(const KrsBound *bound, size_t number)
 static void print_bounds(const KrsScene *scene, size_t component)
 {
     size_t more, count = krs_bound_count(scene, component, &more), lines = count;
-    if (count > MOST_LINES)
-        lines = MOST_LINES;
+    if (count > MAX_LINES)
+        lines = MAX_LINES;
     more += count - lines;
     puts("    distances, by shape:");
     for (size_t i = 0; i < lines; i++) {
@@ -115,7 +115,7 @@ static void print_components(const KrsScene *scene)
 {
     const size_t count = krs_component_count(scene);
     for (size_t i = 0, end; i < count; i = end) {
-        for (end = i; end < count && krs_joined_rank(scene, end) >= MOST_ALIKE;)
+        for (end = i; end < count && krs_joined_rank(scene, end) >= MAX_ALIKE;)
             end++;
         if (end > i) {
             printf("components %zu to %zu: %zu more that are alike\n", i + 1, end, end - i);

@@ -166,7 +166,7 @@ static KrsStatus check_merged(Meshing *meshing)
     if (meshing->assembled.count == 0)
         status = make_bodies(meshing, make_assembled, &meshing->assembled, ASSEMBLED_DONE);
     double triangles = summarize(&meshing->assembled).triangles;
-    if (status != KRS_OK || triangles <= MOST_TRIANGLES)
+    if (status != KRS_OK || triangles <= MAX_TRIANGLES)
         return status;
     progress_end(&meshing->progress);
     return say_usage(meshing->options,
@@ -295,10 +295,10 @@ static KrsStatus check_size(const Meshing *meshing, const char *path, const Mesh
                             const Summary *all)
 {
     int    copies = copies_in(meshing->options, format);
-    double most   = !format->has_copies ? UINT32_MAX : MOST_TRIANGLES;
+    double most   = !format->has_copies ? UINT32_MAX : MAX_TRIANGLES;
     double count  = copies == COPIES_INSTANCES ? all->copies : all->triangles;
     if (copies == COPIES_INSTANCES)
-        most = MOST_INSTANCES;
+        most = MAX_INSTANCES;
     if (copies == COPIES_MERGED || count <= most)
         return KRS_OK;
     return say_usage(meshing->options, "`%s` would have %.0f %s, and can have %.0f; %s", path,

@@ -10,9 +10,9 @@
 #include "cli/mesh/meshing.h"
 #include "cli/slice/slicing.h"
 
-enum { MOST_LAYERS = 1000000, AT_ONCE = 8, USUAL_PIXELS = 1024 };
+enum { MAX_LAYERS = 1000000, AT_ONCE = 8, USUAL_PIXELS = 1024 };
 /* Bytes of a picture. */
-#define MOST_PIXELS 1073741824.0
+#define MAX_PIXELS 1073741824.0
 
 typedef struct SliceOutput {
     const SliceFormat *format;
@@ -76,7 +76,7 @@ static const char *foreign_place(const char *path)
 static bool are_one_output(const Options *options, const char *a, const char *b)
 {
     bool one = output_is_same(numbered_path(options, a, 1), numbered_path(options, b, 1));
-    for (uint32_t n = 10; n <= MOST_LAYERS && options->layer > 0; n *= 10)
+    for (uint32_t n = 10; n <= MAX_LAYERS && options->layer > 0; n *= 10)
         one = one || output_is_same(numbered_path(options, a, n), numbered_path(options, b, n));
     return one;
 }
@@ -190,10 +190,10 @@ static KrsStatus find_layers(Slicing *slicing, const double low[3], const double
     sheet->top                           = high[options->axis];
     slicing->plane.normal[options->axis] = 1;
     double count = fmax(1, ceil((sheet->top - sheet->bottom) / sheet->layer - 0.5 - 1e-9));
-    if (count > MOST_LAYERS)
+    if (count > MAX_LAYERS)
         return say_usage(options,
                          "`%s` would have %.3g layers, and can have %d; --layer is too thin",
-                         options->files.items[0], count, MOST_LAYERS);
+                         options->files.items[0], count, MAX_LAYERS);
     sheet->layer_count = (uint32_t)count;
     return KRS_OK;
 }
@@ -235,7 +235,7 @@ static KrsStatus find_pixels(Slicing *slicing)
         pixels[1] = options->how.height;
     }
     double all = pixels[0] * pixels[1];
-    if (fmax(pixels[0], pixels[1]) > KRS_MOST_SIDE || all > MOST_PIXELS)
+    if (fmax(pixels[0], pixels[1]) > KRS_MOST_SIDE || all > MAX_PIXELS)
         return say_usage(options,
                          "pictures of %.0f x %.0f pixels are too large; a smaller --resolution "
                          "has fewer",

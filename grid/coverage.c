@@ -11,11 +11,11 @@
 
 enum { SIDE = 4, PARTS = SIDE * SIDE * SIDE, AROUND = 26, PLACES = PARTS + AROUND };
 /* How often parts of a cube are divided: once more where few are, as along rods; and how many parts of parts are at most. */
-enum { DEEPEST = 2, FEW = 20, MOST_DIVIDED = 150 };
+enum { DEEPEST = 2, FEW = 20, MAX_DIVIDED = 150 };
 /* Half the diagonal of a part, in its sides; and how far from linear its distance may be. */
 static const double HALF_DIAGONAL = 0.8661, STRAIGHT = 0.3;
 /* Below that slopes are those of what is thin. */
-static const double LEAST_SLOPE = 0.25;
+static const double MIN_SLOPE = 0.25;
 
 typedef struct Cube {
     double middle[3], part; /* the side of its parts */
@@ -34,9 +34,9 @@ static void place_of(int i, double at[3])
 
 static void look(const MeshField *field, Cube *cube)
 {
-    for (int first = 0; first < PLACES; first += MOST_FIELD_POINTS) {
-        double points[MOST_FIELD_POINTS][3];
-        int    count = PLACES - first < MOST_FIELD_POINTS ? PLACES - first : MOST_FIELD_POINTS;
+    for (int first = 0; first < PLACES; first += MAX_FIELD_POINTS) {
+        double points[MAX_FIELD_POINTS][3];
+        int    count = PLACES - first < MAX_FIELD_POINTS ? PLACES - first : MAX_FIELD_POINTS;
         for (int i = 0; i < count; i++) {
             double at[3];
             place_of(first + i, at);
@@ -84,7 +84,7 @@ static bool is_side_straight(const Cube *cube, const double direction[3], bool i
             products += (along[i] - middle) * (cube->distances[i] - mean);
         }
     const double steep = squares > 1e-6 * cube->part * cube->part ? products / squares : 1;
-    if (steep < LEAST_SLOPE)
+    if (steep < MIN_SLOPE)
         return false;
     for (int i = 0; i < PLACES; i++)
         if ((cube->distances[i] <= 0) == inside &&
@@ -124,7 +124,7 @@ static double divide(const MeshField *field, const double middle[3], double side
     look(field, &cube);
     const bool straight = is_straight(&cube, slopes), last = depth == DEEPEST;
     if (depth == 0)
-        *left = count_met(&cube) > FEW ? 0 : MOST_DIVIDED;
+        *left = count_met(&cube) > FEW ? 0 : MAX_DIVIDED;
     for (int i = 0; i < PARTS; i++) {
         double slope    = slopes[cube.distances[i] <= 0], at[3];
         double distance = cube.distances[i] / (cube.part * slope);

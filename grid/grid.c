@@ -12,7 +12,7 @@
 
 /* Cells around what is solid where there is no band. */
 enum { MARGIN = 3 };
-static const double MOST_BAND = 1e6;
+static const double MAX_BAND = 1e6;
 /* Of a cell. */
 static const double USUAL_ERROR = 0.1;
 /* How far solids may reach beyond the box that is found, as a part of its side (narrow_box). */
@@ -179,7 +179,7 @@ static double find_near(const KrsGridOptions *options)
     return options->band > 0 ? options->band * options->cell : INFINITY;
 }
 
-static bool band_is_valid(double band) { return band >= 0 && band <= MOST_BAND; }
+static bool band_is_valid(double band) { return band >= 0 && band <= MAX_BAND; }
 
 static bool options_are_valid(const KrsGridOptions *options, const KrsScene *scene)
 {
@@ -227,7 +227,7 @@ void krs_grid_free(KrsGrid *grid)
 {
     if (!grid)
         return;
-    for (size_t i = 0; i < MOST_PARTS; i++)
+    for (size_t i = 0; i < MAX_PARTS; i++)
         frame_free(grid->fields[i].frame);
     krs_mesh_free(grid->mesh);
     arena_free(&grid->arena);
@@ -250,19 +250,19 @@ KrsGridShape krs_grid_shape(const KrsGrid *grid) { return grid->shape; }
 /* ---- samples ---- */
 
 /* Runs that are made at once: some for each part, of at least so many bricks. */
-enum { LONGEST_RUN = 64, RUNS_OF_PART = 4, ENOUGH_BRICKS = 1024, MOST_RUNS = 256 };
+enum { LONGEST_RUN = 64, RUNS_OF_PART = 4, ENOUGH_BRICKS = 1024, MAX_RUNS = 256 };
 
 /* Some runs, by all threads: each takes the next. */
 typedef struct Runs {
     KrsGrid *grid;
     size_t   first, count;
     bool     count_only;
-    Brick   *bricks[MOST_RUNS];
+    Brick   *bricks[MAX_RUNS];
     float   *equal; /* the samples of a brick that is not near */
     float (*black)[3];
     uint32_t     *nothing;
     atomic_size_t next;
-    KrsStatus     statuses[MOST_PARTS];
+    KrsStatus     statuses[MAX_PARTS];
 } Runs;
 
 static size_t runs_of_row(const KrsGrid *grid)
@@ -365,7 +365,7 @@ static size_t runs_at_once(const KrsGrid *grid)
     size_t count = ENOUGH_BRICKS / longest_run(grid);
     if (count < RUNS_OF_PART * grid->parts)
         count = RUNS_OF_PART * grid->parts;
-    return count < MOST_RUNS ? count : MOST_RUNS;
+    return count < MAX_RUNS ? count : MAX_RUNS;
 }
 
 static KrsStatus visit_all(Runs *runs, KrsVisitBrick *visit, void *user)

@@ -32,7 +32,7 @@ struct KrsGrid {
     uint32_t       chosen; /* number from 1 of the only component among the lowered; 0: all */
     double near; /* samples that are farther from the surface have one value; infinite: none has */
     size_t parts;
-    MeshField fields[MOST_PARTS];
+    MeshField fields[MAX_PARTS];
     KrsMesh
         *mesh; /* for exact distances; NULL: not asked for, or nothing is as thick as its error */
     Bvh  bvh;

@@ -85,8 +85,7 @@ static KrsStatus fill(Row *row, size_t first, size_t count, int depth)
         fill_far(row, first, count, distance);
         return KRS_OK;
     }
-    bool enter = (depth % ENTER_EVERY == 0 || count == 1) &&
-                 row->field->region_count < MOST_REGIONS;
+    bool enter = (depth % ENTER_EVERY == 0 || count == 1) && row->field->region_count < MAX_REGIONS;
     if (enter)
         field_narrow(row->field, asked_box(row, box));
     size_t    half   = count / 2;

@@ -59,12 +59,12 @@ static float value_at(const KrsGrid *grid, const MeshField *field, const double 
 void fill_brick(const KrsGrid *grid, MeshField *field, const size_t at[3], uint32_t *triangle,
                 Brick *brick)
 {
-    for (size_t first = 0; first < BRICK_SAMPLES; first += MOST_FIELD_POINTS) {
-        double points[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
-        for (size_t i = 0; i < MOST_FIELD_POINTS; i++)
+    for (size_t first = 0; first < BRICK_SAMPLES; first += MAX_FIELD_POINTS) {
+        double points[MAX_FIELD_POINTS][3], distances[MAX_FIELD_POINTS];
+        for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
             sample_place(grid, at, first + i, points[i]);
-        field_distances(field, (const double(*)[3])points, MOST_FIELD_POINTS, distances);
-        for (size_t i = 0; i < MOST_FIELD_POINTS; i++)
+        field_distances(field, (const double(*)[3])points, MAX_FIELD_POINTS, distances);
+        for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
             brick->values[first + i] = value_at(grid, field, points[i], distances[i], triangle);
     }
 }
@@ -74,7 +74,7 @@ void fill_brick(const KrsGrid *grid, MeshField *field, const size_t at[3], uint3
 /* By differences, as queries find them. */
 static void find_normals(const MeshField *field, const double (*points)[3], double (*normals)[3])
 {
-    for (int i = 0; i < MOST_FIELD_POINTS; i++)
+    for (int i = 0; i < MAX_FIELD_POINTS; i++)
         field_normal(field, points[i], 1e-6 * (1 + largest3(points[i])), normals[i]);
 }
 
@@ -95,16 +95,16 @@ KrsStatus add_materials(const KrsGrid *grid, MeshField *field, const size_t at[3
 {
     if (!frame_lanes(field->frame))
         return KRS_OUT_OF_MEMORY;
-    for (size_t first = 0; first < BRICK_SAMPLES; first += MOST_FIELD_POINTS) {
-        double   points[MOST_FIELD_POINTS][3], normals[MOST_FIELD_POINTS][3];
-        double   distances[MOST_FIELD_POINTS];
-        uint32_t nearest[MOST_FIELD_POINTS];
-        for (size_t i = 0; i < MOST_FIELD_POINTS; i++)
+    for (size_t first = 0; first < BRICK_SAMPLES; first += MAX_FIELD_POINTS) {
+        double   points[MAX_FIELD_POINTS][3], normals[MAX_FIELD_POINTS][3];
+        double   distances[MAX_FIELD_POINTS];
+        uint32_t nearest[MAX_FIELD_POINTS];
+        for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
             sample_place(grid, at, first + i, points[i]);
         find_normals(field, (const double(*)[3])points, normals);
         points_look(field->frame, (const double(*)[3])points, (const double(*)[3])normals,
-                    MOST_FIELD_POINTS, distances, nearest);
-        for (size_t i = 0; i < MOST_FIELD_POINTS; i++)
+                    MAX_FIELD_POINTS, distances, nearest);
+        for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
             take_material(grid, field->frame, i, nearest[i], brick->colors[first + i],
                           &brick->materials[first + i]);
     }

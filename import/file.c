@@ -23,7 +23,7 @@ static const struct {
 #define IMPORT_FORM(ending, import) {ending, import},
 #include "import/forms.def"
 };
-enum { FORMS = sizeof forms / sizeof *forms, MOST_LEFT_OUT = 200 };
+enum { FORMS = sizeof forms / sizeof *forms, MAX_LEFT_OUT = 200 };
 
 static int find_form(const char *path)
 {
@@ -125,7 +125,7 @@ KrsStatus import_file(Import *import)
         status           = translate(import, &first);
     }
     /* Without what does not compile, one part after the other. */
-    for (int i = 0; i < MOST_LEFT_OUT && status == KRS_BAD_SCENE && first.found; i++) {
+    for (int i = 0; i < MAX_LEFT_OUT && status == KRS_BAD_SCENE && first.found; i++) {
         if (import_was_left_out(import, first.line) || !import_leaves_out(import, first.line))
             break;
         array_push(import->arena, &import->no_scene, first.line);

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_LINES = 100000, MOST_ARGUMENTS = 2 };
+enum { MAX_LINES = 100000, MAX_ARGUMENTS = 2 };
 
 /* How the language says it; $a and $b are the arguments.  `blame`: why its slope may have no bound. */
 typedef struct Operation {
@@ -63,10 +63,10 @@ enum { OPERATIONS = sizeof operations / sizeof *operations };
 
 typedef struct Instruction {
     const Operation *operation;
-    size_t           arguments[MOST_ARGUMENTS]; /* earlier steps */
-    double           number;                    /* of `const` */
-    bool             counts, varies;            /* for the result; with the point */
-    size_t           ordinal;                   /* among those that are written, from 1 */
+    size_t           arguments[MAX_ARGUMENTS]; /* earlier steps */
+    double           number;                   /* of `const` */
+    bool             counts, varies;           /* for the result; with the point */
+    size_t           ordinal;                  /* among those that are written, from 1 */
     unsigned         line;
 } Instruction;
 
@@ -88,7 +88,7 @@ typedef struct ImportedTape {
 } ImportedTape;
 
 enum { MEANINGS = 1 << 18 };
-_Static_assert(MEANINGS >= 2 * MOST_LINES, "a table that is half empty");
+_Static_assert(MEANINGS >= 2 * MAX_LINES, "a table that is half empty");
 
 static WordMeaning *find_meaning(ImportedTape *tape, const char *name)
 {
@@ -181,8 +181,8 @@ static bool read_line(ImportedTape *tape, const char *at)
     Word name = next_word(&at);
     if (name.length == 0 || name.start[0] == '#')
         return true;
-    if (tape->instructions.count == MOST_LINES)
-        return import_refuse(tape->import, tape->line, "more than %d operations", MOST_LINES);
+    if (tape->instructions.count == MAX_LINES)
+        return import_refuse(tape->import, tape->line, "more than %d operations", MAX_LINES);
     Word        word        = next_word(&at);
     Instruction instruction = {.operation = find_operation(word), .line = tape->line};
     if (word.length == 0)

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_STEPS 200
+#define MAX_STEPS 200
 /* Seconds without a change that end a step. */
 #define PAUSE 0.6
 
 struct History {
-    View   steps[MOST_STEPS];
+    View   steps[MAX_STEPS];
     size_t count, at; /* number of steps; of the one that is seen */
     double noted;     /* when the last change came */
 };
@@ -30,10 +30,10 @@ static void make_room(History *history)
 {
     while (history->count > history->at + 1)
         view_free(&history->steps[--history->count]);
-    if (history->count < MOST_STEPS)
+    if (history->count < MAX_STEPS)
         return;
     view_free(&history->steps[0]);
-    memmove(history->steps, history->steps + 1, (MOST_STEPS - 1) * sizeof *history->steps);
+    memmove(history->steps, history->steps + 1, (MAX_STEPS - 1) * sizeof *history->steps);
     history->count--;
     history->at--;
 }

@@ -12,7 +12,7 @@
 
 #define PANEL_WIDTH 320
 /* Less is no panel to work with. */
-#define LEAST_CONTROLS 120
+#define MIN_CONTROLS 120
 /* Keys in the first column of the help, below the mouse. */
 #define FIRST_KEYS 12
 
@@ -216,8 +216,8 @@ static GuiPlace place_of_controls(const Viewing *viewing)
     if (window_has_room_beside(viewing->window))
         return place;
     const float left = gui_window_height() - viewing->heights.status;
-    place.below      = left >= LEAST_CONTROLS ? viewing->heights.status : 0;
-    if (left - viewing->heights.found >= LEAST_CONTROLS)
+    place.below      = left >= MIN_CONTROLS ? viewing->heights.status : 0;
+    if (left - viewing->heights.found >= MIN_CONTROLS)
         place.spare = viewing->heights.found;
     return place;
 }
@@ -230,7 +230,7 @@ static bool place_found(const Viewing *viewing, GuiPlace *place)
     *place             = (GuiPlace){.corner = GUI_BOTTOM_RIGHT, .most = gui_window_width()};
     if (!beside)
         return gui_window_height() - viewing->heights.status - viewing->heights.found >=
-               LEAST_CONTROLS;
+               MIN_CONTROLS;
     if (left >= viewing->heights.found)
         return true;
     place->corner = GUI_BOTTOM_LEFT;

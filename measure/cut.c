@@ -6,20 +6,20 @@
 
 #include "compiler/base/vec.h"
 
-enum { MOST_TETRAHEDRA = 160 };
+enum { MAX_TETRAHEDRA = 160 };
 
 typedef struct Tetrahedron {
     double corners[4][3];
 } Tetrahedron;
 
 typedef struct Parts {
-    Tetrahedron items[MOST_TETRAHEDRA];
+    Tetrahedron items[MAX_TETRAHEDRA];
     size_t      count;
 } Parts;
 
 typedef struct Cutter {
     const HalfSpaces *spaces;
-    int  begin[MOST_PIECE_STEPS]; /* step at which the expression that ends here begins */
+    int  begin[MAX_PIECE_STEPS]; /* step at which the expression that ends here begins */
     bool full;
 } Cutter;
 
@@ -38,7 +38,7 @@ static void add_tetrahedron(Cutter *cutter, Parts *parts, const double a[3], con
     const double *const corners[4] = {a, b, c, d};
     if (!parts)
         return;
-    if (parts->count == MOST_TETRAHEDRA) {
+    if (parts->count == MAX_TETRAHEDRA) {
         cutter->full = true;
         return;
     }

@@ -16,8 +16,8 @@ typedef struct HalfSpace {
 /* Half-spaces, joined in the order of a stack as pieces are: minima are unions, maxima intersections. */
 typedef struct HalfSpaces {
     size_t    count, step_count;
-    int       steps[MOST_PIECE_STEPS];
-    HalfSpace items[MOST_PIECES];
+    int       steps[MAX_PIECE_STEPS];
+    HalfSpace items[MAX_PIECES];
 } HalfSpaces;
 
 /* The volume of what is in a box around 0 with these half sides and in the half-spaces, and the integral of p over it.

@@ -8,11 +8,11 @@
 #include "compiler/base/vec.h"
 #include "measure/measure.h"
 
-enum { MOST_RESTS = 64 };
+enum { MAX_RESTS = 64 };
 /* Faces are level within a degree, and of one height within that part of the size. */
 static const double LEVEL = 0.99984769515639127, SAME_HEIGHT = 1e-5;
 /* Of the area: overhangs that differ by less are alike, and a base of less holds nothing. */
-static const double SAME_AREA = 1e-3, LEAST_BASE = 1e-4;
+static const double SAME_AREA = 1e-3, MIN_BASE = 1e-4;
 
 /* ---- one orientation ---- */
 
@@ -53,7 +53,7 @@ static int compare_numbers(const void *a, const void *b)
 /* Tells whether the center is inside of the convex hull of points that are seen from it at these angles. */
 static bool is_held(Lying *lying)
 {
-    if (lying->count < 3 || lying->result->base < LEAST_BASE * lying->m->measures->area)
+    if (lying->count < 3 || lying->result->base < MIN_BASE * lying->m->measures->area)
         return false;
     qsort(lying->angles, lying->count, sizeof *lying->angles, compare_numbers);
     double widest = lying->angles[0] + 2 * M_PI - lying->angles[lying->count - 1];
@@ -213,7 +213,7 @@ void measure_lying(Measurer *m)
         up[i / 2] = i % 2 ? -1 : 1;
         add_orientation(m, up, angles);
     }
-    for (size_t i = 0; i < count && i < MOST_RESTS; i++) {
+    for (size_t i = 0; i < count && i < MAX_RESTS; i++) {
         for (int k = 0; k < 3; k++)
             up[k] = -faces[i].normal[k];
         KrsOrientation lying = lie(m, up, angles);

@@ -8,7 +8,7 @@
 #include "compiler/base/vec.h"
 #include "slice/extent.h"
 
-enum { MOST_ORIENTATIONS = 72 };
+enum { MAX_ORIENTATIONS = 72 };
 /* Parts of the work that are done behind the mesh, the volume and the places. */
 static const double MESH_DONE = 0.4, VOLUME_DONE = 0.7;
 
@@ -157,7 +157,7 @@ static bool take_options(Measurer *m)
 
 static void close_measurer(Measurer *m)
 {
-    for (int i = 0; i < MOST_PARTS; i++)
+    for (int i = 0; i < MAX_PARTS; i++)
         frame_free(m->fields[i].frame);
     krs_mesh_free(m->mesh);
     arena_free(&m->arena);
@@ -179,7 +179,7 @@ KrsStatus krs_measure(KrsFrame *frame, const KrsMeasureOptions *options, KrsMeas
     m->arena.memory = &m->memory;
     m->measures     = calloc(1, sizeof *m->measures);
     if (m->measures)
-        m->measures->orientations = calloc(MOST_ORIENTATIONS, sizeof *m->measures->orientations);
+        m->measures->orientations = calloc(MAX_ORIENTATIONS, sizeof *m->measures->orientations);
     if (m->measures && m->measures->orientations)
         status = take_options(m) ? run(m, frame) : KRS_BAD_ARGUMENT;
     if (status == KRS_OK)

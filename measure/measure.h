@@ -31,7 +31,7 @@ typedef struct Measurer {
     MeshSolid                solid;
     double                   low[3], high[3], longest; /* the box of what is measured */
     size_t                   parts;
-    MeshField                fields[MOST_PARTS];
+    MeshField                fields[MAX_PARTS];
     KrsMesh                 *mesh;
     KrsMeasures             *measures;
     struct {

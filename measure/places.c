@@ -10,10 +10,10 @@
 #include "measure/measure.h"
 
 /* About as many places as there are if the mesh has fewer triangles. */
-static const double MOST_PLACES = 20000;
+static const double MAX_PLACES = 20000;
 /* Of the size: of steps by which normals are found, and how far roots are known.  Of the mesh's error: the least step inwards, so
    gaps of less are none. */
-static const double NORMAL_STEP = 1e-6, ENOUGH = 1e-13, LEAST_STEP = 1e-3;
+static const double NORMAL_STEP = 1e-6, ENOUGH = 1e-13, MIN_STEP = 1e-3;
 /* Cosine of 30 degrees: of both sides of a wall. */
 static const double OPPOSITE = 0.8660254037844386;
 
@@ -103,7 +103,7 @@ static void add_places(Measurer *m, const double corners[3][3], const double nor
 typedef struct Searcher {
     const Measurer  *m;
     const MeshField *field;
-    double           reach, enough, normal_step, least_step;
+    double           reach, enough, normal_step, min_step;
 } Searcher;
 
 static Searcher searcher_of(const Measurer *m, size_t part)
@@ -114,7 +114,7 @@ static Searcher searcher_of(const Measurer *m, size_t part)
                       1.5 * m->mesh->error,
                       ENOUGH * size,
                       NORMAL_STEP * m->longest,
-                      LEAST_STEP * m->mesh->error};
+                      MIN_STEP * m->mesh->error};
 }
 
 /* The place on the surface that a search along the normal found. */
@@ -132,9 +132,9 @@ static void settle_at(const Searcher *s, Place *place, const RootSearch *search)
 /* Moves places that are not settled along their normals to the surface, if it is within reach. */
 static void settle_within(const Searcher *s, Place *places, size_t count, double reach)
 {
-    RootSearch searches[MOST_FIELD_POINTS];
-    bool       found[MOST_FIELD_POINTS];
-    double     ends[2][MOST_FIELD_POINTS][3], values[2][MOST_FIELD_POINTS];
+    RootSearch searches[MAX_FIELD_POINTS];
+    bool       found[MAX_FIELD_POINTS];
+    double     ends[2][MAX_FIELD_POINTS][3], values[2][MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
         for (int side = 0; side < 2; side++)
             add_scaled3(ends[side][i], places[i].at, side ? reach : -reach, places[i].normal);
@@ -165,21 +165,21 @@ static void settle(const Searcher *s, Place *places, size_t count)
 
 /* Walks inwards from each place as far as it is inside; `searches` then have where it ends. */
 static void walk_inwards(const Searcher *s, const Place *places, size_t count,
-                         RootSearch searches[MOST_FIELD_POINTS])
+                         RootSearch searches[MAX_FIELD_POINTS])
 {
-    enum { MOST_STEPS = 2000 };
+    enum { MAX_STEPS = 2000 };
     for (size_t i = 0; i < count; i++) {
-        searches[i] = (RootSearch){.length = 1, .high = s->least_step, .done = !places[i].settled};
+        searches[i] = (RootSearch){.length = 1, .high = s->min_step, .done = !places[i].settled};
         memcpy(searches[i].from, places[i].at, sizeof searches[i].from);
         for (int k = 0; k < 3; k++)
             searches[i].along[k] = -places[i].normal[k];
     }
-    bool walking[MOST_FIELD_POINTS];
+    bool walking[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
         walking[i] = places[i].settled;
-    for (int step = 0; step < MOST_STEPS; step++) {
-        double points[MOST_FIELD_POINTS][3], values[MOST_FIELD_POINTS];
-        size_t open[MOST_FIELD_POINTS], left = 0;
+    for (int step = 0; step < MAX_STEPS; step++) {
+        double points[MAX_FIELD_POINTS][3], values[MAX_FIELD_POINTS];
+        size_t open[MAX_FIELD_POINTS], left = 0;
         for (size_t i = 0; i < count; i++)
             if (walking[i]) {
                 add_scaled3(points[left], searches[i].from, searches[i].high, searches[i].along);
@@ -197,7 +197,7 @@ static void walk_inwards(const Searcher *s, const Place *places, size_t count,
             }
             search->low    = search->high;
             search->at_low = values[i];
-            search->high += max2(-values[i], s->least_step);
+            search->high += max2(-values[i], s->min_step);
         }
     }
     for (size_t i = 0; i < count;
@@ -207,8 +207,8 @@ static void walk_inwards(const Searcher *s, const Place *places, size_t count,
 
 static void find_walls(const Searcher *s, Place *places, size_t count)
 {
-    RootSearch searches[MOST_FIELD_POINTS];
-    bool       ends[MOST_FIELD_POINTS];
+    RootSearch searches[MAX_FIELD_POINTS];
+    bool       ends[MAX_FIELD_POINTS];
     walk_inwards(s, places, count, searches);
     for (size_t i = 0; i < count; i++)
         ends[i] = !searches[i].done;
@@ -232,9 +232,9 @@ static void take_places(void *task, size_t part, size_t parts)
     size_t    i;
     (void)parts;
     while (part < m->parts &&
-           (i = atomic_fetch_add(&m->next, MOST_FIELD_POINTS)) < m->places.count) {
+           (i = atomic_fetch_add(&m->next, MAX_FIELD_POINTS)) < m->places.count) {
         size_t left  = m->places.count - i,
-               count = left < MOST_FIELD_POINTS ? left : MOST_FIELD_POINTS;
+               count = left < MAX_FIELD_POINTS ? left : MAX_FIELD_POINTS;
         settle(&s, m->places.items + i, count);
         find_walls(&s, m->places.items + i, count);
         if (!measurer_goes_on(m, part, (double)i / (double)m->places.count))
@@ -247,8 +247,8 @@ static void take_places(void *task, size_t part, size_t parts)
 /* Looks around a place for a thinner wall, by steps that become shorter.  Neighbours are looked at all at once. */
 static void slide_to_thinnest(const Searcher *s, Place *place, double step)
 {
-    enum { DIRECTIONS = 8, HALVINGS = 40, MOST_SLIDES = 200 };
-    for (int halvings = 0, slides = 0; halvings < HALVINGS && slides < MOST_SLIDES; slides++) {
+    enum { DIRECTIONS = 8, HALVINGS = 40, MAX_SLIDES = 200 };
+    for (int halvings = 0, slides = 0; halvings < HALVINGS && slides < MAX_SLIDES; slides++) {
         Place  around[DIRECTIONS];
         double u[3], v[3], least[3] = {0};
         int    axis = fabs(place->normal[0]) < 0.6 ? 0 : fabs(place->normal[1]) < 0.6 ? 1 : 2;
@@ -328,7 +328,7 @@ void measure_places(Measurer *m)
     KrsMeasures        *measures = m->measures;
     measures->wall.thickness     = INFINITY;
     visit_triangles(m, add_area);
-    measures->spacing = 2 * sqrt(measures->area / MOST_PLACES);
+    measures->spacing = 2 * sqrt(measures->area / MAX_PLACES);
     visit_triangles(m, add_places);
     atomic_store(&m->next, 0);
     run_in_parallel(take_places, m);

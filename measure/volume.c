@@ -15,11 +15,11 @@
 #include "measure/measure.h"
 
 enum {
-    ROOT_SIDE  = 8,
-    ROOTS      = ROOT_SIDE * ROOT_SIDE * ROOT_SIDE,
-    MOST_CELLS = 200000, /* about as many are looked at in the last round */
-    DEEPEST    = 24,
-    MOST_ROUND = 12
+    ROOT_SIDE = 8,
+    ROOTS     = ROOT_SIDE * ROOT_SIDE * ROOT_SIDE,
+    MAX_CELLS = 200000, /* about as many are looked at in the last round */
+    DEEPEST   = 24,
+    MAX_ROUND = 12
 };
 static const double WANTED   = 1e-4;  /* error of the volume, relative */
 static const double NEAR     = 1e-6;  /* of the sides of a cell: a box with its middle */
@@ -56,7 +56,7 @@ static void add_part(Round *round, Sum *sum, const double middle[3], const doubl
 /* The half-spaces of the pieces of a cell, and how far values may be from theirs. */
 typedef struct Model {
     HalfSpaces spaces;
-    double     room[MOST_PIECES];
+    double     room[MAX_PIECES];
     bool       by_pieces;
 } Model;
 
@@ -101,7 +101,7 @@ static bool find_model(MeshField *field, const Box *box, const double middle[3],
     FieldPieces pieces;
     Range       range;
     LaneSlope   slope;
-    double      values[MOST_PIECES];
+    double      values[MAX_PIECES];
     model->by_pieces = field_pieces(field, *box, &pieces) && pieces.count <= FEW;
     if (model->by_pieces) {
         model->spaces.count      = pieces.count;
@@ -180,7 +180,7 @@ static void halve_cell(Round *round, MeshField *field, Sum *sum, const Box *box,
 static void divide_cell(Round *round, MeshField *field, Sum *sum, const Box *box,
                         const double middle[3], int depth)
 {
-    bool entered = field->region_count < MOST_REGIONS - 1 && field_enter(field, *box);
+    bool entered = field->region_count < MAX_REGIONS - 1 && field_enter(field, *box);
     for (int i = 0; i < 8; i++) {
         Box part = *box;
         for (int k = 0; k < 3; k++) {
@@ -295,7 +295,7 @@ void measure_volume(Measurer *m)
         round->middle[k] = 0.5 * (m->low[k] + m->high[k]);
     }
     round->enough = 1e-5 * round->volume;
-    for (int i = 0; i < MOST_ROUND && !atomic_load(&m->stopped); i++) {
+    for (int i = 0; i < MAX_ROUND && !atomic_load(&m->stopped); i++) {
         memset(round->sums, 0, sizeof round->sums);
         atomic_store(&m->next, 0);
         m->goal = m->begun + 0.5 * (goal - m->begun);
@@ -306,10 +306,10 @@ void measure_volume(Measurer *m)
         note_volume(m, round, &sum);
         m->measures->volume_change = min2(fabs(sum.volume - before), sum.error);
         double ratio               = WANTED * sum.volume / sum.error;
-        if (!(ratio < 1) || sum.cells > MOST_CELLS / 2)
+        if (!(ratio < 1) || sum.cells > MAX_CELLS / 2)
             break;
         round->enough *= fmax(fmax(1.0 / 64, fmin(0.25, 0.7 * ratio * ratio)),
-                              pow((double)sum.cells / MOST_CELLS, 1.5));
+                              pow((double)sum.cells / MAX_CELLS, 1.5));
     }
     m->begun = begun;
     m->goal  = goal;

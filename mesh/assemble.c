@@ -10,7 +10,7 @@
 #include "mesh/placing.h"
 
 /* Items that a search for how far one reaches may look at. */
-enum { MOST_VISITS = 1 << 20 };
+enum { MAX_VISITS = 1 << 20 };
 /* What sticks out of a mirror by so much of the size is rounding. */
 static const double ROUNDING_OF_MIRRORS = 1e-9;
 
@@ -106,7 +106,7 @@ static bool is_cut(Assembler *a, const AssemblyPlacing *placing)
         return false;
     read_mirror(a, placing->root, normal, &offset);
     double most      = offset + ROUNDING_OF_MIRRORS * a->search.bounds[placing->item].ball.radius;
-    a->search.visits = MOST_VISITS;
+    a->search.visits = MAX_VISITS;
     return reach_along(&a->search, placing->item, placing_identity, normal, most) > most;
 }
 

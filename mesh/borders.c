@@ -16,14 +16,14 @@
 #include "compiler/field/steps.h"
 #include "mesh/common/numbering.h"
 
-enum { MOST_ROUNDS = 64, PROBES = 64, HALVINGS = 45 };
+enum { MAX_ROUNDS = 64, PROBES = 64, HALVINGS = 45 };
 /* In errors: how far points are apart, if that is enough, and from edges, where the mesh may belong to the neighbour; how near to a vertex an
    edge is not split. */
 static const double SPACING = 2, MARGIN = 1.5, NEAR_VERTEX = 0.25;
 /* Of the size of the mesh: points are no nearer, however small the error is. */
-static const double LEAST_SPACING = 1.0 / 500;
+static const double MIN_SPACING = 1.0 / 500;
 /* Of the height of a triangle: the most that MARGIN is; and how far from an edge the place is where it is split. */
-static const double MOST_MARGIN = 1.0 / 3, AT_EDGE = 1e-4;
+static const double MAX_MARGIN = 1.0 / 3, AT_EDGE = 1e-4;
 
 /* Where to split the edges of a triangle, from corner k to the next; 0: not. */
 typedef struct Wish {
@@ -35,7 +35,7 @@ typedef struct Borders {
     Arena                 arena;
     const KrsMeshOptions *options;
     const double (*copy)[4];
-    KrsFrame *frames[MOST_PARTS];
+    KrsFrame *frames[MAX_PARTS];
     struct {
         double (*items)[3];
         size_t count, capacity;
@@ -153,12 +153,12 @@ static size_t steps_along(const Look *look, double length)
 static Row row_along(const Look *look, int corner, double weight, double part)
 {
     int    next = (corner + 1) % 3, across = (corner + 2) % 3;
-    double least = part * look->margin[corner], least_next = part * look->margin[next];
+    double least = part * look->margin[corner], min_next = part * look->margin[next];
     Row    row       = {{0, 0, 0}, {0, 0, 0}, 0};
     row.from[across] = row.to[across] = weight;
-    row.from[next]                    = least_next;
+    row.from[next]                    = min_next;
     row.to[corner]                    = least;
-    row.from[corner]                  = 1 - weight - least_next;
+    row.from[corner]                  = 1 - weight - min_next;
     row.to[next]                      = 1 - weight - least;
     double share                      = row.from[corner] - row.to[corner];
     row.steps = share > 0 ? steps_along(look, share * look->lengths[corner]) : 0;
@@ -187,8 +187,8 @@ static void open_look(Look *look, const uint32_t triangle[3])
         double length    = look->lengths[(k + 1) % 3];
         double height    = length > 0 ? length3(product) / length : 0;
         look->heights[k] = height;
-        look->margin[k]  = height * MOST_MARGIN > MARGIN * b->error ? MARGIN * b->error / height
-                                                                    : MOST_MARGIN;
+        look->margin[k]  = height * MAX_MARGIN > MARGIN * b->error ? MARGIN * b->error / height
+                                                                   : MAX_MARGIN;
     }
 }
 
@@ -446,7 +446,7 @@ static KrsStatus split(Borders *b, KrsFrame *frame, KrsMesh *mesh)
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
     KrsStatus status = open_borders(b, frame, mesh);
-    for (; status == KRS_OK && b->round < MOST_ROUNDS && b->fresh.count > 0; b->round++) {
+    for (; status == KRS_OK && b->round < MAX_ROUNDS && b->fresh.count > 0; b->round++) {
         b->mixed  = arena_new_array(&b->arena, bool, b->triangles.count);
         b->wishes = arena_new_array(&b->arena, Wish, b->triangles.count);
         atomic_store(&b->next, 0);
@@ -478,11 +478,11 @@ KrsStatus mesh_split_at_borders(KrsFrame *frame, const KrsMeshOptions *options,
     Borders b        = {.options = options, .copy = copy};
     double  scale    = copy ? length3(copy[0]) : 1;
     b.error          = scale * mesh->error;
-    b.spacing        = fmax(SPACING * b.error, LEAST_SPACING * scale * size_of(mesh));
+    b.spacing        = fmax(SPACING * b.error, MIN_SPACING * scale * size_of(mesh));
     b.memory.limit   = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
     b.arena.memory   = &b.memory;
     KrsStatus status = mesh->triangle_count > 0 ? split(&b, frame, mesh) : KRS_OK;
-    for (int i = 0; i < MOST_PARTS; i++)
+    for (int i = 0; i < MAX_PARTS; i++)
         frame_free(b.frames[i]);
     arena_free(&b.arena);
     return status;

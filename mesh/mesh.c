@@ -11,7 +11,7 @@
 #include "mesh/mesh.h"
 #include "mesh/rounds.h"
 
-static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
+static const double DEFAULT_ERROR = 1.0 / 200, MIN_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */
 /* Errors besides, at each turn: tetrahedra lie otherwise then. */
 enum { TURNS = 3 };
@@ -62,7 +62,7 @@ static KrsStatus open_fields(Mesher *m, KrsFrame *frame)
 
 static void close_mesher(Mesher *m)
 {
-    for (int i = 0; i < MOST_PARTS; i++)
+    for (int i = 0; i < MAX_PARTS; i++)
         frame_free(m->fields[i].frame);
     arena_free(&m->arena);
     free(m);
@@ -177,7 +177,7 @@ static bool options_are_valid(Mesher *m, int turn)
     m->error  = options->error > 0 ? options->error : DEFAULT_ERROR * longest;
     m->side   = CUBE_SIDE * longest + MORE_SIDE[turn] * m->error;
     m->spared = options->simplify && may_be_few(m) ? SPARED * m->error : 0;
-    return is_nothing(m) || m->error >= LEAST_ERROR * m->side;
+    return is_nothing(m) || m->error >= MIN_ERROR * m->side;
 }
 
 static const KrsMeshOptions no_options = {0};

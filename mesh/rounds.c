@@ -178,7 +178,7 @@ static bool for_groups(Mesher *m, WorkOnGroup *work, double goal)
 
 /* Edges, in errors, of the smallest tetrahedra that are bisected since their mesh is not on the surface, where it is within the
    error of it. */
-static const double LEAST_OFF_SURFACE = 1;
+static const double MIN_OFF_SURFACE = 1;
 /* Parts of the error: a mesh whose middles are farther off goes through a tetrahedron or a face more often than their corners
    tell. */
 static const double OFF_SURFACE = 0.15;
@@ -189,7 +189,7 @@ static bool is_near_surface(const Mesher *m, const Tet *tet)
     return tet->triangle_count == 0 ||
            patch_off(&m->contour, &m->contour.patches.items[tet->patch]) <=
                OFF_SURFACE * m->error ||
-           tets_longest_edge(&m->tets, tet) <= LEAST_OFF_SURFACE * m->error;
+           tets_longest_edge(&m->tets, tet) <= MIN_OFF_SURFACE * m->error;
 }
 
 /* By bounds; and those whose mesh is off the surface are refuted in any case. */
@@ -414,10 +414,10 @@ static bool prove(Mesher *m)
    solids touch none are small enough, and many places are not decided.  False: nothing becomes finer. */
 static bool sharpen(Mesher *m)
 {
-    enum { MOST_FIRST = 300, MOST_LATER = 1000 };
+    enum { MAX_FIRST = 300, MAX_LATER = 1000 };
     static const double FIRST = 0.5, LAST = 0.05;
     double              sharp = m->sharp > 0 ? 0.5 * m->sharp : FIRST;
-    if (m->unresolved == 0 || m->unresolved > (size_t)(m->sharp > 0 ? MOST_LATER : MOST_FIRST) ||
+    if (m->unresolved == 0 || m->unresolved > (size_t)(m->sharp > 0 ? MAX_LATER : MAX_FIRST) ||
         sharp < LAST)
         return false;
     m->sharp = sharp;
@@ -430,13 +430,13 @@ static bool sharpen(Mesher *m)
 /* Handles and parts that the mesh has, and the solid has not, at edges.  False: there are none. */
 static bool tidy(Mesher *m)
 {
-    enum { MOST_TIMES = 4, MOST_PLACES = 256 };
+    enum { MAX_TIMES = 4, MAX_PLACES = 256 };
     static const double AROUND = 3, DEEP = 0.5; /* errors */
-    double              places[MOST_PLACES][3];
+    double              places[MAX_PLACES][3];
     bool                any = false;
-    if (m->tidied++ >= MOST_TIMES)
+    if (m->tidied++ >= MAX_TIMES)
         return false;
-    size_t count = handles_places(&m->contour, AROUND * m->error, places, MOST_PLACES);
+    size_t count = handles_places(&m->contour, AROUND * m->error, places, MAX_PLACES);
     for (size_t i = 0; i < count; i++)
         any = sides_tidy(&m->contour, places[i], AROUND * m->error, DEEP * m->error) || any;
     return any;

@@ -108,11 +108,11 @@ static void narrow(const Section *s, Search *search, bool evenly)
 /* Until it is known to `enough`; evenly where a line through the ends leads astray. */
 static void find_between(const Section *s, Search *search, double at[2])
 {
-    enum { MOST_ROUNDS = 30 };
+    enum { MAX_ROUNDS = 30 };
     const double length = hypot(search->outside[0] - search->inside[0],
                                 search->outside[1] - search->inside[1]);
     bool         evenly = false;
-    for (int i = 0; i < MOST_ROUNDS && (search->high - search->low) * length > s->enough; i++) {
+    for (int i = 0; i < MAX_ROUNDS && (search->high - search->low) * length > s->enough; i++) {
         double width = search->high - search->low;
         narrow(s, search, evenly);
         evenly = search->high - search->low > 0.25 * width;
@@ -298,14 +298,14 @@ static void bend_half(Section *s, const OutlinePoint *from, const OutlinePoint *
 
 static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, int depth)
 {
-    enum { MOST_HALVINGS = 30 };
+    enum { MAX_HALVINGS = 30 };
     double       reach   = PART_OF_CHORDS * s->error;
     Stretch      stretch = stretch_between(from, to);
     OutlinePoint point;
     Ends         ends;
     bool         known = stretch.length > 0 && find_ends(s, &stretch, &ends);
     point.corner       = known && find_corner_of(s, &stretch, &ends, point.at);
-    if ((!point.corner && stretch.length < SHORTEST * s->error) || depth > MOST_HALVINGS)
+    if ((!point.corner && stretch.length < SHORTEST * s->error) || depth > MAX_HALVINGS)
         return;
     if (!point.corner) {
         bool straight = !known || has_tangents(&stretch, &ends, reach);
@@ -332,11 +332,11 @@ static void box_of_chord(const Section *s, size_t item, double low[2], double hi
 static void find_corner_at(const Section *s, const OutlinePoint *before, OutlinePoint *point,
                            const OutlinePoint *behind)
 {
-    static const double MOST_TIMES = 20;
-    Stretch             first      = stretch_between(before, point);
-    Stretch             last       = stretch_between(point, behind);
+    static const double MAX_TIMES = 20;
+    Stretch             first     = stretch_between(before, point);
+    Stretch             last      = stretch_between(point, behind);
     double       cosine = first.along[0] * last.along[0] + first.along[1] * last.along[1], at[2];
-    double       reach  = MOST_TIMES * min2(first.length, last.length);
+    double       reach  = MAX_TIMES * min2(first.length, last.length);
     OutlinePoint from, to;
     Ends         ends;
     if (point->corner || reach == 0 || cosine > STRAIGHT_COSINE ||

@@ -91,7 +91,7 @@ static void box_of_crossing(const Section *s, size_t item, double low[2], double
 
 static void find_points(Section *s, size_t first, size_t count)
 {
-    PlaneRoot roots[MOST_FIELD_POINTS];
+    PlaneRoot roots[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++) {
         const Crossing *crossing = &s->crossings.items[first + i];
         PlaneRoot      *root     = &roots[i];

@@ -5,7 +5,7 @@
 
 #include "compiler/base/vec.h"
 
-enum { MOST_BOXES = 1500, MOST_OPEN = 256, SAMPLES = 12 };
+enum { MAX_BOXES = 1500, MAX_OPEN = 256, SAMPLES = 12 };
 
 /* Along an axis, downwards or upwards: heights are coordinates times the sign. */
 typedef struct Extent {
@@ -33,7 +33,7 @@ static void set_top(const Extent *e, Box *box, double height)
 /* Down from a solid point to where it ends, or to a height: by eighths, since steps along a distance would be many. */
 static void go_down(Extent *e, const double from[3], double bottom)
 {
-    enum { ROUNDS = 10, PARTS = MOST_FIELD_POINTS }; /* to a part of 2^-50 */
+    enum { ROUNDS = 10, PARTS = MAX_FIELD_POINTS }; /* to a part of 2^-50 */
     double points[PARTS][3], distances[PARTS], inside = e->sign * from[e->axis], outside = bottom;
     for (int round = 0; round < ROUNDS && outside < inside; round++) {
         double side = (inside - outside) / PARTS, below = outside;
@@ -75,12 +75,12 @@ static bool look_in(Extent *e, const Box *box)
    less than a small part of the height is not looked for. */
 static void slide_down(Extent *e, const Box *box)
 {
-    enum { STEPS = 40, MOST_SLIDES = 400, DIRECTIONS = 8 };
+    enum { STEPS = 40, MAX_SLIDES = 400, DIRECTIONS = 8 };
     static const double LEAST  = 1e-8;
     const double        bottom = bottom_of(e, box);
     const double height = -bottom_of(&(Extent){.axis = e->axis, .sign = -e->sign}, box) - bottom;
     double       step   = 0.1 * height;
-    for (int i = 0, slides = 0; i < STEPS && slides < MOST_SLIDES; slides++) {
+    for (int i = 0, slides = 0; i < STEPS && slides < MAX_SLIDES; slides++) {
         double points[DIRECTIONS][3], distances[DIRECTIONS], before = e->best;
         for (int k = 0; k < DIRECTIONS; k++) {
             memcpy(points[k], e->at, sizeof points[k]);
@@ -113,7 +113,7 @@ static void halve(const Box *box, Box halves[2])
 /* Tells whether nothing is solid below best - gap; `best` is lower then. */
 static bool prove(Extent *e, Box all)
 {
-    Box    open[MOST_OPEN];
+    Box    open[MAX_OPEN];
     size_t count  = 0;
     open[count++] = all;
     while (count > 0) {
@@ -122,7 +122,7 @@ static bool prove(Extent *e, Box all)
         if (!(box.axis[e->axis].low < box.axis[e->axis].high) ||
             field_range(e->field, box).low > 0 || !look_in(e, &box))
             continue;
-        if (++e->looked > MOST_BOXES || count + 2 > MOST_OPEN)
+        if (++e->looked > MAX_BOXES || count + 2 > MAX_OPEN)
             return false;
         set_top(e, &box, e->best - e->gap);
         if (!(box.axis[e->axis].low < box.axis[e->axis].high))

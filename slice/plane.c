@@ -49,7 +49,7 @@ Box slice_box(const SlicePlane *plane, const double low[2], const double high[2]
 void slice_distances(const MeshField *field, const SlicePlane *plane, const double (*points)[2],
                      size_t count, double *distances)
 {
-    double in_space[MOST_FIELD_POINTS][3];
+    double in_space[MAX_FIELD_POINTS][3];
     for (size_t i = 0; i < count; i++)
         slice_point(plane, points[i], in_space[i]);
     field_distances(field, (const double(*)[3])in_space, count, distances);
@@ -68,7 +68,7 @@ static double root_of(const RootSearch *search)
 void slice_roots(const MeshField *field, const SlicePlane *plane, PlaneRoot *roots, size_t count,
                  double enough)
 {
-    RootSearch searches[MOST_FIELD_POINTS];
+    RootSearch searches[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++) {
         RootSearch *search = &searches[i];
         double      to[3];

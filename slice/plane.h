@@ -22,7 +22,7 @@ static inline void slice_point(const SlicePlane *plane, const double at[2], doub
 /* A square in a plane, and what is nearer to it than a margin. */
 Box slice_box(const SlicePlane *plane, const double low[2], const double high[2], double margin);
 
-/* At up to MOST_FIELD_POINTS points. */
+/* At up to MAX_FIELD_POINTS points. */
 void slice_distances(const MeshField *field, const SlicePlane *plane, const double (*points)[2],
                      size_t count, double *distances);
 
@@ -32,7 +32,7 @@ typedef struct PlaneRoot {
     double at[2]; /* what is found */
 } PlaneRoot;
 
-/* Up to MOST_FIELD_POINTS of them, until they are known to `enough`. */
+/* Up to MAX_FIELD_POINTS of them, until they are known to `enough`. */
 void slice_roots(const MeshField *field, const SlicePlane *plane, PlaneRoot *roots, size_t count,
                  double enough);
 

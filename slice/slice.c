@@ -8,7 +8,7 @@
 #include "slice/extent.h"
 #include "slice/section.h"
 
-static const double DEFAULT_ERROR = 1.0 / 2000, LEAST_ERROR = 1e-7;
+static const double DEFAULT_ERROR = 1.0 / 2000, MIN_ERROR = 1e-7;
 /* Of coordinates: how far roots are known, and by how much solids are thicker, so that faces that touch, and faces in
    the plane itself, are not decided by rounding. */
 static const double ENOUGH = 1e-14, SKIN = 1e-12;
@@ -20,14 +20,14 @@ struct KrsSlicer {
     MeshSolid       solid;
     double    low[3], high[3], error, longest, size; /* the longest side, the largest coordinate */
     size_t    parts;
-    MeshField fields[MOST_PARTS];
+    MeshField fields[MAX_PARTS];
 };
 
 /* ---- the slicer ---- */
 
 KrsStatus krs_slicer_set_error(KrsSlicer *slicer, double error)
 {
-    if (!(error >= LEAST_ERROR * slicer->longest) || isinf(error))
+    if (!(error >= MIN_ERROR * slicer->longest) || isinf(error))
         return KRS_BAD_ARGUMENT;
     slicer->error = error;
     return KRS_OK;
@@ -135,7 +135,7 @@ void krs_slicer_free(KrsSlicer *slicer)
 {
     if (!slicer)
         return;
-    for (size_t i = 0; i < MOST_PARTS; i++)
+    for (size_t i = 0; i < MAX_PARTS; i++)
         frame_free(slicer->fields[i].frame);
     arena_free(&slicer->arena);
     free(slicer->solid.roots);
@@ -159,7 +159,7 @@ typedef struct Slicing {
     KrsSection           **sections;
     atomic_size_t          next;
     atomic_bool            stopped;
-    KrsStatus              statuses[MOST_PARTS];
+    KrsStatus              statuses[MAX_PARTS];
 } Slicing;
 
 static KrsStatus make_section(Section *s, const KrsSlicer *slicer, KrsSection **result)
@@ -239,7 +239,7 @@ KrsStatus krs_slice(KrsSlicer *slicer, const KrsSectionPlane *planes, size_t cou
         return status;
     if (slicer->parts > 0)
         run_in_parallel(slice_some, &slicing);
-    for (size_t i = 0; i < MOST_PARTS; i++)
+    for (size_t i = 0; i < MAX_PARTS; i++)
         if (slicing.statuses[i] != KRS_OK && (status == KRS_OK || status == KRS_INTERRUPTED))
             status = slicing.statuses[i];
     for (size_t i = 0; i < count && status == KRS_OK; i++)

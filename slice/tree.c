@@ -206,7 +206,7 @@ typedef struct Fan {
    places, and its angle leads there. */
 static bool leads_to(const Section *s, Fan *fan, bool inside, double reach, double depth)
 {
-    enum { DIRECTIONS = MOST_FIELD_POINTS };
+    enum { DIRECTIONS = MAX_FIELD_POINTS };
     double points[DIRECTIONS][2], distances[DIRECTIONS];
     double middle = fan->angle, step = 2 * fan->spread / DIRECTIONS;
     for (int round = 0; round < fan->rounds; round++, step *= 2.0 / DIRECTIONS) {
@@ -400,7 +400,7 @@ static bool look_at_parts(Section *s, const Cell *cell, int depth)
 static bool look_at_cell(Section *s, Cell cell, int depth)
 {
     double low[2], high[2];
-    bool   enter = depth % ENTER_EVERY == 0 && s->field->region_count < MOST_REGIONS - 1;
+    bool   enter = depth % ENTER_EVERY == 0 && s->field->region_count < MAX_REGIONS - 1;
     if (!goes_on(s))
         return false;
     cell_square(s, &cell, low, high);
@@ -428,7 +428,7 @@ bool find_leaves(Section *s)
 
 /* ---- groups ---- */
 
-enum { FEW = MOST_FIELD_POINTS, PARTS_OF_GROUP = 16, SHORT_TAPE = 48, FEWEST = 3 };
+enum { FEW = MAX_FIELD_POINTS, PARTS_OF_GROUP = 16, SHORT_TAPE = 48, FEWEST = 3 };
 
 typedef struct Square {
     double low[2], high[2];
@@ -506,7 +506,7 @@ bool enter_square(Section *s, const double low[2], const double high[2])
     static const double MUCH_SMALLER = 0.5;
     MeshField          *field        = s->field;
     Box                 box          = slice_box(&s->plane, low, high, s->enough);
-    if (!is_long(field) || field->region_count == MOST_REGIONS ||
+    if (!is_long(field) || field->region_count == MAX_REGIONS ||
         (field->region_count > 0 &&
          size_of_box(&box) >
              MUCH_SMALLER * size_of_box(&field->regions[field->region_count - 1].box)))

@@ -113,7 +113,7 @@ static void write_scene(const Subject *subject, const View *view, char *text, si
 /* ---- our tracers ---- */
 
 typedef struct Method {
-    double    frame[MOST_REPEATS], rays[MOST_REPEATS], cpu[MOST_REPEATS];
+    double    frame[MAX_REPEATS], rays[MAX_REPEATS], cpu[MAX_REPEATS];
     double    evaluations;
     uint64_t  unresolved;
     Judgement judgement;
@@ -333,7 +333,7 @@ int main(int count, char **arguments)
     if (count < 2)
         give_up("usage", "algebraic KRS [REPEATS [SURFACE|trees|julias]]");
     size_t repeats = count > 2 ? strtoul(arguments[2], NULL, 10) : 3;
-    repeats        = repeats < 1 ? 1 : repeats > MOST_REPEATS ? MOST_REPEATS : repeats;
+    repeats        = repeats < 1 ? 1 : repeats > MAX_REPEATS ? MAX_REPEATS : repeats;
     kept           = open_memstream(&text, &length);
     if (!kept)
         give_up("cannot begin", "no memory");

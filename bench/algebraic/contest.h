@@ -10,12 +10,12 @@
 #include "bench/algebraic/polynomial.h"
 
 enum {
-    WIDTH         = 1280,
-    HEIGHT        = 720,
-    MOST_REPEATS  = 15,
-    MOST_PROGRAMS = 8,
-    MOST_SUBJECTS = 16,
-    FOLDER_ROOM   = 64
+    WIDTH        = 1280,
+    HEIGHT       = 720,
+    MAX_REPEATS  = 15,
+    MAX_PROGRAMS = 8,
+    MAX_SUBJECTS = 16,
+    FOLDER_ROOM  = 64
 };
 
 typedef struct Subject {
@@ -60,7 +60,7 @@ typedef struct Program {
     const char *name, *command; /* in PATH */
     bool (*run)(const struct Program *program, const char *folder, const Subject *subject,
                 const View *view, Run *run);
-    int  largest_degree, least_degree;
+    int  largest_degree, min_degree;
     bool slow; /* once is enough */
 } Program;
 

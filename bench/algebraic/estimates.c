@@ -15,7 +15,7 @@
 #include "bench/algebraic/judge.h"
 #include "tests/oracle/formulas.h"
 
-enum { SPARSE = 32, MOST_STEPS = 4096, ORDERS = 2 };
+enum { SPARSE = 32, MAX_STEPS = 4096, ORDERS = 2 };
 
 typedef struct Tally {
     size_t    rays, evaluations, unresolved;
@@ -68,7 +68,7 @@ static bool march(const Subject *subject, Vec origin, Vec direction, Real least,
         return false;
     half   = sqrtl(half);
     Real t = middle - half;
-    for (int step = 0; step < MOST_STEPS; step++) {
+    for (int step = 0; step < MAX_STEPS; step++) {
         Real p[3] = {origin.x + t * direction.x, origin.y + t * direction.y,
                      origin.z + t * direction.z};
         Real f    = formula(p);

@@ -57,10 +57,10 @@ static void *find_odd_rows(void *known)
 
 static const unsigned char *find_fates(const Subject *subject, const View *view, Drawn drawn)
 {
-    static Known known[2 * MOST_SUBJECTS];
+    static Known known[2 * MAX_SUBJECTS];
     Known       *k = known;
     while (k->subject && (k->subject != subject || k->drawn != drawn))
-        if (++k == known + 2 * MOST_SUBJECTS)
+        if (++k == known + 2 * MAX_SUBJECTS)
             give_up(subject->name, "there are too many surfaces");
     if (!k->subject) {
         pthread_t other;

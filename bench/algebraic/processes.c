@@ -52,7 +52,7 @@ void folder_remove(const char *path)
 
 /* ---- krs ---- */
 
-enum { MOST_OPTIONS = 4 };
+enum { MAX_OPTIONS = 4 };
 
 void run_krs(const char *krs, const char *folder, const char *cache, const char *text,
              char *const *options, Run *run)
@@ -67,9 +67,9 @@ void run_krs(const char *krs, const char *folder, const char *cache, const char 
     FILE *file = fopen(scene, "wb");
     if (!file || fputs(text, file) == EOF || fclose(file) != 0)
         give_up(scene, "cannot write it");
-    char *arguments[9 + MOST_OPTIONS] = {(char *)krs, "render",  scene,         "-o",
-                                         picture,     "--quiet", "--occlusion", "off"};
-    for (size_t i = 0; options && options[i] && i < MOST_OPTIONS; i++)
+    char *arguments[9 + MAX_OPTIONS] = {(char *)krs, "render",  scene,         "-o",
+                                        picture,     "--quiet", "--occlusion", "off"};
+    for (size_t i = 0; options && options[i] && i < MAX_OPTIONS; i++)
         arguments[8 + i] = options[i];
     if (!run_command(arguments, said, run))
         give_up(krs, "it failed");
@@ -100,7 +100,7 @@ static void run_ours(const char *krs, const char *folder, size_t turn, const cha
 static bool takes_part(const Program *program, const Subject *subject, size_t turn)
 {
     return program_is_installed(program->command) && subject->degree <= program->largest_degree &&
-           subject->degree >= program->least_degree && (!program->slow || turn == 0);
+           subject->degree >= program->min_degree && (!program->slow || turn == 0);
 }
 
 void processes_run(Processes *processes, const char *krs, const Subject *subject, const View *view,

@@ -15,7 +15,7 @@ typedef struct Frame {
 typedef struct Runs {
     Run    median; /* once they are settled */
     size_t count;
-    double wall[MOST_REPEATS], cpu[MOST_REPEATS], frame[MOST_REPEATS], memory[MOST_REPEATS];
+    double wall[MAX_REPEATS], cpu[MAX_REPEATS], frame[MAX_REPEATS], memory[MAX_REPEATS];
 } Runs;
 
 void runs_take(Runs *runs, const Run *run);
@@ -34,7 +34,7 @@ enum { COLD, WARM, STENCIL, OURS };
 
 /* What a surface has taken. */
 typedef struct Processes {
-    Runs ours[OURS], others[MOST_PROGRAMS];
+    Runs ours[OURS], others[MAX_PROGRAMS];
 } Processes;
 
 /*

@@ -11,7 +11,7 @@
 
 #include "bench/algebraic/processes.h"
 
-enum { WRITTEN_LEVELS = 16, MOST_BRANCHES = 1 << WRITTEN_LEVELS, TEXT_ROOM = 8192 };
+enum { WRITTEN_LEVELS = 16, MAX_BRANCHES = 1 << WRITTEN_LEVELS, TEXT_ROOM = 8192 };
 
 static const double DEGREE = 0.017453292519943295;
 static const double EYE[3] = {0.15, 1, 9}, TARGET[3] = {0.15, 1.55, 0}, FOV = 19.5;
@@ -67,7 +67,7 @@ static void mirror_point(const Fork *fork, const double p[3], double image[3])
 }
 
 /* From the twigs down: a mirror at each fork, and the branch below it. */
-static size_t grow(Limb limbs[MOST_BRANCHES])
+static size_t grow(Limb limbs[MAX_BRANCHES])
 {
     Fork   forks[WRITTEN_LEVELS] = {{.ahead   = {-sin(5 * DEGREE), cos(5 * DEGREE), 0},
                                      .lateral = {cos(5 * DEGREE), sin(5 * DEGREE), 0}}};
@@ -95,7 +95,7 @@ static size_t grow(Limb limbs[MOST_BRANCHES])
 static size_t write_pov_tree(const char *path)
 {
     FILE *file  = fopen(path, "wb");
-    Limb *limbs = calloc(MOST_BRANCHES, sizeof *limbs);
+    Limb *limbs = calloc(MAX_BRANCHES, sizeof *limbs);
     if (!file || !limbs)
         give_up(path, "cannot write it");
     size_t count = grow(limbs);

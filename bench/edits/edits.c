@@ -22,7 +22,7 @@
 #include "bench/fixture.h"
 #include "bench/view/number_edit.h"
 
-enum { NUMBERS = 3, TURNS = 3, MOST_EDITS = NUMBERS * TURNS, TIMEOUT = 600 };
+enum { NUMBERS = 3, TURNS = 3, MAX_EDITS = NUMBERS * TURNS, TIMEOUT = 600 };
 static const char picture_name[] = "picture.png";
 
 extern char **environ;
@@ -169,7 +169,7 @@ static Edit edit_watched(const Trial *trial, NumberEdit *number, FILE *stats, cl
 }
 
 /* The first edits make the shaders of edits. */
-static size_t time_watch(Trial *trial, Edit edits[MOST_EDITS])
+static size_t time_watch(Trial *trial, Edit edits[MAX_EDITS])
 {
     FILE       *stats;
     size_t      count   = 0;
@@ -206,7 +206,7 @@ static Edit edit_rendered(const Trial *trial, NumberEdit *number)
                       1e-3 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec)};
 }
 
-static size_t time_render(Trial *trial, Edit edits[MOST_EDITS])
+static size_t time_render(Trial *trial, Edit edits[MAX_EDITS])
 {
     size_t count = 0;
     edit_rendered(trial, &trial->numbers[0]);
@@ -226,7 +226,7 @@ static int compare(const void *a, const void *b)
 /* Of every `step`th edit, the first of which is `edits`: the median of `weight`ed sums. */
 static double median(const Edit *edits, size_t count, size_t step, Edit weight)
 {
-    double sums[MOST_EDITS];
+    double sums[MAX_EDITS];
     size_t found = 0;
     for (size_t i = 0; i < count; i += step)
         sums[found++] = weight.clock * edits[i].clock + weight.frame * edits[i].frame +
@@ -252,7 +252,7 @@ static double find_slowest(const Edit *edits, size_t count, size_t numbers)
 /* What the slowest number takes beyond its frame. */
 static double measure(const Sheet *sheet, Trial *trial)
 {
-    Edit        edits[MOST_EDITS];
+    Edit        edits[MAX_EDITS];
     const char *slash = strrchr(trial->scene, '/');
     find_numbers(trial);
     sheet_print(sheet, "| %s | ", slash ? slash + 1 : trial->scene);

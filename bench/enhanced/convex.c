@@ -11,7 +11,7 @@
 #include "bench/fixture.h"
 #include "krs/krs.h"
 
-enum { RAYS = 1000, MOST_STEPS = 1000 };
+enum { RAYS = 1000, MAX_STEPS = 1000 };
 
 /* Within a ball of this radius are all solids below. */
 static const double radius = 1.2;
@@ -136,7 +136,7 @@ static double march(KrsFrame *frame, const Ray *ray, double t, double sign, doub
                     Steps steps, int *evaluations)
 {
     double last = 0, step = 0, slope = -1 / 0.7;
-    for (int i = 0; i < MOST_STEPS; i++) {
+    for (int i = 0; i < MAX_STEPS; i++) {
         double distance   = side * distance_at(frame, ray, t + sign * step);
         double unverified = step - last;
         ++*evaluations;

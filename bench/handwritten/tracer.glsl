@@ -70,7 +70,7 @@ void main()
     float t = range.x;
     int   steps = 0;
     bool  hit = false;
-    for (; steps < MOST_STEPS && t < range.y; steps++) {
+    for (; steps < MAX_STEPS && t < range.y; steps++) {
         float d = map(EYE + t * direction);
         if (d < ERROR * width * t) {
             hit = true;
@@ -78,7 +78,7 @@ void main()
         }
         t += d;
     }
-    hit = hit || (steps == MOST_STEPS && t < range.y); // creeping along a surface
+    hit = hit || (steps == MAX_STEPS && t < range.y); // creeping along a surface
 
     vec3 color = sky_radiance(direction) +
                  sun_radiance(direction, SUN_DIRECTION, SUN_COLOR, SUN_SOFTNESS);
@@ -92,7 +92,7 @@ void main()
                 SUN_COLOR * reflected(n, -direction, SUN_DIRECTION, m.rgb, m.a, mirror);
     }
 #ifdef COUNT_STEPS
-    color = vec3(min(steps + (hit ? 1 : 0), MOST_STEPS));
+    color = vec3(min(steps + (hit ? 1 : 0), MAX_STEPS));
 #endif
     picture[pixel.y * WIDTH + pixel.x] = vec4(color, hit ? t / stretch : 0.0);
 }

@@ -9,7 +9,7 @@
 #define WIDTH      1280
 #define HEIGHT     720
 #define ERROR      0.25 // permitted, in pixels
-#define MOST_STEPS 1024
+#define MAX_STEPS 1024
 
 #define EYE    vec3(0.0, 1.0, 5.0)
 #define TARGET vec3(0.0)

@@ -16,7 +16,7 @@
 #include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 
-enum { WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, MOST_REPEATS = 15 };
+enum { WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, MAX_REPEATS = 15 };
 
 static const struct Subject {
     const char *name, *path;
@@ -34,8 +34,8 @@ enum { TRACES = sizeof traces / sizeof *traces };
 typedef struct Row {
     KrsTrace trace;
     bool     beams;
-    double   ms[MOST_REPEATS]; /* of beams and primary rays */
-    double   cpu_ms;           /* of all threads for the whole picture: the least */
+    double   ms[MAX_REPEATS]; /* of beams and primary rays */
+    double   cpu_ms;          /* of all threads for the whole picture: the least */
     double   evaluations, hits, differing;
     uint64_t unresolved;
 } Row;
@@ -121,7 +121,7 @@ static void compare(KrsRenderer *renderer, const struct Subject *subject, size_t
 int main(int count, char **arguments)
 {
     size_t repeats = count > 1 ? strtoul(arguments[1], NULL, 10) : 5;
-    if (repeats < 1 || repeats > MOST_REPEATS)
+    if (repeats < 1 || repeats > MAX_REPEATS)
         give_up(arguments[1], "1 to 15 repeats");
     spirv_start();
     KrsRenderer *renderer = device_open();

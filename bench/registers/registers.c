@@ -17,7 +17,7 @@
 
 static const char card[] = "navi21";
 
-enum { MOST_STATISTICS = 64, MOST_BINDINGS = 64, SETS = 2 };
+enum { MAX_STATISTICS = 64, MAX_BINDINGS = 64, SETS = 2 };
 
 /* What is told, in this order, by the names that Mesa's driver has for it. */
 static const struct {
@@ -181,7 +181,7 @@ static VkDescriptorType kind_of(const IdInfo *ids, const IdInfo *variable)
 static VkPipelineLayout make_layout(VkDevice device, const Module *module,
                                     VkDescriptorSetLayout sets[SETS])
 {
-    VkDescriptorSetLayoutBinding bindings[SETS][MOST_BINDINGS];
+    VkDescriptorSetLayoutBinding bindings[SETS][MAX_BINDINGS];
     uint32_t                     counts[SETS] = {0}, bound = module->words[3];
     IdInfo                      *ids = calloc(bound, sizeof *ids);
     VkPipelineLayout             layout;
@@ -190,7 +190,7 @@ static VkPipelineLayout make_layout(VkDevice device, const Module *module,
     for (size_t at = 5; at < module->count; at += module->words[at] >> 16)
         read_instruction(&module->words[at], ids);
     for (uint32_t id = 0; id < bound; id++)
-        if (ids[id].bound && ids[id].set < SETS && counts[ids[id].set] < MOST_BINDINGS)
+        if (ids[id].bound && ids[id].set < SETS && counts[ids[id].set] < MAX_BINDINGS)
             bindings[ids[id].set][counts[ids[id].set]++] = (VkDescriptorSetLayoutBinding){
                 .binding         = ids[id].binding,
                 .descriptorType  = kind_of(ids, &ids[id]),
@@ -237,11 +237,11 @@ static unsigned long long value_of(const VkPipelineExecutableStatisticKHR *stati
 
 static void print_statistics(VkDevice device, VkPipeline pipeline)
 {
-    static VkPipelineExecutableStatisticKHR  statistics[MOST_STATISTICS];
-    uint32_t                                 count = MOST_STATISTICS;
+    static VkPipelineExecutableStatisticKHR  statistics[MAX_STATISTICS];
+    uint32_t                                 count = MAX_STATISTICS;
     PFN_vkGetPipelineExecutableStatisticsKHR get   = (PFN_vkGetPipelineExecutableStatisticsKHR)
         vkGetDeviceProcAddr(device, "vkGetPipelineExecutableStatisticsKHR");
-    for (uint32_t i = 0; i < MOST_STATISTICS; i++)
+    for (uint32_t i = 0; i < MAX_STATISTICS; i++)
         statistics[i].sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
     check(get(device,
               &(VkPipelineExecutableInfoKHR){

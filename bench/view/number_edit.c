@@ -11,9 +11,9 @@
 #include "bench/fixture.h"
 #include "live/text/text_file.h"
 
-enum { MOST_TRIES = 60 };
+enum { MAX_TRIES = 60 };
 /* Some texts take seconds to compile. */
-static const double MOST_SECONDS = 30;
+static const double MAX_SECONDS = 30;
 
 static double now(void)
 {
@@ -91,7 +91,7 @@ NumberEdit number_edit_find(Document *document, const char *path, size_t from)
     NumberEdit   edit  = {.path = path, .at = from};
     bool         found = false;
     const double begun = now();
-    for (int i = 0; i < MOST_TRIES && !found && now() - begun < MOST_SECONDS; i++) {
+    for (int i = 0; i < MAX_TRIES && !found && now() - begun < MAX_SECONDS; i++) {
         edit.at = find_number(text.text, edit.at + 1);
         if (edit.at == 0)
             break;

@@ -11,20 +11,20 @@
 
 #include "cli/grid/gridding.h"
 
-enum { SIDE = KRS_BRICK_SIDE, MOST_ARRAYS = 5, MOST_NUMBERS = 5, MOST_HEADER = 4096 };
+enum { SIDE = KRS_BRICK_SIDE, MAX_ARRAYS = 5, MAX_NUMBERS = 5, MAX_HEADER = 4096 };
 
 /* An array has some numbers for each sample, of 2 or 4 bytes each: the value, a part of the colour, the material as a
    whole number or as another. */
 typedef enum GridNumber { VALUE, RED, GREEN, BLUE, MATERIAL, MATERIAL_FLOAT } GridNumber;
 
 typedef struct GridArray {
-    GridNumber numbers[MOST_NUMBERS];
+    GridNumber numbers[MAX_NUMBERS];
     size_t     count;
     uint64_t   offset; /* of its first byte in the file */
 } GridArray;
 
 typedef struct GridRows {
-    GridArray      arrays[MOST_ARRAYS];
+    GridArray      arrays[MAX_ARRAYS];
     size_t         array_count;
     unsigned char *row; /* of the bricks of a row: its numbers of one array, x first */
     float         *values;
@@ -105,7 +105,7 @@ static GridRows *new_rows(GridFile *file)
     const GridSheet *sheet = file->sheet;
     GridRows        *rows  = arena_new(file->arena, GridRows);
     size_t           all   = row_samples(sheet);
-    rows->row              = arena_alloc(file->arena, all, 4 * MOST_NUMBERS);
+    rows->row              = arena_alloc(file->arena, all, 4 * MAX_NUMBERS);
     rows->values           = arena_new_array(file->arena, float, all);
     rows->colors           = arena_alloc(file->arena, all, sizeof *rows->colors);
     rows->materials        = arena_new_array(file->arena, uint32_t, all);
@@ -217,7 +217,7 @@ static bool begin_npy(GridFile *file)
     const size_t    *count = sheet->shape.count;
     GridRows        *rows  = new_rows(file);
     GridArray       *array = add_array(rows, 1, VALUE);
-    char             text[MOST_HEADER], type[256];
+    char             text[MAX_HEADER], type[256];
     const int        bytes = (int)number_bytes(sheet, VALUE);
     enum { BEFORE = 10, ALIGNED = 64 };
     snprintf(type, sizeof type, "'<f%d'", bytes);
@@ -366,11 +366,11 @@ static bool begin_ktx2(GridFile *file)
     static const uint32_t kinds[2][2] = {{100, 109},
                                          {76, 97}}; /* R32_SFLOAT, R32G32B32A32_SFLOAT, R16... */
     enum { HEADER = 104, ALIGNED = 16 };
-    const GridSheet *sheet               = file->sheet;
-    unsigned char    header[MOST_HEADER] = {0};
-    GridRows        *rows                = new_rows(file);
-    GridArray       *array = sheet->color ? add_array(rows, 4, RED, GREEN, BLUE, VALUE)
-                                          : add_array(rows, 1, VALUE);
+    const GridSheet *sheet              = file->sheet;
+    unsigned char    header[MAX_HEADER] = {0};
+    GridRows        *rows               = new_rows(file);
+    GridArray       *array              = sheet->color ? add_array(rows, 4, RED, GREEN, BLUE, VALUE)
+                                                       : add_array(rows, 1, VALUE);
     memcpy(header, mark, 12);
     put_int(header, 12, kinds[sheet->half][sheet->color]);
     put_int(header, 16, (uint32_t)number_bytes(sheet, VALUE));
@@ -444,17 +444,17 @@ static bool begin_vti(GridFile *file)
 /* ---- all formats ---- */
 
 /* Rows of files that have all samples are made in memory.  OpenVDB wants volumes of cells above 3e-15. */
-#define MOST_ROW   262144.0
-#define MOST_INDEX 1073741824.0
-#define LEAST_VDB  1.5e-5
+#define MAX_ROW   262144.0
+#define MAX_INDEX 1073741824.0
+#define MIN_VDB   1.5e-5
 
 static const GridFormat formats[] = {
-    {".npy", false, true, true, MOST_ROW, 0, begin_npy, add_to_row, end_rows},
-    {".vdb", true, true, true, MOST_INDEX, LEAST_VDB, grid_begin_vdb, grid_add_vdb, grid_end_vdb},
+    {".npy", false, true, true, MAX_ROW, 0, begin_npy, add_to_row, end_rows},
+    {".vdb", true, true, true, MAX_INDEX, MIN_VDB, grid_begin_vdb, grid_add_vdb, grid_end_vdb},
     {".nii", false, true, false, INT16_MAX, 0, begin_nii, add_to_row, end_rows},
-    {".ktx2", false, false, true, MOST_ROW, 0, begin_ktx2, add_to_row, end_rows},
-    {".vti", false, true, false, MOST_ROW, 0, begin_vti, add_to_row, end_rows},
-    {".vtu", true, true, false, MOST_INDEX, 0, grid_begin_vtu, grid_add_vtu, grid_end_vtu}};
+    {".ktx2", false, false, true, MAX_ROW, 0, begin_ktx2, add_to_row, end_rows},
+    {".vti", false, true, false, MAX_ROW, 0, begin_vti, add_to_row, end_rows},
+    {".vtu", true, true, false, MAX_INDEX, 0, grid_begin_vtu, grid_add_vtu, grid_end_vtu}};
 
 const GridFormat *grid_format(const char *path)
 {

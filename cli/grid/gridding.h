@@ -30,8 +30,8 @@ typedef struct GridFormat {
     bool        sparse;       /* it has bricks that are near, and a band */
     bool        has_material; /* numbers of materials */
     bool        has_half;     /* numbers of 16 bits */
-    double      most_side;    /* samples along an axis */
-    double      least_cell;   /* a length */
+    double      max_side;     /* samples along an axis */
+    double      min_cell;     /* a length */
     bool (*begin)(GridFile *file);
     bool (*add)(GridFile *file, const KrsGridBrick *brick);
     bool (*end)(GridFile *file);

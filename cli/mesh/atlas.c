@@ -16,13 +16,13 @@
 
 /* Pixels around a triangle that are its own: a bilinear look at a point of it reaches as far. */
 enum { MARGIN = 2 };
-enum { ROTATIONS = 16, MOST_TRIES = 400 };
+enum { ROTATIONS = 16, MAX_TRIES = 400 };
 /* The cosine of the angle between a triangle of a chart and its first one. */
-static const double LEAST_COSINE = 0.7;
+static const double MIN_COSINE = 0.7;
 /* In pixels: heights that differ by more are of two sheets, one above the other. */
 static const double ONE_SHEET = 8;
 /* The picture is about full at first; then pixels grow until it suffices. */
-static const double MOST_FILLED = 0.9, GROWTH = 1.04;
+static const double MAX_FILLED = 0.9, GROWTH = 1.04;
 
 typedef struct Chart {
     size_t   first, count; /* of Layout.list */
@@ -319,7 +319,7 @@ static bool widen(const Layout *l, View *view, const Seen *seen)
 static bool faces(const Layout *l, const View *view, uint32_t triangle)
 {
     const double *normal = l->normals[triangle];
-    return length3(normal) == 0 || dot3(normal, view->axes[2]) >= LEAST_COSINE;
+    return length3(normal) == 0 || dot3(normal, view->axes[2]) >= MIN_COSINE;
 }
 
 static bool take_triangle(Layout *l, View *view, uint32_t triangle, uint32_t stamp)
@@ -539,8 +539,8 @@ bool atlas_make(Arena *arena, const MeshParts *parts, const float *fineness, uin
     find_normals(&l);
     find_neighbours(&l);
     find_order(&l);
-    l.pixel = sqrt(total_area(&l) / MOST_FILLED) / side;
-    for (int i = 0; i < MOST_TRIES && l.pixel > 0 && !done && may_fit(&l); i++) {
+    l.pixel = sqrt(total_area(&l) / MAX_FILLED) / side;
+    for (int i = 0; i < MAX_TRIES && l.pixel > 0 && !done && may_fit(&l); i++) {
         l.pixel *= GROWTH;
         done = lay_out(&l);
     }

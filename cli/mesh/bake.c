@@ -20,14 +20,14 @@ enum { PROBES = 256 };
 /* Of the mesh's error: nearer points are on the surface. */
 static const double ON_SURFACE = 1e-3;
 /* How far a pixel beyond an edge is moved into the triangle: in pixels, and of the way to the middle. */
-static const double INTO = 0.02, MOST_INTO = 1e-3;
+static const double INTO = 0.02, MAX_INTO = 1e-3;
 /* The same emission, relatively. */
 static const double SAME_EMISSION = 1e-3;
 
 /* The others leave the atlas where no more than this part of it is left. */
-static const double MOST_BAKED_TWICE = 0.75;
+static const double MAX_BAKED_TWICE = 0.75;
 /* Materials of one color each that one may be; more are a picture. */
-enum { MOST_EVEN = 16 };
+enum { MAX_EVEN = 16 };
 static const uint32_t NONE = UINT32_MAX;
 
 /* What is known of a pixel, as in pictures. */
@@ -59,7 +59,7 @@ typedef struct Baking {
     const Meshing *meshing;
     MeshParts     *parts;
     Atlas          atlas;
-    KrsFrame      *frames[MOST_PARTS];
+    KrsFrame      *frames[MAX_PARTS];
     double         error;
     Texel         *texels;
     uint32_t      *piece_of;      /* of triangles */
@@ -83,7 +83,7 @@ static void point_of(const Baking *b, size_t pixel, double point[3])
     const double away = atlas_nearest(c, center, weights);
     const double size = fmax(hypot(c[1][0] - c[0][0], c[1][1] - c[0][1]),
                              hypot(c[2][0] - c[0][0], c[2][1] - c[0][1]));
-    const double into = away > 0 ? fmin(INTO / fmax(size, INTO), MOST_INTO) : 0;
+    const double into = away > 0 ? fmin(INTO / fmax(size, INTO), MAX_INTO) : 0;
     memset(point, 0, 3 * sizeof *point);
     for (int k = 0; k < 3; k++)
         add_scaled3(point, point, weights[k] + into * (1.0 / 3 - weights[k]),
@@ -308,7 +308,7 @@ static uint32_t find_row(Baking *b, const Piece *piece, bool mixed)
             return i;
         even++;
     }
-    if (even >= MOST_EVEN)
+    if (even >= MAX_EVEN)
         return find_row(b, piece, true);
     Piece row = *piece;
     row.mixed = mixed;
@@ -520,7 +520,7 @@ static KrsStatus bake_all(Baking *b)
     find_spreads(b, &b->pieces, b->piece_of);
     find_rows(b);
     make_materials(b);
-    if (any_baked(b) && share_baked(b) < MOST_BAKED_TWICE) {
+    if (any_baked(b) && share_baked(b) < MAX_BAKED_TWICE) {
         status = bake(b, false);
         find_spreads(b, &b->rows, b->row_of);
     }
@@ -546,7 +546,7 @@ KrsStatus bake_materials(Meshing *meshing, MeshParts *parts, double error)
     }
     if (status == KRS_OK)
         status = bake_all(&b);
-    for (size_t i = 0; i < MOST_PARTS; i++)
+    for (size_t i = 0; i < MAX_PARTS; i++)
         krs_frame_free(b.frames[i]);
     if (status == KRS_OK)
         meshing->pixel = parts->pictures ? b.atlas.pixel : 0;

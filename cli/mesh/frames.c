@@ -10,7 +10,7 @@
 #include "compiler/base/vec.h"
 
 /* Parts of the way from a corner to the middle; and of a tangent's length, which must lie across the normal. */
-static const double STEP = 1e-3, LEAST_ACROSS = 1e-3;
+static const double STEP = 1e-3, MIN_ACROSS = 1e-3;
 
 static void take_across(const double normal[3], double tangent[3])
 {
@@ -37,7 +37,7 @@ static void set_frame(const double (*matrix)[4], const KrsHit *hit, const double
     bring_back(matrix, hit->tangent, tangent);
     const double length = length3(tangent);
     take_across(normal, tangent);
-    if (!(length3(tangent) > LEAST_ACROSS * length) || !normalize3(tangent)) {
+    if (!(length3(tangent) > MIN_ACROSS * length) || !normalize3(tangent)) {
         axis[fabs(normal[0]) < 0.7 ? 0 : 1] = 1;
         memcpy(tangent, axis, sizeof tangent);
         take_across(normal, tangent);

@@ -410,7 +410,7 @@ void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Copy
     body.children.push_back(add_node(model, node));
 }
 
-const double MOST_NODES = 1024; // for copies that stand still; more are instances
+const double MAX_NODES = 1024; // for copies that stand still; more are instances
 
 void add_copies(File &file, const MeshParts *parts, const MeshBody &body, tinygltf::Node &node)
 {
@@ -428,7 +428,7 @@ void add_copies(File &file, const MeshParts *parts, const MeshBody &body, tinygl
             const char *name = assembly->items[i].name ? assembly->items[i].name : body.name;
             int         mesh = add_mesh(file, parts, part, mirrored != 0, name);
             place_by_nodes(file.model, mesh, moving, lengths, node);
-            if (assembly->copies <= MOST_NODES)
+            if (assembly->copies <= MAX_NODES)
                 place_by_nodes(file.model, mesh, still, lengths, node);
             else if (!still.empty())
                 place_by_instances(file.model, mesh, still, lengths, node);

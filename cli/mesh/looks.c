@@ -12,9 +12,9 @@
 #include "cli/mesh/meshing.h"
 #include "compiler/base/vec.h"
 
-enum { PROBES = 256, MOST_LOOKS = 8, LOOK_NUMBERS = sizeof(MeshLook) / sizeof(double) };
+enum { PROBES = 256, MAX_LOOKS = 8, LOOK_NUMBERS = sizeof(MeshLook) / sizeof(double) };
 /* Parts of a property by which looks of triangles differ. */
-static const double LEAST_DIFFERENCE = 1e-3;
+static const double MIN_DIFFERENCE = 1e-3;
 
 /* The properties, and which numbers of a look they are. */
 typedef struct Property {
@@ -59,7 +59,7 @@ static bool differs(const MeshLook *a, const MeshLook *b, const Property *proper
     const double *x = (const double *)a + property->first;
     const double *y = (const double *)b + property->first;
     for (size_t i = 0; i < property->count; i++)
-        if (!(fabs(x[i] - y[i]) <= LEAST_DIFFERENCE * fmax(1, fabs(x[i]))))
+        if (!(fabs(x[i] - y[i]) <= MIN_DIFFERENCE * fmax(1, fabs(x[i]))))
             return true;
     return false;
 }
@@ -126,7 +126,7 @@ static uint32_t find_group(Groups *groups, const KrsHit *hit, const MeshLook *lo
         last = i;
         length++;
     }
-    if (length >= MOST_LOOKS) {
+    if (length >= MAX_LOOKS) {
         groups->varies[number] = true;
         return last - 1;
     }

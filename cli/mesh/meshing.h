@@ -14,16 +14,16 @@ enum { SPLIT_NONE, SPLIT_COMPONENTS, SPLIT_MATERIALS };
 
 /* Triangles that a file of copies may have where nobody asked for each of them, and one that is made in
    memory in any case. */
-#define MOST_TRIANGLES 10e6
+#define MAX_TRIANGLES 10e6
 /* Copies that a file may have. */
-#define MOST_INSTANCES 4194304
+#define MAX_INSTANCES 4194304
 
 /* A mesh, or meshes with copies: one of both. */
 typedef struct Body {
     KrsMesh     *mesh;
     KrsAssembly *assembly;
-    size_t       component;       /* from 1; 0: all that is shown */
-    KrsMesh     *lods[MOST_LODS]; /* levels of detail of the mesh, each coarser */
+    size_t       component;      /* from 1; 0: all that is shown */
+    KrsMesh     *lods[MAX_LODS]; /* levels of detail of the mesh, each coarser */
     size_t       lod_count;
     KrsBeam     *beams; /* instead of a mesh, with --beams */
     size_t       beam_count;

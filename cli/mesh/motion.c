@@ -11,10 +11,10 @@
 
 #include "cli/mesh/meshing.h"
 
-enum { MOST_HALVINGS = 10, PLACES = 7 };
+enum { MAX_HALVINGS = 10, PLACES = 7 };
 /* Of the time between two keyframes.  They are uneven, so that what shakes is not met at rest each time; one is the middle. */
 static const double SHARES[PLACES] = {0.083, 0.219, 0.347, 0.5, 0.638, 0.791, 0.926};
-static const double MOST_SAMPLES   = 1e7; /* copies times frames */
+static const double MAX_SAMPLES    = 1e7; /* copies times frames */
 
 typedef double Matrix[3][4];
 
@@ -30,10 +30,10 @@ typedef struct Motion {
     double         tolerance;
     double (*lows)[3], (*highs)[3]; /* boxes of the meshes of copies */
     Track  *tracks;
-    Matrix *places[MOST_HALVINGS + 1][PLACES];
-    bool   *wanting[MOST_HALVINGS + 1]; /* copies that need a keyframe in the middle */
-    Matrix *to;                         /* what is being sampled */
-    double  farthest;                   /* from where they belong that copies are, but in jumps */
+    Matrix *places[MAX_HALVINGS + 1][PLACES];
+    bool   *wanting[MAX_HALVINGS + 1]; /* copies that need a keyframe in the middle */
+    Matrix *to;                        /* what is being sampled */
+    double  farthest;                  /* from where they belong that copies are, but in jumps */
     size_t  jumps; /* times between the nearest keyframes in which a copy goes farther */
 } Motion;
 
@@ -146,7 +146,7 @@ static bool can_be_halved(const Motion *motion, const double frames[2])
 static KrsStatus refine(Motion *motion, const double frames[2], Matrix *const ends[2],
                         const bool *asked, int depth)
 {
-    const bool can = depth < MOST_HALVINGS && can_be_halved(motion, frames);
+    const bool can = depth < MAX_HALVINGS && can_be_halved(motion, frames);
     bool       any = false;
     make_room(motion, depth);
     Matrix  **places = motion->places[depth];
@@ -249,7 +249,7 @@ static KrsStatus find_tracks(Meshing *meshing, MeshBody *body)
                               .assembly  = body->assembly,
                               .copies    = copies,
                               .tolerance = assembly_error(body->assembly)};
-    if (body->assembly->copies * (options->last_frame - options->first_frame + 1.0) > MOST_SAMPLES)
+    if (body->assembly->copies * (options->last_frame - options->first_frame + 1.0) > MAX_SAMPLES)
         return say_usage(options, "`%s` has %zu copies, which are too many for so many --frames",
                          options->files.items[0], copies);
     motion.lows   = arena_alloc(arena, copies, sizeof *motion.lows);
@@ -297,10 +297,10 @@ typedef struct Named {
 
 static void add_name(Named *named, const char *name)
 {
-    enum { MOST_NAMED = 8 };
-    if (named->count < MOST_NAMED)
+    enum { MAX_NAMED = 8 };
+    if (named->count < MAX_NAMED)
         text_format(&named->names, "%s`%s`", named->count ? ", " : "", name);
-    else if (named->count == MOST_NAMED)
+    else if (named->count == MAX_NAMED)
         text_add(&named->names, " and others");
     named->count++;
 }

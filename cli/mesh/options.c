@@ -97,17 +97,17 @@ bool find_end(const Meshing *meshing, double *longest)
 /* A floor without an end is common, so the components that have one are named, unless they are many. */
 static KrsStatus refuse_endless(const Meshing *meshing)
 {
-    enum { MOST_NAMED = 8 };
+    enum { MAX_NAMED = 8 };
     Text   others = {.arena = meshing->options->arena};
     size_t named  = 0;
-    for (size_t i = 0; i < krs_component_count(meshing->scene) && named <= MOST_NAMED; i++) {
+    for (size_t i = 0; i < krs_component_count(meshing->scene) && named <= MAX_NAMED; i++) {
         KrsComponent component;
         krs_component(meshing->scene, i, &component);
         const double *low = component.low, *high = component.high;
         if (!isfinite((high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2])) ||
             !is_first_of_name(meshing, i))
             continue;
-        if (named++ < MOST_NAMED)
+        if (named++ < MAX_NAMED)
             text_format(&others, "%s`%s`", others.length ? ", " : "", component.name);
         else
             text_add(&others, " and others");

@@ -206,7 +206,7 @@ static void put_number(const Model *model, const char *name, double number)
 }
 
 /* Shorter beams are none, by the specification. */
-static double least_length(const MeshBody *body)
+static double min_length(const MeshBody *body)
 {
     double least = HUGE_VAL;
     for (size_t i = 0; i < body->beam_count; i++)
@@ -261,7 +261,7 @@ static void put_beams(const Model *model, const MeshBody *body, const size_t *ve
 {
     fputs("<b:beamlattice", model->out);
     put_number(model, "radius", body->beams[0].radii[0]);
-    put_number(model, "minlength", least_length(body));
+    put_number(model, "minlength", min_length(body));
     fputs(" cap=\"sphere\" clippingmode=\"none\">\n<b:beams>\n", model->out);
     for (size_t i = 0; i < body->beam_count; i++) {
         fprintf(model->out, "<b:beam v1=\"%zu\" v2=\"%zu\"", vertices[2 * i], vertices[2 * i + 1]);

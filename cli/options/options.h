@@ -17,9 +17,9 @@
 enum {
     MANY_FILES     = -1, /* a command that takes one or more files */
     MAYBE_A_WORD   = -2, /* one that takes a word, which is no file, or nothing */
-    MOST_LODS      = 8,  /* of --lods */
-    LEAST_BAKED    = 16, /* pixels of --bake */
-    MOST_BAKED     = 4096,
+    MAX_LODS       = 8,  /* of --lods */
+    MIN_BAKED      = 16, /* pixels of --bake */
+    MAX_BAKED      = 4096,
     OPTION_TEXT    = 256, /* bytes of what is said about an option, at most */
     DEVICE_TIMEOUT = 5    /* deadlines that one step of a device may take */
 };

@@ -12,7 +12,7 @@
 #include "cli/shell/console.h"
 #include "compiler/base/exr_chunks.h"
 
-enum { MOST_WANTED = 4 };
+enum { MAX_WANTED = 4 };
 
 /* A picture that is being read: `wanted` letters name channels, whose numbers go to `values`. */
 typedef struct Reading {
@@ -23,8 +23,8 @@ typedef struct Reading {
     float           *values; /* `count` for each pixel of the display window */
     exr_context_t    context;
     exr_attr_box2i_t data, display;
-    bool             found[MOST_WANTED];
-    float           *lines[MOST_WANTED]; /* of a chunk */
+    bool             found[MAX_WANTED];
+    float           *lines[MAX_WANTED]; /* of a chunk */
 } Reading;
 
 static KrsStatus say_result(const Reading *r, exr_result_t result)
@@ -46,7 +46,7 @@ static size_t letter_of(const Reading *r, const char *channel)
 
 /* Which of several channels with a letter is taken: the one without a layer, else the first. */
 static void choose_channels(const Reading *r, const exr_decode_pipeline_t *pipeline,
-                            int chosen[MOST_WANTED])
+                            int chosen[MAX_WANTED])
 {
     for (size_t i = 0; i < r->count; i++)
         chosen[i] = -1;
@@ -63,7 +63,7 @@ static void choose_channels(const Reading *r, const exr_decode_pipeline_t *pipel
 static void aim_channels(void *user, exr_decode_pipeline_t *pipeline)
 {
     Reading *r = user;
-    int      chosen[MOST_WANTED];
+    int      chosen[MAX_WANTED];
     choose_channels(r, pipeline, chosen);
     for (int c = 0; c < pipeline->channel_count; c++)
         pipeline->channels[c].decode_to_ptr = NULL;

@@ -14,7 +14,7 @@
 static const char input_name[] = "<stdin>";
 
 /* A little more than a scene may have: then the compiler refuses it. */
-enum { MOST_INPUT = 17 << 20 };
+enum { MAX_INPUT = 17 << 20 };
 
 static KrsStatus read_input(Options *options)
 {
@@ -22,7 +22,7 @@ static KrsStatus read_input(Options *options)
     Text        text = {.arena = options->arena};
     size_t      got  = 1;
     text_add(&text, "");
-    while (got > 0 && text.length <= MOST_INPUT) {
+    while (got > 0 && text.length <= MAX_INPUT) {
         got = fread(piece, 1, sizeof piece, stdin);
         text_add_bytes(&text, piece, got);
     }

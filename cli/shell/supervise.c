@@ -28,14 +28,14 @@
 #include "compiler/base/unchecked.h"
 
 /* Files that are removed when the command is killed; more of them are removed by the next run. */
-enum { MOST_OPEN = 32 };
+enum { MAX_OPEN = 32 };
 
 typedef struct Shared {
     atomic_int       stage;
     _Atomic uint64_t progress;  /* counts what is a step forward */
     atomic_int       resumable; /* whether a checkpoint is there */
     atomic_int       open;      /* files that are being written, each begun within the one before */
-    char             temporary[MOST_OPEN][4096];
+    char             temporary[MAX_OPEN][4096];
     char             size[256]; /* of what is compiled, in words */
     atomic_int       scarce;    /* the child crashed where an allocation had failed */
     atomic_int
@@ -162,7 +162,7 @@ KrsStatus write_output(const char *path, Fill *fill, const void *user)
     OutputFile *file = output_open(path, &interrupt_flag, &error);
     if (file) {
         const int before = atomic_load(&shared->open);
-        if (before < MOST_OPEN)
+        if (before < MAX_OPEN)
             snprintf(shared->temporary[before], sizeof shared->temporary[before], "%s",
                      output_temporary(file));
         atomic_store(&shared->open, before + 1);
@@ -472,7 +472,7 @@ static int run(Options *options, Work *work, const sigset_t *signals, const sigs
     watch->exited    = WIFEXITED(ended);
     const int status = watch->exited ? WEXITSTATUS(ended)
                                      : judge_death(options, watch, WTERMSIG(ended));
-    for (int i = 0; i < atomic_load(&shared->open) && i < MOST_OPEN; i++)
+    for (int i = 0; i < atomic_load(&shared->open) && i < MAX_OPEN; i++)
         unlink(shared->temporary[i]);
     atomic_store(&shared->open, 0);
     return status;

@@ -51,7 +51,7 @@ static bool is_repeat(const Diags *diags, DiagCode code, Span span)
     return false;
 }
 
-bool diags_full(const Diags *diags) { return diags->errors > MOST_DIAGS; }
+bool diags_full(const Diags *diags) { return diags->errors > MAX_DIAGS; }
 
 static Diag *diag_new(Diags *diags, DiagCode code, Span span)
 {
@@ -59,7 +59,7 @@ static Diag *diag_new(Diags *diags, DiagCode code, Span span)
     bool         retained = severity == DIAG_NOTE;
     if (!retained && !is_repeat(diags, code, span)) {
         size_t *count = severity == DIAG_ERROR ? &diags->errors : &diags->warnings;
-        retained      = ++*count <= MOST_DIAGS;
+        retained      = ++*count <= MAX_DIAGS;
     }
     Diag *diag = retained ? arena_new(diags->arena, Diag) : &diags->scrap;
     *diag      = (Diag){.code = code, .span = span, .message = ""};

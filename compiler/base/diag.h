@@ -61,10 +61,10 @@ typedef struct Diags {
     Diag           scrap;            /* takes a diagnostic that is not stored */
 } Diags;
 
-enum { MOST_DIAGS = 20 }; /* errors that are stored at most; as many warnings.  All notes are */
+enum { MAX_DIAGS = 20 }; /* errors that are stored at most; as many warnings.  All notes are */
 
 /* Adds a diagnostic, whose members behind `message` the caller may set.  Never NULL: a diagnostic
-   that is not stored goes to `scrap`.  These are all after the first MOST_DIAGS, which are counted,
+   that is not stored goes to `scrap`.  These are all after the first MAX_DIAGS, which are counted,
    and repeats of a code at one span, which are not.  Notes may repeat. */
 Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

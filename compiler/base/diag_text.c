@@ -313,8 +313,8 @@ void diags_print_text(const Diags *diags, bool color, Text *out)
         diag_print_one(diags, diags->items[i], color, out);
         text_add(out, "\n");
     }
-    if (diags->errors > MOST_DIAGS)
-        text_format(out, "too many errors, the first %d are shown", MOST_DIAGS);
+    if (diags->errors > MAX_DIAGS)
+        text_format(out, "too many errors, the first %d are shown", MAX_DIAGS);
     else if (diags->errors > 0)
         print_count(diags->errors, "error", out);
     if (diags->warnings > 0) {

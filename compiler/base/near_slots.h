@@ -14,7 +14,7 @@
 
 /* A table that is full becomes so many times as large: what is put into a larger one again is a third
    of what there is at last. */
-enum { SLOTS_OF_LINE = 8, LEAST_SLOTS = 64, SLOTS_GROWTH = 4 };
+enum { SLOTS_OF_LINE = 8, MIN_SLOTS = 64, SLOTS_GROWTH = 4 };
 
 /* A look at the hash is cheaper than one at the entry. */
 typedef struct NearSlot {

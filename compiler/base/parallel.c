@@ -26,12 +26,12 @@ size_t parallel_parts(void)
     if (sched_getaffinity(0, sizeof processors, &processors) != 0)
         return 1;
     size_t count = (size_t)CPU_COUNT(&processors);
-    return count < MOST_PARTS ? count : MOST_PARTS;
+    return count < MAX_PARTS ? count : MAX_PARTS;
 }
 
 void run_in_parallel(void (*work)(void *task, size_t part, size_t parts), void *task)
 {
-    Part   all[MOST_PARTS];
+    Part   all[MAX_PARTS];
     size_t parts = parallel_parts();
     for (size_t i = 0; i < parts; i++)
         all[i] = (Part){.work = work, .task = task, .number = i, .parts = parts};

@@ -6,11 +6,11 @@
 
 #include <stddef.h>
 
-enum { MOST_PARTS = 16 };
+enum { MAX_PARTS = 16 };
 
 /*
  * Calls work(task, part, parts) once for each part from 0 to parts - 1, at the same time, and returns
- * when all have ended.  There are as many parts as processors that this process may use, 1 to MOST_PARTS.
+ * when all have ended.  There are as many parts as processors that this process may use, 1 to MAX_PARTS.
  * Parts write to different places and allocate nothing.  Where no thread can be created the caller's
  * thread does the part.
  */

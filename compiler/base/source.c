@@ -140,7 +140,7 @@ char *source_read_open(int fd, size_t *length, const char **reason)
     size_t capacity = 0;
     *length         = 0;
     *reason         = NULL;
-    while (*length <= MOST_SOURCE_BYTES) { /* a limit, since devices have no end */
+    while (*length <= MAX_SOURCE_BYTES) { /* a limit, since devices have no end */
         if (*length == capacity) {
             capacity     = capacity ? 2 * capacity : 16384;
             char *larger = realloc(text, capacity);

@@ -369,7 +369,7 @@ static Value multiply_maps(Elaboration *e, const Syntax *syntax, const Map *a, c
         count++;
     for (const Map *map = b; map; map = map->first)
         count++;
-    if (count <= MOST_SHAPE_DEPTH)
+    if (count <= MAX_SHAPE_DEPTH)
         return value_map(map_product(e->builder, a, b));
     diag_add(e->diags, DIAG_LIMIT, syntax->span,
              "a product of more than 1,000 inversions that cannot be one map");

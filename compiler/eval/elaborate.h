@@ -64,7 +64,7 @@ typedef struct BuiltinName {
     bool            constant;
 } BuiltinName;
 
-enum { MOST_BUILTIN_NAMES = 512 };
+enum { MAX_BUILTIN_NAMES = 512 };
 
 /* What a file has that scenes name in an argument. */
 typedef struct FileBytes {
@@ -104,7 +104,7 @@ struct Elaboration {
     } read; /* files, bytes of which are no text */
     TextureKeys   textures;
     const Loader *loader;
-    BuiltinName   builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
+    BuiltinName   builtins[MAX_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
     bool     studio;   /* a scene without lights and sky gets those of the library, and a floor */
     bool     figures;  /* plane figures may be shown */
     bool     outlines; /* of polygons, also of those with few corners */
@@ -157,11 +157,11 @@ Definition *scope_find(const Scope *scope, const char *name);
 
 /* How far from the origin shapes, cameras and lights may be: single precision, in which devices
    compute, ends at 3e38, and its squares much earlier. */
-static const double MOST_EXTENT = 1e12;
+static const double MAX_EXTENT = 1e12;
 
 /* ---- expression.c ---- */
 /* Of one list. */
-enum { MOST_ELEMENTS = 4 * 1000 * 1000 };
+enum { MAX_ELEMENTS = 4 * 1000 * 1000 };
 /* Counts steps of evaluation; false when a limit is reached (reported once). */
 bool count_steps(Elaboration *e, uint64_t count, Span span);
 /* VALUE_ERROR: a mistake was found, and has been reported. */

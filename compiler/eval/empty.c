@@ -13,7 +13,7 @@
 #include "compiler/shape/slope.h"
 
 /* Of a component: operations on numbers, and cells that are open at once. */
-enum { MOST_OPERATIONS = 500000, MOST_CELLS = 64 };
+enum { MAX_OPERATIONS = 500000, MAX_CELLS = 64 };
 
 /* Placing and painting make nothing empty. */
 static const Shape *inside_wrappers(const Shape *shape)
@@ -60,16 +60,16 @@ static Box half_of(Box box, int half)
 
 static bool cells_are_empty(const Tape *tape, Node distance, Box box, NodeValue *values)
 {
-    Box    cells[MOST_CELLS] = {box};
-    size_t count             = 1;
-    for (size_t i = 0; count > 0 && i * tape->count < MOST_OPERATIONS; i++) {
+    Box    cells[MAX_CELLS] = {box};
+    size_t count            = 1;
+    for (size_t i = 0; count > 0 && i * tape->count < MAX_OPERATIONS; i++) {
         Box    cell = cells[--count];
         double middle[3];
         box_centre(cell, middle);
         double at = value_at(tape, distance, middle, values);
         if (at > 0.5 * box_diagonal(cell))
             continue;
-        if (!(at > 0) || count + 2 > MOST_CELLS)
+        if (!(at > 0) || count + 2 > MAX_CELLS)
             return false;
         cells[count++] = half_of(cell, 0);
         cells[count++] = half_of(cell, 1);
@@ -78,11 +78,11 @@ static bool cells_are_empty(const Tape *tape, Node distance, Box box, NodeValue 
 }
 
 /* Tells whether a sharp union of distances has this one. */
-static bool least_has(const Graph *g, Node least, Node distance)
+static bool min_has(const Graph *g, Node least, Node distance)
 {
     const Expr *e = &g->items[least];
-    return least == distance || (e->op == OP_min && (least_has(g, e->operands[0], distance) ||
-                                                     least_has(g, e->operands[1], distance)));
+    return least == distance || (e->op == OP_min && (min_has(g, e->operands[0], distance) ||
+                                                     min_has(g, e->operands[1], distance)));
 }
 
 /* Tells whether a shape is taken from itself: that leaves its surface, by which rays would be caught. */
@@ -94,7 +94,7 @@ static bool is_cancelled(const Graph *g, Node distance)
         return false;
     for (int k = 0; k < 2; k++) {
         const Expr *from = &g->items[least->operands[k]];
-        if (from->op == OP_neg && least_has(g, least->operands[1 - k], from->operands[0]))
+        if (from->op == OP_neg && min_has(g, least->operands[1 - k], from->operands[0]))
             return true;
     }
     return false;
@@ -104,7 +104,7 @@ static bool is_cancelled(const Graph *g, Node distance)
 static bool is_nowhere(Elaboration *e, const Shape *shape)
 {
     Graph   *g     = e->graph;
-    Lowering l     = {.graph = g, .scratch = e->scratch, .most = g->count + MOST_LOWERED};
+    Lowering l     = {.graph = g, .scratch = e->scratch, .most = g->count + MAX_LOWERED};
     Lowered  all   = lower_shape(&l, shape, context_new(graph_leaf(g, OP_POINT), true));
     bool     empty = all.distance == NODE_NONE || is_cancelled(g, all.distance);
     if (!l.overflow && !empty) {

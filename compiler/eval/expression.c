@@ -6,9 +6,9 @@
 #include <math.h>
 
 enum {
-    MOST_STEPS = 200 * 1000 * 1000,
-    MOST_DEPTH = 4000,
-    MOST_NODES = 500 * 1000 /* from one shape to the next */
+    MAX_STEPS = 200 * 1000 * 1000,
+    MAX_DEPTH = 4000,
+    MAX_NODES = 500 * 1000 /* from one shape to the next */
 };
 
 static Value limit_reached(Elaboration *e, Span span, const char *message)
@@ -22,16 +22,16 @@ static Value limit_reached(Elaboration *e, Span span, const char *message)
 bool count_steps(Elaboration *e, uint64_t count, Span span)
 {
     e->steps += count;
-    if (!is_stopped(e) && e->steps > MOST_STEPS)
+    if (!is_stopped(e) && e->steps > MAX_STEPS)
         limit_reached(e, span, "the scene takes more than 200 million steps to elaborate");
-    if (!is_stopped(e) && e->graph->count - e->builder->nodes_before > MOST_NODES)
+    if (!is_stopped(e) && e->graph->count - e->builder->nodes_before > MAX_NODES)
         limit_reached(e, span, "the expressions of a shape have more than 500,000 operations");
     return !is_stopped(e);
 }
 
 bool check_shape_count(Elaboration *e, const List *list, Span span)
 {
-    if (list->total > MOST_TREE_SHAPES)
+    if (list->total > MAX_TREE_SHAPES)
         limit_reached(e, span,
                       "a list of more than 4 million shapes, counted as often as they occur");
     return !is_stopped(e);
@@ -106,7 +106,7 @@ static bool each_of_range(Elaboration *e, const Environment *env, const Syntax *
     if (!constant_number(e, env, syntax->children[0], "the start of a range", &from) ||
         !constant_number(e, env, syntax->children[1], "the end of a range", &to))
         return false;
-    if (to - from > MOST_ELEMENTS) {
+    if (to - from > MAX_ELEMENTS) {
         limit_reached(e, syntax->span,
                       diag_text(e->diags, "a range of %.0f elements; the limit is 4 million",
                                 ceil(to - from)));
@@ -159,7 +159,7 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
         if (value.type == VALUE_ERROR)
             return false;
         evaluation_forget(e, c->mark, &value);
-        if (c->result->count >= MOST_ELEMENTS) {
+        if (c->result->count >= MAX_ELEMENTS) {
             limit_reached(e, c->syntax->span, "a list of more than 4 million elements");
             return false;
         }
@@ -324,7 +324,7 @@ Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     if (!count_steps(e, 1, syntax->span))
         return value_error();
-    if (e->depth >= MOST_DEPTH)
+    if (e->depth >= MAX_DEPTH)
         return limit_reached(e, syntax->span,
                              "evaluation is nested too deeply, perhaps by a function that calls "
                              "itself without end");

@@ -7,7 +7,7 @@
 #include "compiler/base/paths.h"
 #include "compiler/eval/elaborate.h"
 
-enum { MOST_FILE_BYTES = 64 << 20 };
+enum { MAX_FILE_BYTES = 64 << 20 };
 
 /* "folder/file.ttf" for a name in a call in "folder/scene.krs". */
 static const char *path_beside(Elaboration *e, const Syntax *syntax, const char *name)
@@ -36,7 +36,7 @@ static void refuse_file(Elaboration *e, const Syntax *syntax, const char *path,
 
 static bool is_too_large(Elaboration *e, const Syntax *syntax, size_t length)
 {
-    if (length <= MOST_FILE_BYTES)
+    if (length <= MAX_FILE_BYTES)
         return false;
     diag_add(e->diags, DIAG_LIMIT, syntax->span, "too large a file: 64 MiB are possible");
     return true;
@@ -86,7 +86,7 @@ bool read_system_file(Elaboration *e, const char *path, FileBytes *bytes)
     if (find_read(e, path, bytes))
         return true;
     Loaded loaded = loader_read(&system, path);
-    if (loaded.text && loaded.length <= MOST_FILE_BYTES) {
+    if (loaded.text && loaded.length <= MAX_FILE_BYTES) {
         keep_bytes(e, path, &loaded, bytes);
         sources_note_file(e->sources, path, bytes->bytes, bytes->length);
     }

@@ -115,7 +115,7 @@ static uint32_t latest_of(const uint64_t *words)
 static void grow(struct Derivations *all, Arena *arena)
 {
     const NearSlots old = all->slots;
-    all->slots.count    = old.count ? SLOTS_GROWTH * old.count : LEAST_SLOTS;
+    all->slots.count    = old.count ? SLOTS_GROWTH * old.count : MIN_SLOTS;
     all->slots.items    = arena_new_array(arena, NearSlot, all->slots.count);
     for (size_t i = 0; i < old.count; i++) {
         const NearSlot *slot = &old.items[i];

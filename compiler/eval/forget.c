@@ -34,11 +34,11 @@ static bool stands_alone(Value value)
 }
 
 /* Lists as long as a vector are copied. */
-enum { MOST_COPIED = 4 };
+enum { MAX_COPIED = 4 };
 
 static bool is_copied(Value value)
 {
-    if (value.type != VALUE_LIST || value.list->count > MOST_COPIED)
+    if (value.type != VALUE_LIST || value.list->count > MAX_COPIED)
         return false;
     for (size_t i = 0; i < value.list->count; i++)
         if (!stands_alone(value.list->items[i]))
@@ -61,7 +61,7 @@ void evaluation_forget(Elaboration *e, EvaluationMark mark, Value *result)
     if (e->kept != mark.kept || (result && !copied && !stands_alone(*result)))
         return;
     List  list = {0};
-    Value items[MOST_COPIED];
+    Value items[MAX_COPIED];
     if (copied) {
         list = *result->list;
         memcpy(items, list.items, list.count * sizeof *items);

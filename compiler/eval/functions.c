@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { MOST_CALLS = 1000 };
+enum { MAX_CALLS = 1000 };
 
 uint32_t parameter_count(const Syntax *definition)
 {
@@ -232,7 +232,7 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
                          const Syntax *const *origins, const Syntax *syntax)
 {
     const CalledFunction call = {function, syntax, e->called};
-    if (e->calls >= MOST_CALLS) {
+    if (e->calls >= MAX_CALLS) {
         if (!is_stopped(e))
             report_depth(e, &call);
         e->builder->stopped = true;

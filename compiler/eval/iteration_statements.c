@@ -64,9 +64,9 @@ static bool evaluate_body(Elaboration *e, const Environment *env, Iterated *t)
 static bool take_witnesses(const Elaboration *e, size_t shown, Iterated *t)
 {
     const size_t count = e->scene->components.count - shown;
-    for (size_t k = 0; count <= MOST_ITERATION_PARTS && k < count; k++)
+    for (size_t k = 0; count <= MAX_ITERATION_PARTS && k < count; k++)
         t->parts[t->part_count++].witness = e->scene->components.items[shown + k].shape;
-    return count <= MOST_ITERATION_PARTS;
+    return count <= MAX_ITERATION_PARTS;
 }
 
 bool statement_iterations_made(Elaboration *e, const Environment *env, const Syntax *loop,

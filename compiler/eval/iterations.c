@@ -16,7 +16,7 @@
 #include "compiler/shape/iteration_boxes.h"
 
 /* Of loops made at once: each takes a slot of the parameter block. */
-enum { MOST_LOOPS = 256, MOST_CONDITIONS = 8, MOST_SHARED_SHAPES = 4096 };
+enum { MAX_LOOPS = 256, MAX_CONDITIONS = 8, MAX_SHARED_SHAPES = 4096 };
 
 /* ---- what may be tried ---- */
 
@@ -37,7 +37,7 @@ static bool is_joined(const Elaboration *e, const Syntax *comprehension)
 
 bool iterations_are_tried(const Elaboration *e)
 {
-    return e->iterations && e->iterations->loops < MOST_LOOPS && e->iteration == NODE_NONE;
+    return e->iterations && e->iterations->loops < MAX_LOOPS && e->iteration == NODE_NONE;
 }
 
 bool iterations_possible(const Elaboration *e, const Syntax *comprehension)
@@ -45,7 +45,7 @@ bool iterations_possible(const Elaboration *e, const Syntax *comprehension)
     const Syntax *first = comprehension->children[1];
     if (!iterations_are_tried(e) || !is_joined(e, comprehension) ||
         first->kind != SYNTAX_FOR_CLAUSE || first->children[0]->kind != SYNTAX_RANGE ||
-        comprehension->count > 2 + MOST_CONDITIONS)
+        comprehension->count > 2 + MAX_CONDITIONS)
         return false;
     for (uint32_t i = 2; i < comprehension->count; i++)
         if (comprehension->children[i]->kind == SYNTAX_FOR_CLAUSE)
@@ -165,7 +165,7 @@ bool iteration_condition(Elaboration *e, Iterated *t, Value condition)
     if (condition.type != VALUE_EXPRESSION)
         return false;
     const Expr *expr = &e->graph->items[condition.node];
-    if (expr->type != TYPE_BOOL || expr->time != TIME_FRAME || t->roots.count == MOST_CONDITIONS)
+    if (expr->type != TYPE_BOOL || expr->time != TIME_FRAME || t->roots.count == MAX_CONDITIONS)
         return false;
     array_push(e->values, &t->roots, condition.node);
     return true;
@@ -376,7 +376,7 @@ static bool any_is_missed(const IterationBody *body, const Box *boxes, size_t co
 static bool part_is_shared(const Elaboration *e, const Iterated *t, const IterationPart *part)
 {
     return is_like(part->shape, part->witness) && goes_with_csg_node(t->body, part->shape) &&
-           part->shape->tree_shapes <= MOST_SHARED_SHAPES && may_be_shared(e, part->shape);
+           part->shape->tree_shapes <= MAX_SHARED_SHAPES && may_be_shared(e, part->shape);
 }
 
 static bool find_boxes(Elaboration *e, const Iterated *t, IterationPart *part)

@@ -6,7 +6,7 @@
 
 #include "compiler/eval/elaborate.h"
 
-enum { MOST_ITERATION_PARTS = 8 };
+enum { MAX_ITERATION_PARTS = 8 };
 
 /* One of the shapes that each iteration gives. */
 typedef struct IterationPart {
@@ -33,7 +33,7 @@ typedef struct IterationBody {
 /* The loop with a leaf in the place of its variable. */
 struct Iterated {
     const IterationBody *body;
-    IterationPart        parts[MOST_ITERATION_PARTS];
+    IterationPart        parts[MAX_ITERATION_PARTS];
     size_t part_count, found; /* those that the first iteration gave; that are evaluated */
     Node   leaf;
     Nodes  roots; /* conditions of the loop; what must hold; what may not be finite */

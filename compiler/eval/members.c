@@ -19,14 +19,14 @@ static Value element(Elaboration *e, Value list, size_t index)
 
 /* Letters of points and of colours, in the order of the components. */
 static const char *const alphabets[] = {"xyzw", "rgba"};
-enum { ALPHABETS = sizeof alphabets / sizeof *alphabets, MOST_LETTERS = 4 };
+enum { ALPHABETS = sizeof alphabets / sizeof *alphabets, MAX_LETTERS = 4 };
 
 /* The alphabet that all letters of a name are from; NULL: no name of components. */
 static const char *alphabet_of(const char *name)
 {
     size_t length = strlen(name);
     for (size_t i = 0; i < ALPHABETS; i++)
-        if (length >= 1 && length <= MOST_LETTERS && strspn(name, alphabets[i]) == length)
+        if (length >= 1 && length <= MAX_LETTERS && strspn(name, alphabets[i]) == length)
             return alphabets[i];
     return NULL;
 }
@@ -92,7 +92,7 @@ Value record_member(Elaboration *e, const Record *record, const char *name, Span
 /* ---- indices ---- */
 
 /* An index of frames chooses from all elements, which are all computed. */
-enum { MOST_CHOSEN = 256 };
+enum { MAX_CHOSEN = 256 };
 
 static Value index_record(Elaboration *e, const Record *record, Value name, const Syntax *index)
 {
@@ -222,7 +222,7 @@ static Value frame_index(Elaboration *e, const Syntax *syntax, Value list, size_
         point_error(e, where, "an index");
         return value_error();
     }
-    if (count > MOST_CHOSEN) {
+    if (count > MAX_CHOSEN) {
         constant_error(e, where,
                        "an index of a list of more than 256 must be known at compile time");
         return value_error();

@@ -7,9 +7,9 @@
 #include <string.h>
 
 enum {
-    MOST_PRINTED = 100, /* notes of one scene */
-    MOST_LINE    = 400, /* bytes of a value that is printed; the rest is left out */
-    MOST_STRING  = 64 * 1024
+    MAX_PRINTED = 100, /* notes of one scene */
+    MAX_LINE    = 400, /* bytes of a value that is printed; the rest is left out */
+    MAX_STRING  = 64 * 1024
 };
 
 /* ---- values as text ---- */
@@ -116,8 +116,8 @@ Value builtin_str(Elaboration *e, Call *call)
             constant_error(e, call->rest[i].syntax, "a string must be known at compile time");
             return value_error();
         }
-    Text text = join_arguments(e, call, "", MOST_STRING);
-    if (text.length <= MOST_STRING)
+    Text text = join_arguments(e, call, "", MAX_STRING);
+    if (text.length <= MAX_STRING)
         return value_string(e, text.bytes, text.length);
     Diag *diag  = diag_add(e->diags, DIAG_LIMIT, call->syntax->span, "a string of more than 64 KB");
     diag->label = "this is too long";
@@ -134,17 +134,17 @@ Value value_string(Elaboration *e, const char *bytes, size_t length)
 /* What is printed or said: the values with blanks between, cut where that is long. */
 static const char *line_of(Elaboration *e, const Call *call)
 {
-    Text text = join_arguments(e, call, " ", MOST_LINE);
-    if (text.length > MOST_LINE)
+    Text text = join_arguments(e, call, " ", MAX_LINE);
+    if (text.length > MAX_LINE)
         text_add(&text, " ...");
     return text.bytes;
 }
 
 static void run_print(Elaboration *e, const Call *call)
 {
-    if (++e->printed > MOST_PRINTED + 1)
+    if (++e->printed > MAX_PRINTED + 1)
         return;
-    bool        more = e->printed > MOST_PRINTED;
+    bool        more = e->printed > MAX_PRINTED;
     const char *line = more ? "more is printed, and left out here" : line_of(e, call);
     diag_add(e->diags, DIAG_PRINTED, call->syntax->span, "%s", line);
 }

@@ -169,7 +169,7 @@ Node position_property(Elaboration *e, const Environment *env, const Syntax *blo
         Range  range = node_range(e->builder, position, i);
         double far   = fmax(isfinite(range.low) ? fabs(range.low) : 0,
                           isfinite(range.high) ? fabs(range.high) : 0);
-        if (far <= MOST_EXTENT)
+        if (far <= MAX_EXTENT)
             continue;
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
                                "`%s` reaches to %.3g on the %c axis", name, far, "xyz"[i]);

@@ -12,9 +12,9 @@
 
 /* Fewer iterations of a `show` in a loop stay apart, and fewer shapes of one form: each is then marched for
    itself, and left out where it is far.  Forms become one only where an instance group may come of it. */
-enum { LEAST_ITERATIONS = 32, LEAST_OF_A_FORM = 64 };
+enum { MIN_ITERATIONS = 32, MIN_OF_A_FORM = 64 };
 /* Of a tree of shapes, as much as its form is told by. */
-enum { MOST_FORM_SHAPES = 64 };
+enum { MAX_FORM_SHAPES = 64 };
 
 static bool can_be_gathered(const Component *component)
 {
@@ -102,14 +102,14 @@ static void find_groups(Gathering *g)
         if (can_be_gathered(&g->shown[i]))
             g->keys[keys++] = (Key){hash_of_place(&g->shown[i]), i};
     }
-    group(g, keys, LEAST_ITERATIONS);
+    group(g, keys, MIN_ITERATIONS);
     keys = 0;
     for (size_t i = 0; i < g->count; i++) {
-        int left = MOST_FORM_SHAPES;
+        int left = MAX_FORM_SHAPES;
         if (can_be_gathered(&g->shown[i]) && is_alone(g, i))
             g->keys[keys++] = (Key){hash_of_form(g->shown[i].shape, &left), i};
     }
-    group(g, keys, LEAST_OF_A_FORM);
+    group(g, keys, MIN_OF_A_FORM);
 }
 
 /* The union of a group, in which each knows its number. */

@@ -88,7 +88,7 @@ static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *synta
         Range  axis  = shape->box.axis[i];
         double reach = fmax(isfinite(axis.low) ? fabs(axis.low) : 0,
                             isfinite(axis.high) ? fabs(axis.high) : 0);
-        if (reach <= MOST_EXTENT)
+        if (reach <= MAX_EXTENT)
             continue;
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
                                "the shape reaches to %.3g on the %c axis", reach, "xyz"[i]);

@@ -134,7 +134,7 @@ static const char *bytes_instead(Elaboration *e, const double color[3])
 }
 
 /* The largest part of a colour is at least this if it counts bytes; lights may be a little above 1. */
-enum { LEAST_BYTE = 16 };
+enum { MIN_BYTE = 16 };
 
 /* Iterations with colours that earn the warning are made by themselves. */
 static void require_colour(Elaboration *e, Value value)
@@ -169,7 +169,7 @@ void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, co
                                  "a colour of %g, but the parts of a colour go from 0 to 1", most);
     diag->label       = "this is brighter than white";
     diag->help        = help;
-    const char *bytes = most >= LEAST_BYTE ? bytes_instead(e, color) : NULL;
+    const char *bytes = most >= MIN_BYTE ? bytes_instead(e, color) : NULL;
     if (bytes)
         diag->help = diag_text(e->diags, "a colour of bytes has `#` and six digits: `%s`", bytes);
     if (syntax->kind == SYNTAX_LIST)

@@ -48,26 +48,26 @@ static uint32_t bend_segments(Box box, Range rate)
 {
     double turn = range_largest(rate) * (box.axis[1].high - box.axis[1].low);
     double most = ceil(turn / (0.5 * M_PI) - 1e-9);
-    return most > 1 ? (uint32_t)fmin(most, MOST_BEND_SEGMENTS + 1) : 1;
+    return most > 1 ? (uint32_t)fmin(most, MAX_BEND_SEGMENTS + 1) : 1;
 }
 
 /* A bend with the rate k has its axis at z = 1 / k, where all lengths vanish; this much must be
    left of them. */
-static const double LEAST_LENGTH = 0.01;
+static const double MIN_LENGTH = 0.01;
 
 static bool check_bend(ShapeBuilder *builder, const DeformArguments *asked, Box box, Range rate)
 {
     Range z = box.axis[2], shrink = range_mul(rate, z);
-    bool  reaches = !(shrink.high <= 1 - LEAST_LENGTH);
-    if (!reaches && bend_segments(box, rate) <= MOST_BEND_SEGMENTS)
+    bool  reaches = !(shrink.high <= 1 - MIN_LENGTH);
+    if (!reaches && bend_segments(box, rate) <= MAX_BEND_SEGMENTS)
         return true;
-    double most = 0.5 * M_PI * MOST_BEND_SEGMENTS / (box.axis[1].high - box.axis[1].low);
-    double high = z.high > 0 ? (1 - LEAST_LENGTH) / z.high : INFINITY;
-    double low  = z.low < 0 ? (1 - LEAST_LENGTH) / z.low : -INFINITY;
+    double most = 0.5 * M_PI * MAX_BEND_SEGMENTS / (box.axis[1].high - box.axis[1].low);
+    double high = z.high > 0 ? (1 - MIN_LENGTH) / z.high : INFINITY;
+    double low  = z.low < 0 ? (1 - MIN_LENGTH) / z.low : -INFINITY;
     Diag  *diag = diag_add(builder->diags, DIAG_BAD_VALUE, asked->number_spans[0],
                           reaches ? "so bent, the shape would reach the axis of the bend"
                                    : "so bent, the shape would turn around more than %d times",
-                           MOST_BEND_SEGMENTS / 4);
+                           MAX_BEND_SEGMENTS / 4);
     diag->label = range_is_single(rate) ? diag_text(builder->diags, "this is %g", rate.low)
                   : isinf(rate.low) && isinf(rate.high)
                       ? "this can be any number"
@@ -78,7 +78,7 @@ static bool check_bend(ShapeBuilder *builder, const DeformArguments *asked, Box 
 }
 
 /* Of what is bent, in lengths that it had. */
-static double least_length(Box box, Range rate)
+static double min_length(Box box, Range rate)
 {
     return fmin(1 - range_mul(rate, box.axis[2]).high, 1);
 }
@@ -86,9 +86,9 @@ static double least_length(Box box, Range rate)
 /* The region stays well away from the axis of the bend. */
 static const Shape *in_bend_region(ShapeBuilder *builder, const Shape *shape, Range rate)
 {
-    double       most  = 0.5 * least_length(shape->box, rate) / fmax(range_largest(rate), 1e-9);
+    double       most  = 0.5 * min_length(shape->box, rate) / fmax(range_largest(rate), 1e-9);
     const Shape *child = in_region(builder, shape, most);
-    return bend_segments(child->box, rate) <= MOST_BEND_SEGMENTS ? child : shape;
+    return bend_segments(child->box, rate) <= MAX_BEND_SEGMENTS ? child : shape;
 }
 
 static const Shape *bend_upright(ShapeBuilder *builder, const Shape *shape,
@@ -105,7 +105,7 @@ static const Shape *bend_upright(ShapeBuilder *builder, const Shape *shape,
     /* Segments overlap by the depth of the solid, so that they have no walls between them. */
     double depth  = 0.5 * (shape->box.axis[2].high - shape->box.axis[2].low);
     bent->overlap = fmin(depth, 0.6 / fmax(range_largest(rate), 1e-9));
-    double least  = least_length(child->box, rate);
+    double least  = min_length(child->box, rate);
     bent->divided = (1 + COST_OF_WEIGHT) / least;
     return bent;
 }

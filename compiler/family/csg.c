@@ -30,7 +30,7 @@ static uint32_t acting_at_once(ShapeBuilder *builder, const Shape *csg_node)
     Box      *boxes = arena_new_array(builder->scratch, Box, count);
     for (uint32_t i = solid; i < count; i++)
         boxes[i - solid] = csg_node->children[i]->box;
-    uint32_t most = most_overlap(boxes, count - solid, fmax(far, 0), builder->scratch);
+    uint32_t most = max_overlap(boxes, count - solid, fmax(far, 0), builder->scratch);
     arena_rewind(builder->scratch, mark);
     return solid + most < at_once ? solid + most : at_once;
 }

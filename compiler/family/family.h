@@ -57,7 +57,7 @@ const Shape *make_elongate(ShapeBuilder *builder, const Shape *shape, Node half,
 const Shape *make_extrude(ShapeBuilder *builder, const Shape *figure, Node height, Span span);
 const Shape *make_revolve(ShapeBuilder *builder, const Shape *figure, Node offset, Span span);
 /* Whole numbers of cells without end are from -2^23 to 2^23; beyond, all are called like the last. */
-static const double MOST_CELL_NUMBER = 8388608;
+static const double MAX_CELL_NUMBER = 8388608;
 /* The shape may depend on its cell: on a VEC3 parameter of its own, `cell`, whose range is that of the
    numbers of cells, from 0 on axes with a count; else `cell` is NODE_NONE.  NULL: the shape does not
    fit its cell, which is reported. */

@@ -48,7 +48,7 @@ static const Shape *refuse_polynomial(ShapeBuilder *builder, SeriesFault fault, 
     if (fault.degree > 0) {
         Diag *diag  = diag_add(builder->diags, DIAG_NOT_POLYNOMIAL, blame,
                                "a polynomial of degree %u is too high", fault.degree);
-        diag->label = diag_text(builder->diags, "at most %d are possible", MOST_DEGREE);
+        diag->label = diag_text(builder->diags, "at most %d are possible", MAX_DEGREE);
         return NULL;
     }
     Diag       *diag = diag_add(builder->diags, DIAG_NOT_POLYNOMIAL, blame,

@@ -45,7 +45,7 @@ static double slope_over(ShapeBuilder *builder, Node node, Box box, uint32_t cel
 
 /* ---- heads of sums ---- */
 
-enum { MOST_TERMS = 12 };
+enum { MAX_TERMS = 12 };
 
 typedef struct Term {
     Node   node;
@@ -56,7 +56,7 @@ typedef struct Term {
 typedef struct Terms {
     Graph   *graph;
     uint32_t count;
-    Term     items[MOST_TERMS];
+    Term     items[MAX_TERMS];
 } Terms;
 
 /* Looks at no more than *nodes: expressions are shared, and there may be far more ways through one
@@ -88,8 +88,8 @@ static void add_terms(Terms *terms, Node node, Node factor)
 {
     Graph *g = terms->graph;
     Expr   e = g->items[node];
-    if (!has_terms(g, node) || terms->count + 2 > MOST_TERMS) {
-        if (terms->count < MOST_TERMS)
+    if (!has_terms(g, node) || terms->count + 2 > MAX_TERMS) {
+        if (terms->count < MAX_TERMS)
             terms->items[terms->count].node = mul(g, factor, node);
         terms->count++;
         return;
@@ -131,7 +131,7 @@ static Terms terms_of(ShapeBuilder *builder, Node formula, Box box)
 {
     Terms terms = {.graph = builder->graph};
     add_terms(&terms, formula, graph_number(builder->graph, 1));
-    if (terms.count > MOST_TERMS)
+    if (terms.count > MAX_TERMS)
         terms.count = 0;
     for (uint32_t i = 0; i < terms.count; i++) {
         Term  *term  = &terms.items[i];
@@ -164,7 +164,7 @@ static Node by_heads(ShapeBuilder *builder, Node formula, Box box)
 {
     Graph *g     = builder->graph;
     Terms  terms = terms_of(builder, formula, box);
-    Node   heads[MOST_TERMS], longest = NODE_NONE;
+    Node   heads[MAX_TERMS], longest = NODE_NONE;
     Range  rest = {0, 0};
     for (uint32_t i = 0; i < terms.count; i++)
         heads[i] = i == 0 ? terms.items[0].node : add(g, heads[i - 1], terms.items[i].node);
@@ -220,7 +220,7 @@ typedef struct TrialMarch {
     Arena           *scratch;
 } TrialMarch;
 
-enum { MARCHED_RAYS = 24, MOST_STEPS = 96 };
+enum { MARCHED_RAYS = 24, MAX_STEPS = 96 };
 
 typedef struct TrialRay {
     double from[3], direction[3];
@@ -275,14 +275,14 @@ static double length_through(Box box, const TrialRay *ray)
 
 /* Evaluations up to the surface or the sides of the box.  As the tracer's, a step is as long as
    balls of empty space around its ends are expected to meet, and is taken back if they do not.
-   When MOST_STEPS do not suffice, the others are taken to be as long. */
+   When MAX_STEPS do not suffice, the others are taken to be as long. */
 static double count_steps(const TrialMarch *m, const Tape *tape, Node root, const TrialRay *ray,
                           NodeValue *values)
 {
     double   t = 0, step = 0, change = -1;
     double   radius = distance_along(m, tape, root, ray, 0, values);
     uint32_t count  = 1;
-    for (; radius > 0 && count < MOST_STEPS; count++) {
+    for (; radius > 0 && count < MAX_STEPS; count++) {
         double usual = fmax(radius, m->least);
         step         = fmax(usual, 2 * radius / (1 - change));
         double next  = distance_along(m, tape, root, ray, t + step, values);

@@ -97,7 +97,7 @@ static Node falloff_at(Graph *g, FalloffKind kind, Node t)
 enum { FACE_POINTS = 7, FACE_LEVELS = 3 };
 
 /* Beyond it, steps would be too short, and a box shows. */
-static const double MOST_STRETCH = 12;
+static const double MAX_STRETCH = 12;
 
 /* The values of parameters in the middle of their ranges. */
 static NodeValue *middle_parameters(const Graph *g, Arena *scratch)
@@ -136,7 +136,7 @@ static double stretch_around(const Tape *tape, Node distance, Box box, double re
         double v     = cell / FACE_POINTS / (FACE_POINTS - 1.0);
         point_above(box, face % 6, u, v, above, point);
         tape_run_point(tape, point, values);
-        most = fmax(most, fmin(above / fmax(values[distance].v[0], 1e-30), MOST_STRETCH));
+        most = fmax(most, fmin(above / fmax(values[distance].v[0], 1e-30), MAX_STRETCH));
     }
     return most;
 }

@@ -118,7 +118,7 @@ typedef struct Lattice {
     Node   shifted;   /* coordinate, moved so that cells have whole numbers */
     Node   low, high; /* numbers of the first and the last cell; NODE_NONE: endless */
     double margin;    /* of the content */
-    double least_period;
+    double min_period;
     bool   repeats;
 } Lattice;
 
@@ -136,11 +136,11 @@ static Lattice lattice_of(Lowering *l, const Shape *shape, LowerContext context,
     cells.shifted = graph_component(g, context.point, axis);
     if (!cells.repeats)
         return cells;
-    cells.period       = graph_component(g, shape->values[0], axis);
-    cells.least_period = frame_range(l, cells.period).low;
-    Range content      = shape->children[0]->box.axis[axis];
-    cells.margin       = cell_margin(content, cells.least_period);
-    uint32_t count     = shape->cells[axis];
+    cells.period     = graph_component(g, shape->values[0], axis);
+    cells.min_period = frame_range(l, cells.period).low;
+    Range content    = shape->children[0]->box.axis[axis];
+    cells.margin     = cell_margin(content, cells.min_period);
+    uint32_t count   = shape->cells[axis];
     /* An even number of copies is centred between two of them. */
     if (count && count % 2 == 0) {
         Node half     = graph_number(g, 0.5);
@@ -222,7 +222,7 @@ static Node cell_number(Graph *g, const Shape *shape, const Lattice *cells, Node
         return graph_number(g, 0);
     if (cells->low != NODE_NONE)
         return graph_op2(g, OP_sub, number, cells->low);
-    Node end = graph_number(g, MOST_CELL_NUMBER), start = graph_number(g, -MOST_CELL_NUMBER);
+    Node end = graph_number(g, MAX_CELL_NUMBER), start = graph_number(g, -MAX_CELL_NUMBER);
     return graph_op3(g, OP_clamp, number, start, end);
 }
 
@@ -305,7 +305,7 @@ static CellAxis lower_axis(Lowering *l, const Shape *shape, LowerContext context
     if (!cells.repeats)
         return axis;
     CellRule rule  = choose_cell_rule(l, content, graph_leaf(g, OP_POINT), i, cells.margin,
-                                      cells.least_period, varies, context);
+                                      cells.min_period, varies, context);
     axis.neighbour = rule == NEIGHBOURS;
     if (axis.neighbour) {
         axis.other        = in_neighbour(g, &cells, axis.own, number, &next);

@@ -116,7 +116,7 @@ const Shape *make_krs(ShapeBuilder *builder, const SequenceStage *stages, uint32
 
 /* ---- distances ---- */
 
-enum { MOST_HEAP_MIRRORS = 31 };
+enum { MAX_HEAP_MIRRORS = 31 };
 
 /* The state between two stages of a sequence, from the last to the first.  Distances behind a mirror
    that is a sphere come out of it together.  So what is behind is a part with a state of its own. */
@@ -186,7 +186,7 @@ static void watch_orbit(Lowering *l, SequenceState *state)
 /* The next bit of the instance: whether a mirror is passed. */
 static void push_bit(Lowering *l, SequenceState *state, Node behind)
 {
-    Op next   = state->krs->levels <= MOST_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
+    Op next   = state->krs->levels <= MAX_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
     state->id = graph_op2(l->graph, next, state->id, behind);
 }
 

@@ -5,7 +5,7 @@
 
 #include "compiler/base/vec.h"
 
-enum { FEW = 4, MOST_DEPTH = 64 };
+enum { FEW = 4, MAX_DEPTH = 64 };
 
 static void triangle_corners(const Bvh *bvh, uint32_t triangle, double corners[3][3])
 {
@@ -59,7 +59,7 @@ static void build(Bvh *bvh, uint32_t first, uint32_t count, int depth)
     find_box(bvh, node, first, count);
     node->first = first;
     node->count = count;
-    if (count <= FEW || depth == MOST_DEPTH)
+    if (count <= FEW || depth == MAX_DEPTH)
         return;
     uint32_t front = divide(bvh, node, first, count);
     node->count    = 0;
@@ -123,7 +123,7 @@ static bool is_clearly_far(const double corners[3][3], const double point[3], do
 /* Nodes that wait to be looked at. */
 typedef struct Walk {
     const Bvh *bvh;
-    uint32_t   waiting[MOST_DEPTH + 2], count;
+    uint32_t   waiting[MAX_DEPTH + 2], count;
 } Walk;
 
 static void walk_begin(Walk *walk, const Bvh *bvh)

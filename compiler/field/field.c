@@ -39,7 +39,7 @@ void field_open(MeshField *field, Arena *arena)
     field->slopes        = lane_slopes_new(&field->tape, arena);
     field->hessians      = lane_hessians_new(&field->tape, arena);
     field->region_bytes  = bytes_of_region(&field->tape);
-    for (int i = 0; i < MOST_REGIONS; i++)
+    for (int i = 0; i < MAX_REGIONS; i++)
         field->regions[i].memory = arena_alloc(arena, field->region_bytes, 1);
     field->pieces.memory = arena_alloc(arena, field->region_bytes, 1);
     field->spare         = arena_alloc(arena, field->region_bytes, 1);

@@ -21,7 +21,7 @@ typedef struct FieldRegion {
     size_t   used;
 } FieldRegion;
 
-enum { MOST_REGIONS = 8, MOST_FIELD_POINTS = LANES };
+enum { MAX_REGIONS = 8, MAX_FIELD_POINTS = LANES };
 
 /* For one thread. */
 typedef struct MeshField {
@@ -36,7 +36,7 @@ typedef struct MeshField {
     LaneRanges   ranges;
     LaneSlope   *slopes;
     LaneHessian *hessians;
-    FieldRegion  regions[MOST_REGIONS]; /* each within the one before */
+    FieldRegion  regions[MAX_REGIONS]; /* each within the one before */
     size_t       region_count, region_bytes;
     FieldRegion  pieces; /* of field_pieces */
     char        *spare;  /* as much memory as that of a region */
@@ -56,7 +56,7 @@ void field_leave(MeshField *field);
 /* The tape of the box that was entered last. */
 const LaneTape *field_tape(const MeshField *field);
 
-/* At up to MOST_FIELD_POINTS points. */
+/* At up to MAX_FIELD_POINTS points. */
 void   field_distances(const MeshField *field, const double (*points)[3], size_t count,
                        double *distances);
 double field_distance(const MeshField *field, const double point[3]);
@@ -78,7 +78,7 @@ bool field_is_cut(const MeshField *field, Box box);
 /* Keeps values of the tape that was entered last, to be found at points. */
 bool field_keep(MeshField *field, uint32_t *outputs, size_t count);
 
-enum { MOST_PIECES = 8, MOST_PIECE_STEPS = 32, PIECE_VALUES = 4 };
+enum { MAX_PIECES = 8, MAX_PIECE_STEPS = 32, PIECE_VALUES = 4 };
 
 /* In a box, a number of the same sign as the distance, and as often 0: made of pieces whose derivatives do not jump by
    minima and maxima.  It is told in the order of a stack: a number of a piece, or one of these. */
@@ -86,17 +86,17 @@ enum { PIECE_MIN = -1, PIECE_MAX = -2 };
 typedef struct FieldPieces {
     uint32_t origin; /* if it is one piece: of its step, as of LaneStep; else 0 */
     size_t   count, step_count;
-    int      steps[MOST_PIECE_STEPS];
+    int      steps[MAX_PIECE_STEPS];
     /* a piece is sign times a sum of values times weights, and the offset; derivatives are those of the sum */
-    double      signs[MOST_PIECES], offsets[MOST_PIECES], weights[MOST_PIECES][PIECE_VALUES];
-    uint32_t    values[MOST_PIECES]; /* how many there are in its sum */
-    LaneSlope   slopes[MOST_PIECES];
-    LaneHessian hessians[MOST_PIECES];
+    double      signs[MAX_PIECES], offsets[MAX_PIECES], weights[MAX_PIECES][PIECE_VALUES];
+    uint32_t    values[MAX_PIECES]; /* how many there are in its sum */
+    LaneSlope   slopes[MAX_PIECES];
+    LaneHessian hessians[MAX_PIECES];
 } FieldPieces;
 
 /* In the box that was entered last; false: it is not made like that. */
 bool field_pieces(MeshField *field, Box box, FieldPieces *pieces);
-/* Their values at up to MOST_FIELD_POINTS points in that box: values[i * count] and so on are those of point i. */
+/* Their values at up to MAX_FIELD_POINTS points in that box: values[i * count] and so on are those of point i. */
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,
                         const double (*points)[3], size_t point_count, double *values);
 
@@ -104,11 +104,11 @@ void field_piece_values(const MeshField *field, const FieldPieces *pieces,
 bool field_piece_slope(const MeshField *field, const FieldPieces *pieces, Box part,
                        LaneSlope *slope);
 
-enum { MOST_FACES = 8 };
+enum { MAX_FACES = 8 };
 
 /* Operands of a lane tape. */
 typedef struct FieldFaces {
-    uint32_t operands[MOST_FACES];
+    uint32_t operands[MAX_FACES];
     size_t   count;
 } FieldFaces;
 

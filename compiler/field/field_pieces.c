@@ -15,7 +15,7 @@ typedef struct Finding {
     const MeshField *field;
     const LaneTape  *tape;
     FieldPieces     *pieces;
-    uint32_t         operands[MOST_PIECES][PIECE_VALUES];
+    uint32_t         operands[MAX_PIECES][PIECE_VALUES];
     int              depth;
 } Finding;
 
@@ -27,7 +27,7 @@ static Range range_of_operand(const Finding *f, uint32_t operand)
 
 static bool add_step(Finding *f, int step)
 {
-    if (f->pieces->step_count == MOST_PIECE_STEPS)
+    if (f->pieces->step_count == MAX_PIECE_STEPS)
         return false;
     f->pieces->steps[f->pieces->step_count++] = step;
     return true;
@@ -151,7 +151,7 @@ static bool add_piece(Finding *f, const Sum *sum)
             return false;
     while (i < f->pieces->count && !piece_is(f, i, sum, sign))
         i++;
-    if (i == MOST_PIECES || sum->count == 0)
+    if (i == MAX_PIECES || sum->count == 0)
         return false;
     if (i == f->pieces->count) {
         set_piece(f, i, sum, sign);
@@ -189,7 +189,7 @@ static bool add_face(FieldFaces *faces, uint32_t operand)
 {
     if (field_has_face(faces, operand))
         return true;
-    if (faces->count == MOST_FACES || (operand & LANE_SCALAR))
+    if (faces->count == MAX_FACES || (operand & LANE_SCALAR))
         return false;
     faces->operands[faces->count++] = operand;
     return true;
@@ -557,12 +557,12 @@ static bool add_apart(Finding *f, const Sum *sum, uint32_t k, const LaneStep *st
 
 static bool find_pieces(Finding *f, const Sum *sum)
 {
-    enum { MOST_DEPTH = 40 };
+    enum { MAX_DEPTH = 40 };
     uint32_t k = 0;
     while (k < sum->count && f->field->hessians[sum->operands[k]].known)
         k++;
     const LaneStep *step = k < sum->count ? lane_step_of(f->tape, sum->operands[k]) : NULL;
-    if (!step || f->depth == MOST_DEPTH)
+    if (!step || f->depth == MAX_DEPTH)
         return add_piece(f, sum);
     f->depth++;
     size_t steps = f->pieces->step_count, count = f->pieces->count;
@@ -616,7 +616,7 @@ static bool count_pieces(Finding *f, uint32_t operand, double sign, double offse
     size_t i = 0;
     while (i < f->pieces->count && f->operands[i][0] != operand)
         i++;
-    if (i == MOST_PIECES ||
+    if (i == MAX_PIECES ||
         (step && is_whole(step) && lane_is_boundless(f->tape, &f->field->ranges, operand)))
         return false;
     f->operands[i][0] = operand;
@@ -644,7 +644,7 @@ uint32_t field_origin(const MeshField *field, Box box)
 
 static bool keep_values(MeshField *field, const Finding *f)
 {
-    uint32_t outputs[MOST_PIECES * PIECE_VALUES];
+    uint32_t outputs[MAX_PIECES * PIECE_VALUES];
     size_t   count = 0;
     for (size_t i = 0; i < f->pieces->count; i++)
         for (uint32_t k = 0; k < f->pieces->values[i]; k++)
@@ -678,7 +678,7 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,
                         const double (*points)[3], size_t point_count, double *values)
 {
-    double        all[MOST_FIELD_POINTS * MOST_PIECES * PIECE_VALUES];
+    double        all[MAX_FIELD_POINTS * MAX_PIECES * PIECE_VALUES];
     const double *value = all;
     lane_run(&field->pieces.tape, &field->work, LANE_DOUBLE,
              (LanePoints){.points = points, .count = point_count}, 0,

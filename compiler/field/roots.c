@@ -36,10 +36,10 @@ static void narrow_root(RootSearch *search, double value, double enough)
 
 void find_roots(const MeshField *field, RootSearch *searches, size_t count, double enough)
 {
-    enum { MOST_ROUNDS = 60 };
-    for (int round = 0; round < MOST_ROUNDS; round++) {
-        double points[MOST_FIELD_POINTS][3], values[MOST_FIELD_POINTS];
-        size_t open[MOST_FIELD_POINTS], left = 0;
+    enum { MAX_ROUNDS = 60 };
+    for (int round = 0; round < MAX_ROUNDS; round++) {
+        double points[MAX_FIELD_POINTS][3], values[MAX_FIELD_POINTS];
+        size_t open[MAX_FIELD_POINTS], left = 0;
         for (size_t i = 0; i < count; i++)
             if (!searches[i].done) {
                 place_root(&searches[i], round, points[left]);

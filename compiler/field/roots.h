@@ -14,7 +14,7 @@ typedef struct RootSearch {
     bool   done;
 } RootSearch;
 
-/* Up to MOST_FIELD_POINTS of them, until they are between `low` and `high` that are so near to each other. */
+/* Up to MAX_FIELD_POINTS of them, until they are between `low` and `high` that are so near to each other. */
 void find_roots(const MeshField *field, RootSearch *searches, size_t count, double enough);
 
 #endif

@@ -12,7 +12,7 @@
 #include "compiler/front/parse.h"
 #include "compiler/front/synonyms.h"
 
-enum { MOST_TOTAL_BYTES = 64 << 20, MOST_FILES = 1024 };
+enum { MAX_TOTAL_BYTES = 64 << 20, MAX_FILES = 1024 };
 
 /* ---- texts, tokens, trees ---- */
 
@@ -123,8 +123,8 @@ static void refuse(Files *files, Span place, const char *path, const Loaded *tex
 static bool check_length(Files *files, size_t length, Span place)
 {
     files->bytes += length;
-    if (length <= MOST_SOURCE_BYTES && files->bytes <= MOST_TOTAL_BYTES &&
-        files->count + files->data.count < MOST_FILES)
+    if (length <= MAX_SOURCE_BYTES && files->bytes <= MAX_TOTAL_BYTES &&
+        files->count + files->data.count < MAX_FILES)
         return true;
     diag_add(files->diags, DIAG_LIMIT, place,
              "too much text: a file may have 16 MiB, all together 64 MiB in 1,024 files");

@@ -12,11 +12,11 @@
 #include "compiler/front/format_pieces.h"
 
 enum {
-    INDENT        = 4,
-    MOST_ROUNDS   = 32,  /* in which a layout settles */
-    MOST_STEPS    = 64,  /* of indentation that lines of one statement have */
-    MOST_BRACKETS = 256, /* open at once; the parser permits fewer */
-    MOST_COLUMN   = 1024 /* below which a line can be set below a value */
+    INDENT       = 4,
+    MAX_ROUNDS   = 32,  /* in which a layout settles */
+    MAX_STEPS    = 64,  /* of indentation that lines of one statement have */
+    MAX_BRACKETS = 256, /* open at once; the parser permits fewer */
+    MAX_COLUMN   = 1024 /* below which a line can be set below a value */
 };
 
 /* A column in which words of neighbouring lines begin. */
@@ -33,8 +33,8 @@ typedef struct Step {
 /* A statement that is being laid out; one for each open brace, and one for the whole text. */
 typedef struct Statement {
     uint32_t steps_count;
-    Step     steps[MOST_STEPS]; /* from left to right: lines that later ones may return to */
-    size_t   first;             /* piece */
+    Step     steps[MAX_STEPS]; /* from left to right: lines that later ones may return to */
+    size_t   first;            /* piece */
 } Statement;
 
 typedef struct Bracket {
@@ -45,9 +45,9 @@ typedef struct Bracket {
 typedef struct Layout {
     Pieces     pieces;
     Arena     *arena;
-    size_t     value_at[MOST_COLUMN]; /* 1 + the last piece, of those that begin a value there */
-    Statement *statements;            /* [MOST_BRACKETS + 1] */
-    Bracket   *brackets;              /* [MOST_BRACKETS] */
+    size_t     value_at[MAX_COLUMN]; /* 1 + the last piece, of those that begin a value there */
+    Statement *statements;           /* [MAX_BRACKETS + 1] */
+    Bracket   *brackets;             /* [MAX_BRACKETS] */
     uint32_t   bracket_count, brace_count;
     struct {
         Column *items;
@@ -192,11 +192,11 @@ static uint32_t indent_inside(Layout *l, Statement *statement, uint32_t from)
     Step *last = &steps[statement->steps_count - 1];
     if (last->from == from)
         return last->to;
-    size_t value = from < MOST_COLUMN ? l->value_at[from] : 0;
+    size_t value = from < MAX_COLUMN ? l->value_at[from] : 0;
     Step   next  = {from, last->to + INDENT};
     if (value > statement->first)
         next.to = l->pieces.items[value - 1].to;
-    if (statement->steps_count < MOST_STEPS)
+    if (statement->steps_count < MAX_STEPS)
         steps[statement->steps_count++] = next;
     return next.to;
 }
@@ -221,7 +221,7 @@ static uint32_t indent_line(Layout *l, size_t index)
 static void count_bracket(Layout *l, size_t index, const Piece **line)
 {
     const Piece *piece = &l->pieces.items[index];
-    if (opens(piece->kind) && l->bracket_count < MOST_BRACKETS) {
+    if (opens(piece->kind) && l->bracket_count < MAX_BRACKETS) {
         l->brackets[l->bracket_count++] = (Bracket){piece->kind, *line};
         if (piece->kind == TOKEN_LEFT_BRACE)
             l->statements[++l->brace_count] = (Statement){
@@ -236,14 +236,14 @@ static void count_bracket(Layout *l, size_t index, const Piece **line)
    in the same block, unless an empty line stands between. */
 static void find_statements(Layout *l)
 {
-    size_t      *last = arena_new_array(l->arena, size_t, MOST_BRACKETS + 1);
+    size_t      *last = arena_new_array(l->arena, size_t, MAX_BRACKETS + 1);
     const Piece *line = NULL;
     l->bracket_count = l->brace_count = 0;
     for (size_t i = 0; i < l->pieces.count; i++) {
         Piece *piece = &l->pieces.items[i];
         line         = piece->newlines > 0 ? piece : line;
         if (piece->newlines > 1)
-            memset(last, 0, (MOST_BRACKETS + 1) * sizeof *last);
+            memset(last, 0, (MAX_BRACKETS + 1) * sizeof *last);
         if (piece->newlines > 0 && !closes(piece->kind) && begins_statement(l, i)) {
             piece->above         = last[l->brace_count];
             last[l->brace_count] = i + 1;
@@ -267,7 +267,7 @@ static bool set_lines(Layout *l)
             line      = piece;
             piece->to = indent_line(l, i);
             moved |= set_line(l, i);
-        } else if (piece->from < MOST_COLUMN && begins_value(&l->pieces, i)) {
+        } else if (piece->from < MAX_COLUMN && begins_value(&l->pieces, i)) {
             l->value_at[piece->from] = i + 1;
         }
         count_bracket(l, i, &line);
@@ -279,7 +279,7 @@ static bool set_lines(Layout *l)
 static bool settle(Layout *l)
 {
     find_columns(l);
-    for (int round = 0; set_lines(l) && round < MOST_ROUNDS; round++) {
+    for (int round = 0; set_lines(l) && round < MAX_ROUNDS; round++) {
     }
     bool moved = false;
     for (size_t i = 0; i < l->pieces.count; i++) {
@@ -327,13 +327,13 @@ bool format_source(uint32_t source, Sources *sources, Arena *arena, Text *out)
 {
     Layout layout = {.pieces     = read_pieces(source, sources, arena),
                      .arena      = arena,
-                     .statements = arena_new_array(arena, Statement, MOST_BRACKETS + 1),
-                     .brackets   = arena_new_array(arena, Bracket, MOST_BRACKETS)};
+                     .statements = arena_new_array(arena, Statement, MAX_BRACKETS + 1),
+                     .brackets   = arena_new_array(arena, Bracket, MAX_BRACKETS)};
     find_statements(&layout);
-    for (int round = 0; settle(&layout) && round < MOST_ROUNDS; round++) {
+    for (int round = 0; settle(&layout) && round < MAX_ROUNDS; round++) {
     }
     write(&layout.pieces, out);
-    if (out->length > MOST_SOURCE_BYTES)
+    if (out->length > MAX_SOURCE_BYTES)
         return false;
     uint32_t written = source_add(sources, "", out->bytes ? out->bytes : "", out->length, false);
     Pieces   again   = read_pieces(written, sources, arena);

@@ -378,7 +378,7 @@ static const CheckedDefinition *find_cycle(Checker *c, CheckedDefinition *start,
 
 static void report_circle(Checker *c, CheckedDefinition *start)
 {
-    enum { MOST_CYCLE_LINES = 10 };
+    enum { MAX_CYCLE_LINES = 10 };
     const Need              *need = NULL;
     const CheckedDefinition *here = find_cycle(c, start, &need);
     if (!here)
@@ -403,7 +403,7 @@ static void report_circle(Checker *c, CheckedDefinition *start)
                                 "the value of `%s` depends on itself", name);
     diag->label      = "this definition needs its own value";
     for (size_t i = cycle.count; i-- > 0;) {
-        if (cycle.count - i > MOST_CYCLE_LINES) {
+        if (cycle.count - i > MAX_CYCLE_LINES) {
             diag_note(c->diags, diag, diag_text(c->diags, "and %zu more", i + 1));
             break;
         }

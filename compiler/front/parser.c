@@ -271,7 +271,7 @@ void expect_or_mend(Parser *p, TokenKind wanted, TokenKind written, const char *
 
 void enter(Parser *p)
 {
-    if (++p->depth <= MOST_NESTING || p->failed)
+    if (++p->depth <= MAX_NESTING || p->failed)
         return;
     Diag *diag = report_at(p, DIAG_TOO_DEEP, span_here(p), "nested more than 200 levels deep");
     diag->help = "name a part with `let` and use the name";

@@ -12,7 +12,7 @@
 
 #include "compiler/front/syntax.h"
 
-enum { MOST_NESTING = 200 };
+enum { MAX_NESTING = 200 };
 
 /* A position, and how many brackets are open there. */
 typedef struct Level {

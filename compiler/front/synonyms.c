@@ -134,11 +134,11 @@ static const char *stem(Diags *diags, const char *path)
 
 void explain_file(Diags *diags, Diag *diag, const char *path)
 {
-    enum { MOST_FILES = 32 };
-    const char *stems[MOST_FILES], *paths[MOST_FILES], *near;
+    enum { MAX_FILES = 32 };
+    const char *stems[MAX_FILES], *paths[MAX_FILES], *near;
     size_t      count = 0;
     Text        list  = {.arena = diags->arena};
-    for (const EmbeddedFile *file = library_files; file->name && count < MOST_FILES; file++) {
+    for (const EmbeddedFile *file = library_files; file->name && count < MAX_FILES; file++) {
         if (!strchr(file->name, '/'))
             continue;
         text_format(&list, "%s %s", count ? "," : "the library has:", file->name);

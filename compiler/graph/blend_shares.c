@@ -10,7 +10,7 @@
 
 /* How far each is above the least one, which is returned, in widths; none farther than one, where all are alike. */
 static double heights_above_least(const double *distances, uint32_t count, double width,
-                                  double heights[MOST_SHARERS])
+                                  double heights[MAX_SHARERS])
 {
     for (uint32_t i = 0; i < count; i++) {
         uint32_t at = i;
@@ -31,7 +31,7 @@ static double heights_above_least(const double *distances, uint32_t count, doubl
    (l - h) / (j + 1) from the threshold, and j / (j + 1) (l - h)^2 / 2 from the result. */
 BlendShares shares_quadratic(const double *distances, uint32_t count, double width)
 {
-    double       heights[MOST_SHARERS], taken = 0, second = 0;
+    double       heights[MAX_SHARERS], taken = 0, second = 0;
     const double least     = heights_above_least(distances, count, width, heights);
     double       threshold = 1;
     if (!(width > 0))
@@ -85,7 +85,7 @@ static double cubic_threshold(const double *heights, uint32_t count, double thre
 
 BlendShares shares_cubic(const double *distances, uint32_t count, double width)
 {
-    double       heights[MOST_SHARERS], sum = 0;
+    double       heights[MAX_SHARERS], sum = 0;
     const double least = heights_above_least(distances, count, width, heights);
     if (!(width > 0))
         return (BlendShares){least, least};

@@ -7,14 +7,14 @@
 #include "compiler/graph/graph.h"
 
 /* Of more operands only the nearest count. */
-enum { MOST_SHARERS = 8 };
+enum { MAX_SHARERS = 8 };
 
 /* The result of a blend, and the threshold below which operands have a share. */
 typedef struct BlendShares {
     double result, threshold;
 } BlendShares;
 
-/* Of up to MOST_SHARERS distances, at least one, in any order, over a width.  A width of 0 or less leaves the least. */
+/* Of up to MAX_SHARERS distances, at least one, in any order, over a width.  A width of 0 or less leaves the least. */
 typedef BlendShares FindShares(const double *distances, uint32_t count, double width);
 FindShares          shares_quadratic, shares_cubic;
 

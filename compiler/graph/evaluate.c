@@ -195,7 +195,7 @@ typedef struct Loop {
     const Tape             *body;
     const Node             *bodies;
     NodeValue              *values;
-    NodeValue               states[MOST_INSTANCE_STATES];
+    NodeValue               states[MAX_INSTANCE_STATES];
     Inputs                  in;
 } Loop;
 

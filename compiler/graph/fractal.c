@@ -111,12 +111,12 @@ static double triplex_step(double w[3], const double c[3], int power)
     return fabs(tilt[1]);
 }
 
-/* The powers are constants from 2 to MOST_POWER in every scene; random graphs have anything. */
-static int power_of(const NodeValue *range) { return (int)fmin(fmax(range->v[0], 1), MOST_POWER); }
+/* The powers are constants from 2 to MAX_POWER in every scene; random graphs have anything. */
+static int power_of(const NodeValue *range) { return (int)fmin(fmax(range->v[0], 1), MAX_POWER); }
 
 static int iterations_of(const NodeValue *range, const NodeValue *settings)
 {
-    double count = fmin(fmin(settings->v[0], range->v[1]), MOST_ITERATIONS);
+    double count = fmin(fmin(settings->v[0], range->v[1]), MAX_ITERATIONS);
     return count > 0 ? (int)count : 0;
 }
 
@@ -151,7 +151,7 @@ NodeValue evaluate_julia(const NodeValue *o, uint32_t size)
 {
     (void)size;
     int    power = power_of(&o[2]), last = iterations_of(&o[2], &o[3]), n = 0;
-    double radius = o[3].v[1], sizes[MOST_ITERATIONS + 1];
+    double radius = o[3].v[1], sizes[MAX_ITERATIONS + 1];
     double z[4]   = {o[0].v[0], o[0].v[1], o[0].v[2], 0};
     for (sizes[0] = norm(z, 4); n < last && sizes[n] <= 2 * radius; sizes[++n] = norm(z, 4))
         julia_step(z, o[1].v, power);
@@ -182,10 +182,10 @@ NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size)
 static double bailout(double power) { return fmin(16, exp2(32 / power)); }
 
 /* The least that the mean square of the stretch counts as. */
-#define LEAST_STRETCH 0.85
+#define MIN_STRETCH 0.85
 
 /* A step from there stretches by a quarter: nothing beside the 1 that each adds. */
-static double least_size(double power) { return pow(4 * power, -1 / (power - 1)); }
+static double min_size(double power) { return pow(4 * power, -1 / (power - 1)); }
 
 NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
 {
@@ -193,7 +193,7 @@ NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
     int           last  = iterations_of(&o[1], &o[2]);
     const double *c     = o[0].v;
     double        power = o[1].v[0], radius = o[2].v[1], core = mandelbulb_core(power);
-    double        least = least_size(power), w[3] = {c[0], c[1], c[2]}, from_origin = norm(c, 3);
+    double        least = min_size(power), w[3] = {c[0], c[1], c[2]}, from_origin = norm(c, 3);
     double        modulus = from_origin, steep = 1, sum = 0, distance;
     if (from_origin > MANDELBULB_NEAR * radius)
         return (NodeValue){{from_origin - radius}};
@@ -202,7 +202,7 @@ NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
         double lateral = triplex_step(w, c, power_of(&o[1]));
         double mean    = (2 * radial * radial + lateral * lateral) / 3;
         sum += steep;
-        steep   = power * sqrt(fmax(mean, LEAST_STRETCH * radial * radial)) * steep + 1;
+        steep   = power * sqrt(fmax(mean, MIN_STRETCH * radial * radial)) * steep + 1;
         modulus = norm(w, 3);
     }
     double margin = radius - modulus;

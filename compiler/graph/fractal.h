@@ -9,7 +9,7 @@
 
 #include "compiler/graph/graph.h"
 
-enum { MOST_POWER = 16, MOST_ITERATIONS = 64 };
+enum { MAX_POWER = 16, MAX_ITERATIONS = 64 };
 
 /* The least R that an orbit of z^power + c does not come back from: R^power = R + |c|. */
 double julia_radius(double c, uint32_t power);

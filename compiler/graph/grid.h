@@ -23,7 +23,7 @@ typedef struct Grid {
     float    *clearance;    /* of each cell, above 0; rounded down.  A sign may be given to it: see
                                InstanceFunction.either */
     uint32_t *instances;    /* the lists, ascending where they have no tails */
-    uint32_t  most_listed;  /* the length of the longest list */
+    uint32_t  max_listed;   /* the length of the longest list */
     float    *tails, *middles; /* of entries and cells: grid_tails.h; NULL: there are none */
 } Grid;
 

@@ -19,7 +19,7 @@ uint32_t graph_add_instance_function(Graph *graph, InstanceFunction function, co
 {
     Instances *instances = graph_instances(graph);
     assert(function.table_number < instances->tables.count);
-    assert(function.state_count > 0 && function.state_count <= MOST_INSTANCE_STATES);
+    assert(function.state_count > 0 && function.state_count <= MAX_INSTANCE_STATES);
     function.first_body = (uint32_t)instances->bodies.count;
     for (uint32_t i = 0; i < function.state_count; i++) {
         assert(graph->items[bodies[i]].type == function.states[i].type);
@@ -179,14 +179,14 @@ Node graph_instance_leaf(Graph *graph, Op op, uint32_t table_number)
 
 Node graph_state(Graph *graph, GraphType type, uint32_t function, uint32_t state)
 {
-    assert(state < MOST_INSTANCE_STATES);
-    return graph_indexed_leaf(graph, OP_STATE, type, function * MOST_INSTANCE_STATES + state);
+    assert(state < MAX_INSTANCE_STATES);
+    return graph_indexed_leaf(graph, OP_STATE, type, function * MAX_INSTANCE_STATES + state);
 }
 
 Node graph_row(Graph *graph, uint32_t table_number, uint32_t column, Node instance)
 {
-    assert(column < MOST_TABLE_COLUMNS);
-    Node id = graph_uint(graph, table_number * MOST_TABLE_COLUMNS + column);
+    assert(column < MAX_TABLE_COLUMNS);
+    Node id = graph_uint(graph, table_number * MAX_TABLE_COLUMNS + column);
     return graph_op2(graph, OP_row, id, instance);
 }
 

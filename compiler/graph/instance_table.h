@@ -28,8 +28,8 @@
 #include "compiler/graph/graph.h"
 #include "compiler/graph/grid.h"
 
-enum { MOST_INSTANCE_STATES = 8, MOST_TABLE_COLUMNS = 64, NO_DISTANCE = MOST_INSTANCE_STATES };
-enum { NOT_LISTED = MOST_INSTANCE_STATES };
+enum { MAX_INSTANCE_STATES = 8, MAX_TABLE_COLUMNS = 64, NO_DISTANCE = MAX_INSTANCE_STATES };
+enum { NOT_LISTED = MAX_INSTANCE_STATES };
 
 /* A column whose numbers are known. */
 #define KNOWN_COLUMN UINT32_MAX
@@ -76,7 +76,7 @@ typedef struct InstanceTable {
        So point and rows may be relative to another origin.  In camera-relative shaders that is the VEC3 of which
        `origin` is 1 + the place in Instances.frame_numbers; 0: it is that of the table in all shaders. */
     bool     relocates;
-    uint8_t  axes[MOST_TABLE_COLUMNS];
+    uint8_t  axes[MAX_TABLE_COLUMNS];
     uint32_t origin;
     Span     span; /* of the join */
 } InstanceTable;
@@ -115,7 +115,7 @@ typedef struct InstanceFunction {
     bool sums; /* the result is the first state less the third times the logarithm of the second */
     bool
         ends; /* and shaders add up the fourth state along lists with tails, as far as that counts */
-    InstanceState states[MOST_INSTANCE_STATES];
+    InstanceState states[MAX_INSTANCE_STATES];
     uint32_t      state_count;
     uint32_t      listed;   /* of `joins`; NOT_LISTED: the operation is the result */
     uint32_t      distance; /* the state that is a distance; NO_DISTANCE: there is none */
@@ -177,11 +177,11 @@ Node graph_instance_surface(Graph *graph, Op op, uint32_t function, Node point, 
                             Node footprint, Node threshold);
 
 /* The table and the column behind the first operand of OP_row. */
-static inline uint32_t row_table(uint32_t id) { return id / MOST_TABLE_COLUMNS; }
-static inline uint32_t row_column(uint32_t id) { return id % MOST_TABLE_COLUMNS; }
+static inline uint32_t row_table(uint32_t id) { return id / MAX_TABLE_COLUMNS; }
+static inline uint32_t row_column(uint32_t id) { return id % MAX_TABLE_COLUMNS; }
 /* The function and its state behind the index of OP_STATE. */
-static inline uint32_t function_of(uint32_t index) { return index / MOST_INSTANCE_STATES; }
-static inline uint32_t state_of(uint32_t index) { return index % MOST_INSTANCE_STATES; }
+static inline uint32_t function_of(uint32_t index) { return index / MAX_INSTANCE_STATES; }
+static inline uint32_t state_of(uint32_t index) { return index % MAX_INSTANCE_STATES; }
 /* Tells how many bodies a function has. */
 static inline uint32_t body_count(const InstanceFunction *function)
 {

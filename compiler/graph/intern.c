@@ -69,7 +69,7 @@ static void slot_take(Graph *graph, Node node, uint32_t hash)
 static void slots_grow(Graph *graph)
 {
     const NearSlots old = graph->slots;
-    graph->slots.count  = old.count ? SLOTS_GROWTH * old.count : LEAST_SLOTS;
+    graph->slots.count  = old.count ? SLOTS_GROWTH * old.count : MIN_SLOTS;
     graph->slots.items  = arena_new_array(graph->arena, NearSlot, graph->slots.count);
     for (size_t i = 0; i < old.count; i++)
         if (old.items[i].number)

@@ -62,13 +62,13 @@ static void copy_operations(Graph *graph, const Tape *tape, Node *copies)
  * among the last nodes up to the root, but for a few that many share, such as the coordinates.  What
  * does not depend on the point stays as it is.
  */
-enum { WINDOW = 256, WORD = 64, MOST_EARLIER = 16 };
+enum { WINDOW = 256, WORD = 64, MAX_EARLIER = 16 };
 
 typedef struct Window {
     Node     first; /* the root is among the WINDOW nodes from this one on */
     uint64_t needed[WINDOW / WORD];
     Node     copies[WINDOW];
-    Node     earlier[MOST_EARLIER], earlier_copies[MOST_EARLIER]; /* before the window, ascending */
+    Node     earlier[MAX_EARLIER], earlier_copies[MAX_EARLIER]; /* before the window, ascending */
     uint32_t earlier_count;
 } Window;
 
@@ -91,7 +91,7 @@ static bool note_earlier(Window *window, Node node)
     const uint32_t at = earlier_place(window, node), count = window->earlier_count;
     if (at < count && window->earlier[at] == node)
         return true;
-    if (count == MOST_EARLIER)
+    if (count == MAX_EARLIER)
         return false;
     memmove(&window->earlier[at + 1], &window->earlier[at], (count - at) * sizeof(Node));
     window->earlier[at] = node;

@@ -50,11 +50,11 @@ static int compare_nodes(const void *a, const void *b)
 }
 
 /* Most lists are short: they are sorted as cards are. */
-enum { MOST_CARDS = 32 };
+enum { MAX_CARDS = 32 };
 
 static void sort_nodes(Node *nodes, size_t count)
 {
-    if (count > MOST_CARDS) {
+    if (count > MAX_CARDS) {
         qsort(nodes, count, sizeof *nodes, compare_nodes);
         return;
     }
@@ -277,7 +277,7 @@ double tape_flops_separate(const Tape *tape) { return flops_of(tape, true); }
 /* For the longest list. */
 static double call_loops(const Tape *tape, uint32_t function)
 {
-    return (double)table_of(tape, function)->cells.most_listed *
+    return (double)table_of(tape, function)->cells.max_listed *
            (1 + (double)tape_loops(&tape->functions[function]));
 }
 

@@ -126,7 +126,7 @@ static Samples next_level(const Samples *fine, Arena *arena)
 static void place_levels(Texture *texture, uint32_t width, uint32_t height)
 {
     for (;;) {
-        assert(texture->level_count < MOST_TEXTURE_LEVELS);
+        assert(texture->level_count < MAX_TEXTURE_LEVELS);
         texture->levels[texture->level_count++] = (TextureLevel){width, height,
                                                                  texture->texel_count};
         texture->texel_count += (size_t)width * height;
@@ -285,7 +285,7 @@ static NodeValue level_value(const Texture *texture, uint32_t level, const doubl
 /* Of a pixel of a width, which may be no number where a place has no derivative. */
 static double level_of(double width)
 {
-    const double widest = 1 << MOST_TEXTURE_LEVELS;
+    const double widest = 1 << MAX_TEXTURE_LEVELS;
     return !(width < widest) ? log2(widest) : width > 1 ? log2(width) : 0;
 }
 
@@ -308,7 +308,7 @@ NodeValue texture_value(const Texture *texture, const double uv[2], double width
 NodeValue texture_mean(const Texture *texture, const double uv[2], const double pixel[4])
 {
     const double asked = pixel[TEXTURE_TAPS];
-    const int    taps = asked > 1 ? (int)fmin(asked, MOST_TEXTURE_TAPS) : 1; /* also of no number */
+    const int    taps  = asked > 1 ? (int)fmin(asked, MAX_TEXTURE_TAPS) : 1; /* also of no number */
     const double level = fmin(level_of(pixel[TEXTURE_WIDTH]), texture->level_count - 1);
     const double fine = floor(level), share = level - fine;
     NodeValue    mean = {{0}};

@@ -26,15 +26,15 @@ typedef uint32_t TexelBits[2];
 
 /* Red, green, blue and alpha. */
 enum { TEXTURE_CHANNELS = 4 };
-enum { MOST_TEXTURE_LEVELS = 16, MOST_TEXTURE_SIDE = 1 << 15, MOST_TEXELS = 1 << 24 };
+enum { MAX_TEXTURE_LEVELS = 16, MAX_TEXTURE_SIDE = 1 << 15, MAX_TEXELS = 1 << 24 };
 
 /* What a node of OP_texture knows of the pixel: its long side, in u and v; how many taps it has; and the
    width of each, in texels of level 0. */
 enum { TEXTURE_LONG_U, TEXTURE_LONG_V, TEXTURE_TAPS, TEXTURE_WIDTH };
-enum { MOST_TEXTURE_TAPS = 3 };
+enum { MAX_TEXTURE_TAPS = 3 };
 
 /* How many texels of krs_cells the header of a texture has for shaders. */
-enum { TEXTURE_HEADER = 1 + MOST_TEXTURE_LEVELS };
+enum { TEXTURE_HEADER = 1 + MAX_TEXTURE_LEVELS };
 
 typedef struct TextureLevel {
     uint32_t width, height;
@@ -46,7 +46,7 @@ typedef struct Texture {
     TextureWrap  wrap;
     bool         gray;
     uint32_t     level_count;
-    TextureLevel levels[MOST_TEXTURE_LEVELS];
+    TextureLevel levels[MAX_TEXTURE_LEVELS];
     TexelBits   *texels; /* of all levels */
     size_t       texel_count;
     /* Of level 0, for each channel: the range of its values, and the largest difference of texels
@@ -66,8 +66,8 @@ typedef struct Textures {
 } Textures;
 
 /* Makes the levels of a picture and what is known of them.  `samples` has four floats for each pixel,
-   two if `gray`; its rows go from the top downwards.  Sides are at most MOST_TEXTURE_SIDE, and both
-   together at most MOST_TEXELS. */
+   two if `gray`; its rows go from the top downwards.  Sides are at most MAX_TEXTURE_SIDE, and both
+   together at most MAX_TEXELS. */
 Texture texture_new(const float *samples, uint32_t width, uint32_t height, bool gray,
                     TextureWrap wrap, Arena *arena, Arena *scratch);
 

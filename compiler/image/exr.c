@@ -100,8 +100,8 @@ static bool read_header(ExrReader *reader)
     const exr_attr_box2i_t *window = &reader->window;
     const int64_t           width  = (int64_t)window->max.x - window->min.x + 1;
     const int64_t           height = (int64_t)window->max.y - window->min.y + 1;
-    if (width < 1 || height < 1 || width > reader->image->most_side ||
-        height > reader->image->most_side)
+    if (width < 1 || height < 1 || width > reader->image->max_side ||
+        height > reader->image->max_side)
         return image_fail(reader->image, "it has too many pixels, or none");
     reader->image->width  = (uint32_t)width;
     reader->image->height = (uint32_t)height;

@@ -13,8 +13,8 @@ bool image_make(Image *image)
 {
     if (image->width == 0 || image->height == 0)
         return image_fail(image, "it has no pixels");
-    if (image->width > image->most_side || image->height > image->most_side ||
-        image_pixels(image) > image->most_pixels)
+    if (image->width > image->max_side || image->height > image->max_side ||
+        image_pixels(image) > image->max_pixels)
         return image_fail(image, "it has too many pixels");
     uint32_t channels = image_channels(image);
     image->samples    = arena_new_array(image->arena, float, image_pixels(image) * channels);

@@ -20,7 +20,7 @@ typedef enum ImageSpace {
 typedef struct Image {
     Arena     *arena; /* for the samples, and for what is needed while reading */
     ImageSpace space;
-    uint32_t   most_side, most_pixels;
+    uint32_t   max_side, max_pixels;
     uint32_t   width, height;
     bool       gray;
     float *samples; /* rows from the top; of a pixel gray and alpha, or red, green, blue and alpha.

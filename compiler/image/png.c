@@ -90,7 +90,7 @@ static bool read_header(PngReader *reader)
     png_read_info(reader->png, reader->info);
     image->width  = png_get_image_width(reader->png, reader->info);
     image->height = png_get_image_height(reader->png, reader->info);
-    if (image->width > image->most_side || image->height > image->most_side)
+    if (image->width > image->max_side || image->height > image->max_side)
         return image_fail(image, "it has too many pixels");
     ask_for_samples(reader);
     image->gray = reader->channels <= 2;

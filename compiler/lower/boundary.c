@@ -13,7 +13,7 @@
 #include "compiler/lower/outline.h"
 
 /* More lines go to a table, and more arcs are left. */
-enum { MOST_LINES = 48, MOST_ARCS = 192, MOST_ITERATIONS = 8 };
+enum { MAX_LINES = 48, MAX_ARCS = 192, MAX_ITERATIONS = 8 };
 
 /* Of a circle, to both sides of a direction; half of the angle. */
 typedef struct Arc {
@@ -46,7 +46,7 @@ struct Boundary *boundary_new(Arena *arena)
 typedef struct Gathering {
     Graph       *graph;
     Arena       *scratch;
-    const Shape *iterations[MOST_ITERATIONS]; /* around the shape at hand */
+    const Shape *iterations[MAX_ITERATIONS]; /* around the shape at hand */
     uint32_t     iteration_count;
     bool         changed; /* some part of an outline is gone, or its distance is only a bound */
 } Gathering;
@@ -409,13 +409,13 @@ static bool gather_mirror(Gathering *g, const Shape *shape, Curves *curves)
 /* In a lattice about the origin that ends. */
 static bool gather_repeat(Gathering *g, const Shape *shape, Curves *curves)
 {
-    enum { MOST_COPIES = 1000 };
+    enum { MAX_COPIES = 1000 };
     const uint32_t *cells     = shape->cells;
     double          period[2] = {0, 0};
     Curves          part      = {0};
     g->changed                = true;
     if (shape->values[1] != NODE_NONE || cells[2] != 1 || cells[0] == 0 || cells[1] == 0 ||
-        (double)cells[0] * cells[1] > MOST_COPIES || !gather(g, shape->children[0], &part))
+        (double)cells[0] * cells[1] > MAX_COPIES || !gather(g, shape->children[0], &part))
         return false;
     for (uint32_t k = 0; k < 2; k++)
         if (cells[k] > 1 && !known(g, shape->values[0], k, &period[k]))
@@ -437,7 +437,7 @@ static bool gather_repeat(Gathering *g, const Shape *shape, Curves *curves)
 
 static bool gather_iteration(Gathering *g, const Shape *shape, Curves *curves)
 {
-    if (g->iteration_count == MOST_ITERATIONS)
+    if (g->iteration_count == MAX_ITERATIONS)
         return false;
     g->iterations[g->iteration_count++] = shape;
     bool good                           = gather(g, shape->iterated, curves);
@@ -557,9 +557,9 @@ static void find_boundary(Lowering *l, const Shape *csg_node, struct Boundary *b
         curved = curved || !(curve->straight || curve->radius > 0);
     }
     join_arcs(&boundary->arcs, size_of(&curves));
-    if (boundary->arcs.count > MOST_ARCS)
+    if (boundary->arcs.count > MAX_ARCS)
         return;
-    if (curved || boundary->lines.count > MOST_LINES)
+    if (curved || boundary->lines.count > MAX_LINES)
         make_table(boundary, csg_node->span, l->scratch);
     boundary->state = BOUNDARY_KNOWN;
 }
@@ -605,12 +605,12 @@ static Node square_to_arc(Graph *g, const Arc *arc, Node point)
     return graph_op2(g, OP_dot, to, to);
 }
 
-static Node least_of(Graph *g, const Node *nodes, size_t count)
+static Node min_of(Graph *g, const Node *nodes, size_t count)
 {
     if (count == 1)
         return nodes[0];
-    Node first = least_of(g, nodes, count / 2);
-    Node last  = least_of(g, nodes + count / 2, count - count / 2);
+    Node first = min_of(g, nodes, count / 2);
+    Node last  = min_of(g, nodes + count / 2, count - count / 2);
     return graph_op2(g, OP_min, first, last);
 }
 
@@ -625,7 +625,7 @@ static Node distance_to_pieces(Lowering *l, const struct Boundary *boundary, Nod
         squares[next++] = square_to_line(g, &boundary->lines.items[i], point);
     for (size_t i = 0; i < boundary->arcs.count; i++)
         squares[next++] = square_to_arc(g, &boundary->arcs.items[i], point);
-    return count ? graph_op1(g, OP_sqrt, least_of(g, squares, count)) : NODE_NONE;
+    return count ? graph_op1(g, OP_sqrt, min_of(g, squares, count)) : NODE_NONE;
 }
 
 static Node distance_to_table(Lowering *l, struct Boundary *boundary, double reach, Node point)

@@ -12,16 +12,16 @@
 
 /* The least step, in parts of the distance from the origin and of 1: where nobody looks, a pixel has
    no size, and nearer points have no difference in single precision. */
-static const double LEAST_STEP = 1e-4;
+static const double MIN_STEP = 1e-4;
 /* What |d|^2 is at least. */
-static const double LEAST_SQUARE = 1e-30;
+static const double MIN_SQUARE = 1e-30;
 
 static Node step_of(Graph *g, Pixel pixel)
 {
     Node far   = graph_op1(g, OP_length, pixel.point);
     Node one   = graph_number(g, 1);
     Node size  = graph_op2(g, OP_add, far, one);
-    Node least = graph_number(g, LEAST_STEP);
+    Node least = graph_number(g, MIN_STEP);
     least      = graph_op2(g, OP_mul, size, least);
     return graph_op2(g, OP_max, pixel.radius, least);
 }
@@ -53,7 +53,7 @@ Node bumped_normal(Graph *graph, Node height, Node point, Node normal, Arena *sc
 {
     Pixel pixel = pixel_of(graph, point, scratch);
     Node  size  = step_of(graph, pixel), tangents[2];
-    Node  least = graph_number(graph, LEAST_SQUARE);
+    Node  least = graph_number(graph, MIN_SQUARE);
     find_tangents(graph, pixel.normal, tangents);
     for (int i = 0; i < 2; i++) {
         Node step   = graph_op2(graph, OP_scale, tangents[i], size);

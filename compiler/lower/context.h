@@ -86,7 +86,7 @@ LowerContext context_divided(LowerContext context, double factor);
 double reach_behind(const Graph *graph, double reach, Node scale);
 
 /* Most nodes that one shape may add to the graph. */
-enum { MOST_LOWERED = 400000 };
+enum { MAX_LOWERED = 400000 };
 
 /* Tells whether a step along a ray that is safe for the parts of a shape is safe for the shape. */
 bool    rays_pass(const Shape *shape);

@@ -20,7 +20,7 @@
 #include "compiler/graph/symbolic/derive.h"
 
 /* Nearer to grazing than this cosine, pixels are taken to be no longer. */
-static const double LEAST_COSINE_SQUARED = 1e-6;
+static const double MIN_COSINE_SQUARED = 1e-6;
 
 /* Bodies of instance groups have leaves of their own. */
 Pixel pixel_of(Graph *g, Node expression, Arena *scratch)
@@ -52,7 +52,7 @@ static Node seen_gradient(Graph *g, Pixel pixel, Node gradient)
 {
     Node cosine = graph_op2(g, OP_dot, pixel.normal, pixel.view);
     Node along  = graph_op2(g, OP_dot, gradient, pixel.view);
-    Node least  = graph_number(g, LEAST_COSINE_SQUARED);
+    Node least  = graph_number(g, MIN_COSINE_SQUARED);
     Node square = graph_op2(g, OP_mul, cosine, cosine);
     Node size   = graph_op2(g, OP_max, square, least);
     Node share  = graph_op2(g, OP_div, graph_op2(g, OP_mul, along, cosine), size);

@@ -75,13 +75,13 @@ static bool may_refine(const InstanceGroup *group, const GroupJoin *join, const 
 enum { TEXELS_OF_HOST = 64 };
 
 /* Most texels of all entries of refined lists, and by how much those are more than the coarse ones. */
-enum { MOST_TEXELS = 1 << 23, LISTS_GROW = 16 };
+enum { MAX_TEXELS = 1 << 23, LISTS_GROW = 16 };
 
 /* False: that would take too long, or too much memory. */
 static bool sift(const GridBlend *blend, const Box *boxes, Grid *coarse, const InstanceTable *table,
                  Arena *scratch)
 {
-    double most = (double)MOST_TEXELS / LISTS_GROW / fmax((double)row_texels(table), 1);
+    double most = (double)MAX_TEXELS / LISTS_GROW / fmax((double)row_texels(table), 1);
     return grid_sift(coarse, boxes, table->rows, blend, scratch) &&
            coarse->first[grid_cell_count(coarse)] <= 4 * most;
 }

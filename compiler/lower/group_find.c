@@ -17,7 +17,7 @@
 #include "compiler/lower/join.h"
 
 /* Hashes whose instances are noted at once; most nodes of one. */
-enum { MOST_CANDIDATES = 256, CANDIDATE_SLOTS = 1024, MOST_CANDIDATE_NODES = 10000 };
+enum { MAX_CANDIDATES = 256, CANDIDATE_SLOTS = 1024, MAX_CANDIDATE_NODES = 10000 };
 
 typedef struct Candidate {
     uint64_t      hash;
@@ -146,12 +146,12 @@ static Candidate *find_candidate(Search *search, uint64_t hash)
 static void add_candidate(Search *search, uint64_t hash, const Node *roots, size_t first)
 {
     Structures *structures = search->finder->structures;
-    if (search->candidate_count == MOST_CANDIDATES)
+    if (search->candidate_count == MAX_CANDIDATES)
         return;
     Candidate *candidate          = &search->candidates[search->candidate_count++];
     *candidate                    = (Candidate){.hash = hash, .again = true};
     *candidate_slot(search, hash) = (uint16_t)search->candidate_count;
-    if (search->graph->count - first > MOST_CANDIDATE_NODES)
+    if (search->graph->count - first > MAX_CANDIDATE_NODES)
         return;
     Template *template = template_new(structures, roots, PART_ROOTS, search->scratch);
     candidate->again   = !template_detach(structures, template, first, search->scratch);
@@ -289,7 +289,7 @@ InstanceGroups find_groups(const PartFinder *finder, Arena *arena)
                                 .scratch    = scratch,
                                 .hashes     = arena_new_array(scratch, uint64_t, count),
                                 .sorted     = arena_new_array(scratch, uint64_t, count),
-                                .candidates = arena_new_array(scratch, Candidate, MOST_CANDIDATES)};
+                                .candidates = arena_new_array(scratch, Candidate, MAX_CANDIDATES)};
     bool *taken      = arena_new_array(scratch, bool, count + 1);
     find_iteration_groups(finder, &search->groups, taken, arena);
     for (uint32_t i = 0; i < count; i++)

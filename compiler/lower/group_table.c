@@ -120,7 +120,7 @@ static uint32_t add_column(InstanceGroup *group, uint32_t slot, uint32_t element
     for (uint32_t i = 0; i < group->column_count; i++)
         if (columns_equal(group, &group->sources[i], &column))
             return i;
-    if (group->column_count == MOST_TABLE_COLUMNS)
+    if (group->column_count == MAX_TABLE_COLUMNS)
         return NO_COLUMN;
     group->sources[group->column_count] = column;
     return group->column_count++;
@@ -188,7 +188,7 @@ bool group_find_columns(InstanceGroup *group, const GroupJoin *join)
     uint32_t slots      = group->template->slot_count;
     group->varies       = arena_new_array(arena, bool, slots + 1);
     group->columns      = arena_new_array(arena, uint32_t, 4 * (size_t)slots + 1);
-    group->sources      = arena_new_array(join->scratch, Column, MOST_TABLE_COLUMNS);
+    group->sources      = arena_new_array(join->scratch, Column, MAX_TABLE_COLUMNS);
     group->column_count = 0;
     uint8_t(*axis)[4]   = arena_alloc(join->scratch, (size_t)slots + 1, sizeof *axis);
     memset(axis, 0, (slots + 1) * sizeof *axis);

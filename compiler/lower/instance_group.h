@@ -93,7 +93,7 @@ InstanceGroups find_groups(const PartFinder *finder, Arena *arena);
 bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredGroups *groups,
                 Node roots[PART_ROOTS]);
 /* instance_groups.c: how many parts a CSG node with instance groups has at least. */
-uint32_t least_of_csg(const struct LoweredGroups *groups, bool sharp);
+uint32_t min_of_csg(const struct LoweredGroups *groups, bool sharp);
 /* group_iterations.c: adds groups of iterations of one loop, and marks their instances. */
 void find_iteration_groups(const PartFinder *finder, InstanceGroups *groups, bool *taken,
                            Arena *arena);

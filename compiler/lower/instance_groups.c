@@ -45,9 +45,9 @@ LoweredGroups *lowered_groups_new(Graph *graph, Arena *arena, Arena *tables, uin
     return groups;
 }
 
-void lowered_groups_take_few(LoweredGroups *groups) { groups->few = LEAST_OF_FEW; }
+void lowered_groups_take_few(LoweredGroups *groups) { groups->few = MIN_OF_FEW; }
 
-uint32_t least_of_csg(const LoweredGroups *groups, bool sharp)
+uint32_t min_of_csg(const LoweredGroups *groups, bool sharp)
 {
     return sharp ? groups->few : groups->least;
 }
@@ -57,7 +57,7 @@ static bool is_worth_it(const PartFinder *finder, const InstanceGroup *group)
 {
     const size_t count = group->instances.count;
     return count >= finder->many ||
-           (count >= finder->least && (count - 1) * group->template->node_count >= LEAST_SAVED);
+           (count >= finder->least && (count - 1) * group->template->node_count >= MIN_SAVED);
 }
 
 void lowered_groups_made(LoweredGroups *groups) { groups->made++; }
@@ -278,7 +278,7 @@ static CsgGroups *find_csg_node(Lowering *l, const PartJoin *join, LowerContext 
                             .reach      = join->reach,
                             .operands   = !sharp || context.reach > 0,
                             .structures = groups->structures,
-                            .least      = least_of_csg(groups, sharp),
+                            .least      = min_of_csg(groups, sharp),
                             .many       = groups->least,
                             .made       = &groups->made};
     GroupJoin  instances = group_join(l, join);
@@ -296,8 +296,8 @@ JoinedGroups find_joined_groups(Lowering *l, PartJoin *join, LowerContext contex
 {
     JoinedGroups found = {.count = 0};
     const bool   sharp = join->csg_node->blend.width == NODE_NONE;
-    if (!l->groups || join->count < least_of_csg(l->groups, sharp) ||
-        join->csg_node->open_surfaces || l->overflow)
+    if (!l->groups || join->count < min_of_csg(l->groups, sharp) || join->csg_node->open_surfaces ||
+        l->overflow)
         return found;
     if (!l->groups->structures) {
         l->groups->structures = structures_new(l->graph, l->groups->arena);

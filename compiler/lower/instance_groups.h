@@ -7,13 +7,13 @@
 #include "compiler/lower/context.h"
 
 /* Fewer parts that are alike stay apart: a loop over a list costs as much as some. */
-enum { LEAST_INSTANCES = 64 };
+enum { MIN_INSTANCES = 64 };
 /* But large parts cost more.  So few are an instance group if all but one have so many operations.  Blends need a
    loop for each property that is mixed. */
-enum { LEAST_OF_FEW = 6, LEAST_SAVED = 350 };
+enum { MIN_OF_FEW = 6, MIN_SAVED = 350 };
 
 /* The instance groups of a scene, by the CSG nodes that they are parts of.  All lowerings of a CSG node use the
-   same.  What tables have is made in an arena of its own.  `least` is LEAST_INSTANCES, but in tests. */
+   same.  What tables have is made in an arena of its own.  `least` is MIN_INSTANCES, but in tests. */
 typedef struct LoweredGroups LoweredGroups;
 LoweredGroups *lowered_groups_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least);
 /* Lets few large parts of sharp CSG nodes become groups, too. */

@@ -41,7 +41,7 @@ static bool keeps_to_box(const Lowering *l, const Shape *shape)
     if (shape->exact)
         return true;
     if (!joins || shape->open_surfaces ||
-        (l->groups && shape->child_count >= least_of_csg(l->groups, sharp)) ||
+        (l->groups && shape->child_count >= min_of_csg(l->groups, sharp)) ||
         (!sharp && blend_info[shape->blend.kind].slope > 1))
         return false;
     for (uint32_t i = 0; i < (difference ? 1 : shape->child_count); i++)

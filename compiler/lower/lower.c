@@ -36,7 +36,7 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
                             .scratch  = scratch,
                             .surfaces = true,
                             .thin     = true,
-                            .most     = graph->count + MOST_LOWERED,
+                            .most     = graph->count + MAX_LOWERED,
                             .groups   = groups,
                             .places   = place != NULL};
     LowerContext context = context_new(graph_leaf(graph, OP_POINT), false);
@@ -65,7 +65,7 @@ bool lower_solid(Graph *graph, const Shape *shape, struct LoweredGroups *groups,
     Lowering l   = {.graph   = graph,
                     .scratch = scratch,
                     .thin    = true,
-                    .most    = graph->count + MOST_LOWERED,
+                    .most    = graph->count + MAX_LOWERED,
                     .groups  = groups};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     *distance    = divide_by_slope(graph, or_else(all.distance, graph_number(graph, NOWHERE)),
@@ -81,7 +81,7 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredG
                     .guarded = true,
                     .thin    = true,
                     .unit    = graph_number(graph, 1),
-                    .most    = graph->count + MOST_LOWERED,
+                    .most    = graph->count + MAX_LOWERED,
                     .groups  = groups};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
@@ -91,7 +91,7 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredG
 
 /* Most nodes of which a gradient is derived, since each gets three derivatives.  Gradients of
    larger shapes are found by differences. */
-enum { MOST_DERIVED = 20000 };
+enum { MAX_DERIVED = 20000 };
 
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near,
                     struct LoweredGroups *groups, Arena *scratch)
@@ -101,14 +101,14 @@ bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near
                               .scratch       = scratch,
                               .held_constant = &held_constant,
                               .thin          = true,
-                              .most          = graph->count + MOST_DERIVED,
+                              .most          = graph->count + MAX_DERIVED,
                               .groups        = groups};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return false;
     *near     = divide_by_slope(graph, all.distance, shape->slope);
     Tape tape = tape_new(graph, near, 1, scratch);
-    return tape.count <= MOST_DERIVED &&
+    return tape.count <= MAX_DERIVED &&
            graph_gradient_of(graph, *near, held_constant.items, held_constant.count, gradient, NULL,
                              scratch) != DERIVED_NOT;
 }

@@ -36,7 +36,7 @@ Node root_otherwise(Graph *graph, ComponentRoot root);
 
 /* Lowers a shape at the point OP_POINT and sets roots[ROOT_COUNT].  `number` is that of the component,
    from 1, where the shape's parts have none of their own (Shape.shown).  *place, unless NULL, is where its
-   material reads a texture, a VEC2, or NODE_NONE.  False when that needs more than MOST_LOWERED nodes, for
+   material reads a texture, a VEC2, or NODE_NONE.  False when that needs more than MAX_LOWERED nodes, for
    example for copies of copies. */
 bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
                      struct LoweredGroups *groups, Arena *scratch, Node *roots, Node *place);

@@ -65,7 +65,7 @@ Nearest nearest_merge(Graph *g, Nearest nearest, Nearest others)
 {
     if (others.pairs)
         return nearest_add(g, nearest_add(g, nearest, others.near), others.more);
-    for (uint32_t k = 0; k < MOST_SHARERS; k++)
+    for (uint32_t k = 0; k < MAX_SHARERS; k++)
         nearest = nearest_add(g, nearest,
                               graph_component(g, k < 4 ? others.near : others.more, k % 4));
     return nearest;
@@ -106,7 +106,7 @@ static Node four_of(Graph *g, const Node *distances, uint32_t count)
 static Nearest nearest_of(Graph *g, bool pairs, const Node *distances, uint32_t count)
 {
     Nearest nearest = nearest_none(g, pairs);
-    if (!pairs && count <= MOST_SHARERS) { /* they need no order */
+    if (!pairs && count <= MAX_SHARERS) { /* they need no order */
         nearest.near = four_of(g, distances, count);
         if (count > 4)
             nearest.more = four_of(g, distances + 4, count - 4);

@@ -9,7 +9,7 @@
 /* Of two, sharp or blended. */
 Node join_distances(Graph *g, Blend blend, Node a, Node b);
 
-/* The nearest operands of a blend of many, as far as they count: of pairs the two nearest; else MOST_SHARERS
+/* The nearest operands of a blend of many, as far as they count: of pairs the two nearest; else MAX_SHARERS
    in two vectors, in ascending order.  What is not there is NOWHERE. */
 typedef struct Nearest {
     bool pairs;

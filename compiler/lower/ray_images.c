@@ -386,7 +386,7 @@ Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
         return plain;
     Lowering l      = {.graph   = graph,
                        .scratch = scratch,
-                       .most    = graph->count + MOST_LOWERED,
+                       .most    = graph->count + MAX_LOWERED,
                        .method  = method,
                        .groups  = groups,
                        .thin    = true};

@@ -43,8 +43,8 @@ typedef struct Ray {
 /* By how much one term may decrease over the interval, in units of c0.  Of the values from 1 to 16,
    this one needs few evaluations.  To double the interval's length instead, whatever the degree,
    would let t^20 decrease by a million, and steps could be a millionth of the interval. */
-static const double MOST_FALL = 4;
-static const double TINY      = 1e-30;
+static const double MAX_FALL = 4;
+static const double TINY     = 1e-30;
 
 /* ---- polynomials ---- */
 
@@ -55,7 +55,7 @@ static Node interval_length(Lowering *l, const Series *s)
 {
     Graph *g        = l->graph;
     Node   least    = graph_number(g, pow(10, 34.0 / s->degree));
-    Node   whole    = mul(g, s->c[0], graph_number(g, MOST_FALL));
+    Node   whole    = mul(g, s->c[0], graph_number(g, MAX_FALL));
     Node   exponent = NODE_NONE;
     for (uint32_t k = 1; k <= s->degree; k++) {
         Node fall     = at_least(g, neg(g, s->c[k]), TINY);
@@ -98,7 +98,7 @@ static Node safe_step(Lowering *l, const Series *s)
 {
     Graph *g      = l->graph;
     Node   length = interval_length(l, s), power = length, steepest = NODE_NONE;
-    Node   terms[MOST_DEGREE + 1];
+    Node   terms[MAX_DEGREE + 1];
     for (uint32_t k = 1; k <= s->degree; k++) {
         terms[k] = mul(g, s->c[k], power);
         power    = mul(g, power, length);
@@ -491,7 +491,7 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
         return plain;
     Lowering l = {.graph   = graph,
                   .scratch = scratch,
-                  .most    = graph->count + MOST_LOWERED,
+                  .most    = graph->count + MAX_LOWERED,
                   .method  = method,
                   .groups  = groups,
                   .thin    = true};

@@ -17,7 +17,7 @@
 #include "compiler/lower/footprint.h"
 
 /* The part of v's gradient that is along the surface, squared: less is none. */
-static const double LEAST_SHARE = 1e-4;
+static const double MIN_SHARE = 1e-4;
 
 /* The vector, or its opposite where a number is below 0. */
 static Node turned_by_sign(Graph *g, Node vector, Node number)
@@ -54,7 +54,7 @@ Node tangent_of_uv(Graph *g, Node uv, Arena *scratch)
     Node grows  = graph_op2(g, OP_dot, along, of_u);
     Node ahead  = turned_by_sign(g, along, grows);
     Node square = graph_op2(g, OP_dot, along, along), all = graph_op2(g, OP_dot, of_v, of_v);
-    Node least = mul(g, all, graph_number(g, LEAST_SHARE));
+    Node least = mul(g, all, graph_number(g, MIN_SHARE));
     Node stays = graph_op2(g, OP_less, square, least); /* v does all over, as on a lid */
     return graph_op1(g, OP_normalize, graph_op3(g, OP_select, stays, of_u, ahead));
 }

@@ -11,8 +11,8 @@
 #include "compiler/outline/edges.h"
 
 enum {
-    MOST_LEAVES   = 4096, /* of the halving of a pair: more run along each other */
-    MOST_HALVINGS = 45
+    MAX_LEAVES   = 4096, /* of the halving of a pair: more run along each other */
+    MAX_HALVINGS = 45
 };
 
 typedef struct Cut {
@@ -184,10 +184,10 @@ static bool may_cross(const Span2 *a, const Span2 *b, double slack)
 static void find_crossings(Cutter *cutter, const Span2 *a, const Span2 *b, int depth)
 {
     double bulge_a = bulge(cutter, a), bulge_b = bulge(cutter, b), least = 0.1 * cutter->tolerance;
-    if (cutter->leaves > MOST_LEAVES || !boxes_meet(a, b) ||
+    if (cutter->leaves > MAX_LEAVES || !boxes_meet(a, b) ||
         !may_cross(a, b, cutter->tolerance + bulge_a + bulge_b))
         return;
-    if ((bulge_a <= least && bulge_b <= least) || depth == MOST_HALVINGS) {
+    if ((bulge_a <= least && bulge_b <= least) || depth == MAX_HALVINGS) {
         cutter->leaves++;
         cut_at_crossing(cutter, a, b);
         return;
@@ -227,7 +227,7 @@ static bool cut_pair(Cutter *cutter, uint32_t a, uint32_t b)
         return true;
     cutter->leaves = 0;
     find_crossings(cutter, &x, &y, 0);
-    if (cutter->leaves <= MOST_LEAVES)
+    if (cutter->leaves <= MAX_LEAVES)
         return true;
     memcpy(making->fault_at, x.ends[0], sizeof making->fault_at);
     return false;
@@ -280,7 +280,7 @@ static OutlineFault find_cuts(Cutter *cutter)
                 continue;
             if (!cut_pair(cutter, boxes[i].edge, boxes[k].edge))
                 return OUTLINE_UNRESOLVED;
-            if (cutter->cuts.count > MOST_EDGES)
+            if (cutter->cuts.count > MAX_EDGES)
                 return OUTLINE_TOO_MANY;
         }
     return OUTLINE_GOOD;
@@ -340,5 +340,5 @@ OutlineFault cut_edges(Making *making)
             next++;
         cut_edge(making, &old.items[i], cuts ? cuts + first : cuts, next - first);
     }
-    return making->edges.count > MOST_EDGES ? OUTLINE_TOO_MANY : OUTLINE_GOOD;
+    return making->edges.count > MAX_EDGES ? OUTLINE_TOO_MANY : OUTLINE_GOOD;
 }

@@ -20,7 +20,7 @@ typedef struct Edges {
 } Edges;
 
 /* Contours may have so many edges, and where they cross so many cuts. */
-enum { MOST_EDGES = 400000 };
+enum { MAX_EDGES = 400000 };
 
 /* Everything at hand while an outline is made; all of it is scratch. */
 typedef struct Making {

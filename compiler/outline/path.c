@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_QUADRATICS = 64 /* of a cubic curve */ };
+enum { MAX_QUADRATICS = 64 /* of a cubic curve */ };
 
 Curve line_between(const double from[2], const double to[2])
 {
@@ -114,7 +114,7 @@ void path_cubic(Path *path, const double first[2], const double second[2], const
         third[k] = to[k] - 3 * second[k] + 3 * first[k] - from[k];
     double away   = sqrt(3) / 36 * hypot(third[0], third[1]);
     double parts  = ceil(cbrt(away / path->tolerance));
-    int    count  = parts > 1 ? (int)fmin(parts, MOST_QUADRATICS) : 1;
+    int    count  = parts > 1 ? (int)fmin(parts, MAX_QUADRATICS) : 1;
     double old[2] = {from[0], from[1]}, slope[2];
     for (int k = 0; k < 2; k++)
         slope[k] = first[k] - from[k];

@@ -272,7 +272,7 @@ OutlineFault outline_make(Outline *outline, const Curves *curves, FillRule rule,
 {
     *outline = (Outline){0};
     find_box(outline, curves);
-    if (curves->count > MOST_EDGES)
+    if (curves->count > MAX_EDGES)
         return OUTLINE_TOO_MANY;
     double extent = fmax(outline->high[0] - outline->low[0], outline->high[1] - outline->low[1]);
     Making making = {.arena = scratch};

@@ -15,7 +15,7 @@
 #include "compiler/outline/svg_tree.h"
 
 /* `use` in `use`, and gradients that continue others. */
-enum { MOST_REFERENCES = 24, MOST_ENTERED = 400000 };
+enum { MAX_REFERENCES = 24, MAX_ENTERED = 400000 };
 
 /* Of a fill or a stroke.  Its colour is sRGB, 0xrrggbb. */
 typedef struct Paint {
@@ -259,7 +259,7 @@ static bool read_reference(Reader *reader, const char *text, Paint *paint)
     const SvgElement *found = svg_referred(&reader->tree, text);
     if (!found || !strstr(found->name, "Gradient"))
         return false;
-    for (int i = 0; found && !has_stops(found) && i < MOST_REFERENCES; i++)
+    for (int i = 0; found && !has_stops(found) && i < MAX_REFERENCES; i++)
         found = svg_referred(&reader->tree, link_of(found));
     note(reader, "gradients, which have one colour: their mean");
     paint->drawn = found && mean_of_stops(reader, found, &paint->rgb);
@@ -547,7 +547,7 @@ static void enter(Reader *reader, const SvgElement *element, State state)
 {
     const struct Kind *kind = find_kind(element->name);
     reader->line            = element->line;
-    if (++reader->entered > MOST_ENTERED)
+    if (++reader->entered > MAX_ENTERED)
         stop(reader, "there are too many elements, as `use` multiplies them");
     if (reader->fault || (kind && kind->silent))
         return;
@@ -628,7 +628,7 @@ static void enter_use(Reader *reader, const SvgElement *element, State state)
 {
     const SvgElement *used = svg_referred(&reader->tree, link_of(element));
     double            size[2];
-    if (!used || ++state.references > MOST_REFERENCES) {
+    if (!used || ++state.references > MAX_REFERENCES) {
         note(reader,
              used ? "elements `use` in each other" : "elements `use` of nothing in the file");
         return;

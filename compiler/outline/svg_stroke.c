@@ -16,12 +16,12 @@
 
 #include "compiler/outline/edges.h"
 
-enum { MOST_CORNERS = 64, MOST_DASHES = 100000 };
+enum { MAX_CORNERS = 64, MAX_DASHES = 100000 };
 
 /* One contour before it is drawn: points, and the control points of the curves that lead to them. */
 typedef struct Contour {
-    double to[MOST_CORNERS][2], via[MOST_CORNERS][2];
-    bool   curved[MOST_CORNERS];
+    double to[MAX_CORNERS][2], via[MAX_CORNERS][2];
+    bool   curved[MAX_CORNERS];
     int    count;
 } Contour;
 
@@ -245,7 +245,7 @@ static void draw_curve(Stroker *stroker, const Curve *curve)
 static void add_arc(const Stroker *stroker, Contour *contour, const double at[2],
                     const double radius[2], double by)
 {
-    int    count = (int)fmin(fmax(ceil(fabs(by) / stroker->angle), 1), MOST_CORNERS - 8);
+    int    count = (int)fmin(fmax(ceil(fabs(by) / stroker->angle), 1), MAX_CORNERS - 8);
     double step = by / count, stretch = 1 / cos(0.5 * step);
     for (int i = 0; i < count; i++) {
         double middle = (i + 0.5) * step, end = (i + 1) * step, via[2], to[2];
@@ -423,7 +423,7 @@ static bool is_dashed(const SvgStroke *stroke, const Curves *curves)
         length += length_up_to(&curves->items[i], 1);
     for (int i = 0; i < stroke->dash_count; i++)
         period += stroke->dashes[i];
-    return period > 0 && stroke->dash_count * length / period < MOST_DASHES;
+    return period > 0 && stroke->dash_count * length / period < MAX_DASHES;
 }
 
 /* ---- the whole ---- */

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { MOST_DEPTH = 256 };
+enum { MAX_DEPTH = 256 };
 
 typedef struct Reader {
     SvgTree    *tree;
@@ -89,7 +89,7 @@ static const char *local_name(const char *name)
 static void begin_element(void *user, const char *name, const char **attributes)
 {
     Reader *reader = user;
-    if (++reader->depth >= MOST_DEPTH) {
+    if (++reader->depth >= MAX_DEPTH) {
         stop(reader, "elements are nested too deep");
         return;
     }

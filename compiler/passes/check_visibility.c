@@ -12,7 +12,7 @@
 #include "compiler/passes/compilation.h"
 
 /* Components that are looked up by their place at most: those of a short loop have the same one. */
-enum { MOST_FOUND = 100 };
+enum { MAX_FOUND = 100 };
 
 /* What a camera has in its picture: the points q with dot(normal, q) <= offset for all planes. */
 typedef struct Pyramid {
@@ -135,7 +135,7 @@ static void warn_of_unseen(Compilation *c, const Pyramid *pyramids, size_t count
 {
     const Scene *scene     = &c->elaborated;
     size_t       looked_up = 0;
-    for (size_t i = 0; i < scene->components.count && looked_up < MOST_FOUND; i++) {
+    for (size_t i = 0; i < scene->components.count && looked_up < MAX_FOUND; i++) {
         const Component *component = &scene->components.items[i];
         if (is_in_view(pyramids, count, component->shape->box))
             continue;

@@ -36,7 +36,7 @@ typedef struct Request {
     Inspect *inspect; /* called with the elaborated scene, unless NULL */
     void    *user;    /* passed to `inspect` */
     uint32_t
-        least_instances; /* instances of an instance group (lower/instance_groups.h); 0: LEAST_INSTANCES */
+        min_instances; /* instances of an instance group (lower/instance_groups.h); 0: MIN_INSTANCES */
     bool
         single_iterations; /* each iteration of a loop is evaluated by itself (eval/iterations.c) */
 } Request;
@@ -92,7 +92,7 @@ void validate_parameterised(const Compilation *c);
 void validate_info(const Compilation *c);
 
 /* passes.c: instances of an instance group, and iterations of a loop that is evaluated once. */
-uint32_t least_instances(const Compilation *c);
+uint32_t min_instances(const Compilation *c);
 
 /* precision.c: whether a camera may be so far from the origin, and so near to a surface, that
    points must be camera-relative. */

@@ -331,16 +331,14 @@ KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *
 KrsStatus compile_with_instances(const char *text, size_t length, uint32_t least,
                                  const KrsOptions *options, KrsScene **scene)
 {
-    Request request = {.after = PASS_COUNT, .end = PASS_COUNT, .least_instances = least};
+    Request request = {.after = PASS_COUNT, .end = PASS_COUNT, .min_instances = least};
     return load_and_compile(text, length, "scene.krs", options, &request, scene);
 }
 
 KrsStatus compile_iteration_by_iteration(const char *text, size_t length, uint32_t least,
                                          const KrsOptions *options, KrsScene **scene)
 {
-    Request request = {.after             = PASS_COUNT,
-                       .end               = PASS_COUNT,
-                       .least_instances   = least,
-                       .single_iterations = true};
+    Request request = {
+        .after = PASS_COUNT, .end = PASS_COUNT, .min_instances = least, .single_iterations = true};
     return load_and_compile(text, length, "scene.krs", options, &request, scene);
 }

@@ -13,7 +13,7 @@
 #include "compiler/graph/timed.h"
 #include "compiler/graph/instances/iterations.h"
 
-enum { MOST_ITEMS = 4096 };
+enum { MAX_ITEMS = 4096 };
 
 /* A shape and its item, in an iteration of a loop and below the paint that counts. */
 typedef struct Known {
@@ -231,7 +231,7 @@ static bool is_rigid(const Shape *krs)
 static uint32_t take_parts(Finder *f, const Shape *shape)
 {
     bool sharp = shape->blend.width == NODE_NONE;
-    if ((shape->levels == 0 && !moves(f, shape)) || f->assembly->items.count >= MOST_ITEMS)
+    if ((shape->levels == 0 && !moves(f, shape)) || f->assembly->items.count >= MAX_ITEMS)
         return add_part(f, shape);
     switch (shape->kind) {
     case SHAPE_PAINT: return take_paint(f, shape);

@@ -20,10 +20,10 @@
 #include "compiler/graph/lanes/lanes.h"
 #include "compiler/shape/box.h"
 
-enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = LANES, MOST_UNRESOLVED = 4 };
+enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = LANES, MAX_UNRESOLVED = 4 };
 /* Cells are halved this many times, along their longest side; and so many are tried at once for each
    ray that is cast. */
-enum { HALVINGS = 15, CELLS_A_RAY = 4, MOST_CELLS = RAYS * CELLS_A_RAY };
+enum { HALVINGS = 15, CELLS_A_RAY = 4, MAX_CELLS = RAYS * CELLS_A_RAY };
 /* Fewer points do not tell how large something is. */
 enum { FEWEST_SEEN = 8 };
 /* The ball of the picture is larger than that of the hits by this, since rays miss some of the
@@ -36,8 +36,8 @@ static const double FLOPS_OF_ALL_RAYS = 2500;
 
 /* Nor do rays take more steps or operations than this, whatever each of them needs: those of a round at
    most a part of what is left, so that there is something for the next one. */
-enum { MOST_STEPS = 1000, SHARE = 3 };
-static const uint64_t MOST_OPERATIONS = 40000000;
+enum { MAX_STEPS = 1000, SHARE = 3 };
+static const uint64_t MAX_OPERATIONS = 40000000;
 
 /* Rays are cast in an order whose beginnings are spread as all of it, whether or not there is time for
    all: this has no factor in common with their number. */
@@ -108,7 +108,7 @@ static void make_rays(const Ball *ball, int count, Rays *rays)
 static void begin_round(const KrsFrame *frame, Rays *rays)
 {
     uint64_t left = frame->ran < rays->most ? rays->most - frame->ran : 0;
-    rays->limits  = (RayLimits){MOST_STEPS, frame->ran + left / SHARE};
+    rays->limits  = (RayLimits){MAX_STEPS, frame->ran + left / SHARE};
 }
 
 static void note_hit(KrsFrame *frame, const KrsHit *hit, Rays *rays)
@@ -126,7 +126,7 @@ static bool cast_rays(KrsFrame *frame, Rays *rays, int count, double radius)
 {
     const uint64_t most       = rays->limits.ran;
     int            unresolved = 0;
-    for (int i = 0; i < count && unresolved <= MOST_UNRESOLVED && frame->ran < most; i += BATCH) {
+    for (int i = 0; i < count && unresolved <= MAX_UNRESOLVED && frame->ran < most; i += BATCH) {
         int now = count - i < BATCH ? count - i : BATCH;
         if (frame_raycast(frame, (const double(*)[3])rays->origins + i,
                           (const double(*)[3])rays->directions + i, (size_t)now, 4 * radius,
@@ -137,7 +137,7 @@ static bool cast_rays(KrsFrame *frame, Rays *rays, int count, double radius)
             unresolved += hit->unresolved && frame->ran < most;
         }
     }
-    return unresolved <= MOST_UNRESOLVED;
+    return unresolved <= MAX_UNRESOLVED;
 }
 
 /* The ball around the box of what is seen, with a margin, no larger than `ball` was; false where
@@ -168,8 +168,8 @@ static void grow_ball(const Rays *rays, double most, Ball *ball)
 
 /* Cells that may not be empty, and what is asked of them. */
 typedef struct Cells {
-    Box    boxes[2 * MOST_CELLS];
-    double middles[2 * MOST_CELLS][3], distances[2 * MOST_CELLS];
+    Box    boxes[2 * MAX_CELLS];
+    double middles[2 * MAX_CELLS][3], distances[2 * MAX_CELLS];
     size_t count;
 } Cells;
 
@@ -414,7 +414,7 @@ static KrsStatus find_camera(KrsFrame *frame, DefaultCamera *camera, bool *found
     KrsStatus status = rays && cells ? KRS_OK : KRS_OUT_OF_MEMORY;
     if (status == KRS_OK) {
         rays->boxes = boxes;
-        rays->most  = frame->ran + MOST_OPERATIONS;
+        rays->most  = frame->ran + MAX_OPERATIONS;
         find_ball(frame, box, rays, cells, &ball);
         frame_view(frame, 0, &view);
         *camera = place_camera(rays, &ball, view.camera.fov);

@@ -13,7 +13,7 @@
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/bounds/facts.h"
 
-enum { MOST_OPERATIONS = 20000, MOST_GLSL_BYTES = 1500000 };
+enum { MAX_OPERATIONS = 20000, MAX_GLSL_BYTES = 1500000 };
 
 static const char fewer_shapes[] = "fewer shapes, reflections or copies; parts of a union that "
                                    "differ in constants alone count once";
@@ -37,8 +37,8 @@ typedef struct Heaviest {
 
 static void find_heaviest(Compilation *c, const Shape *shape, Heaviest *heaviest)
 {
-    enum { MOST_LOOKED_AT = 200 };
-    if (++heaviest->looked_at > MOST_LOOKED_AT)
+    enum { MAX_LOOKED_AT = 200 };
+    if (++heaviest->looked_at > MAX_LOOKED_AT)
         return;
     if (shape->kind == SHAPE_PRIMITIVE && shape->distance != NODE_NONE) {
         Tape   tape       = tape_new(c->elaborated.graph, &shape->distance, 1, &c->scratch);
@@ -58,7 +58,7 @@ static void blame_heaviest(Compilation *c, Diag *diag, const Component *componen
 {
     Heaviest heaviest = {0};
     find_heaviest(c, component->shape, &heaviest);
-    if (heaviest.operations < MOST_OPERATIONS / 2)
+    if (heaviest.operations < MAX_OPERATIONS / 2)
         return;
     const Shape *shape = heaviest.shape;
     diag_secondary(
@@ -76,7 +76,7 @@ void refuse_component(Compilation *c, size_t component, size_t operations)
 {
     const Component *shown = &c->elaborated.components.items[component];
     Diag            *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, shown->span,
-                                      "the scene needs more than %d operations", MOST_OPERATIONS);
+                                      "the scene needs more than %d operations", MAX_OPERATIONS);
     diag->label = operations ? diag_text(&c->diags, "`%s` is the largest component, with %zu",
                                          shown->name, operations)
                              : diag_text(&c->diags, "`%s` alone needs more", shown->name);
@@ -89,7 +89,7 @@ static void refuse_zones(Compilation *c, size_t operations)
 {
     Span  span  = c->scene->graph->items[zone_root(c->scene)].span;
     Diag *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, span,
-                           "the scene needs more than %d operations", MOST_OPERATIONS);
+                           "the scene needs more than %d operations", MAX_OPERATIONS);
     diag->label = diag_text(&c->diags, "its %zu zones need %zu", c->elaborated.zone_count,
                             operations);
     diag->help  = "fewer zones";
@@ -121,7 +121,7 @@ static bool check_operations(Compilation *c)
 {
     size_t count = c->elaborated.components.count, largest = 0, most = 0;
     count_all_operations(c);
-    if (total_operations(c) <= MOST_OPERATIONS)
+    if (total_operations(c) <= MAX_OPERATIONS)
         return true;
     for (size_t i = 0; i < count; i++)
         if (c->operations[i] > most) {
@@ -247,9 +247,9 @@ static Range range_everywhere(Compilation *c, Node node)
    a mistake like this is soon met with. */
 static Node first_undefined(Compilation *c, const Tape *tape, double *most)
 {
-    enum { MOST_LOOKED_AT = 64 };
+    enum { MAX_LOOKED_AT = 64 };
     size_t looked_at = 0;
-    for (size_t i = tape->frame_count; i < tape->count && looked_at < MOST_LOOKED_AT; i++) {
+    for (size_t i = tape->frame_count; i < tape->count && looked_at < MAX_LOOKED_AT; i++) {
         const Expr *expr = &tape->graph->items[tape->nodes[i]];
         if (!needs_positive(expr))
             continue;
@@ -293,7 +293,7 @@ void print_limits(Compilation *c, Text *out)
                     c->operations[i]);
     if (c->elaborated.zone_count > 0)
         text_format(out, "zones  %zu operations\n", c->operations[count]);
-    text_format(out, "all  %zu operations of %d\n", total_operations(c), MOST_OPERATIONS);
+    text_format(out, "all  %zu operations of %d\n", total_operations(c), MAX_OPERATIONS);
 }
 
 /* ---- the first frame ---- */
@@ -347,7 +347,7 @@ static void refuse_length(Compilation *c, size_t largest, size_t operations)
     const Component *shown = count ? &c->elaborated.components.items[largest] : NULL;
     Diag *diag = diag_add(&c->diags, DIAG_TOO_LARGE, shown ? shown->span : (Span){1, 0, 0},
                           "the scene needs %.1f MB of shader; the limit is %.1f MB",
-                          (double)c->scene->program.glsl_length * 1e-6, MOST_GLSL_BYTES * 1e-6);
+                          (double)c->scene->program.glsl_length * 1e-6, MAX_GLSL_BYTES * 1e-6);
     if (count > 1)
         diag->label = diag_text(&c->diags, "the largest of %zu components, with %zu operations",
                                 count, operations);
@@ -362,7 +362,7 @@ static void refuse_length(Compilation *c, size_t largest, size_t operations)
 static bool check_length(Compilation *c)
 {
     size_t largest = 0, most = 0;
-    if (c->scene->program.glsl_length <= MOST_GLSL_BYTES)
+    if (c->scene->program.glsl_length <= MAX_GLSL_BYTES)
         return true;
     arena_free(&c->scratch);
     for (size_t i = 0; i < c->elaborated.components.count; i++) {
@@ -380,7 +380,7 @@ KrsStatus pass_check(Compilation *c) { return check_length(c) ? check_defaults(c
 void print_check(Compilation *c, Text *out)
 {
     const KrsProgram *program = &c->scene->program;
-    text_format(out, "shader  %zu bytes of %d\n", program->glsl_length, MOST_GLSL_BYTES);
+    text_format(out, "shader  %zu bytes of %d\n", program->glsl_length, MAX_GLSL_BYTES);
     text_format(out, "first frame  finite in %u slots of parameters and %u of values\n",
                 program->parameter_slots, program->value_slots);
 }

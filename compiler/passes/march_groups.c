@@ -18,7 +18,7 @@ static const double APART_FLOPS = 300, SHARED_FLOPS = 1000;
 static const double NESTED_FLOPS = 450, NESTED_VOLUME = 1.25;
 
 /* Where one group has more than this part of all flops, marching it by itself saves nothing. */
-static const double MOST_OF_SCENE = 0.9;
+static const double MAX_OF_SCENE = 0.9;
 
 static double component_flops(Compilation *c, size_t component)
 {
@@ -70,9 +70,9 @@ static size_t choose_march_group(const KrsProgram *program, double flops, double
                         rest_flops + flops <= SHARED_FLOPS;
     bool own = flops >= EXPENSIVE_FLOPS && !shares && box_is_finite(box) && !box_is_empty(box);
     if (!own)
-        return KRS_MOST_MARCH_GROUPS - 1;
+        return KRS_MAX_MARCH_GROUPS - 1;
     size_t nested = find_nested(program, flops, box);
-    return nested < KRS_MOST_MARCH_GROUPS - 1 ? nested : KRS_MOST_MARCH_GROUPS - 1;
+    return nested < KRS_MAX_MARCH_GROUPS - 1 ? nested : KRS_MAX_MARCH_GROUPS - 1;
 }
 
 /* Makes a group larger by a component. */
@@ -103,7 +103,7 @@ static double flops_worth_splitting(const KrsProgram *program)
         sum += volume_of(box_of_group(&program->march_groups[i]));
         largest = fmax(largest, program->march_groups[i].flops);
     }
-    if (largest > MOST_OF_SCENE * program->flops)
+    if (largest > MAX_OF_SCENE * program->flops)
         return INFINITY;
     for (int k = 0; k < 3; k++)
         hull *= program->high[k] - program->low[k];
@@ -132,7 +132,7 @@ void form_march_groups(Compilation *c)
             extend_march_group(&program->march_groups[group], flops, component->shape->box);
             continue;
         }
-        if (group < KRS_MOST_MARCH_GROUPS - 1) {
+        if (group < KRS_MAX_MARCH_GROUPS - 1) {
             add_march_group(program, flops, component->shape->box);
             continue;
         }
@@ -141,7 +141,7 @@ void form_march_groups(Compilation *c)
     }
     if (rest_flops > 0 && program->march_group_count > 0) {
         for (size_t i = 0; i < c->scene->component_count; i++)
-            if (march_groups[i] == KRS_MOST_MARCH_GROUPS)
+            if (march_groups[i] == KRS_MAX_MARCH_GROUPS)
                 march_groups[i] = (uint32_t)program->march_group_count + 1;
         add_march_group(program, rest_flops, rest);
     }

@@ -35,7 +35,7 @@ KrsStatus pass_load(Compilation *c)
         refuse_scene(c, DIAG_CANNOT_READ, diag_text(&c->diags, "cannot be read: %s", reason));
         return KRS_IO_ERROR;
     }
-    if (c->loaded.length > MOST_SOURCE_BYTES)
+    if (c->loaded.length > MAX_SOURCE_BYTES)
         return refuse_scene(c, DIAG_LIMIT, "the file is longer than 16 MiB");
     files_load(&c->files, c->name, c->loaded.text, c->loaded.length);
     free(c->loaded.owned); /* `files` has a copy */
@@ -91,9 +91,9 @@ static bool parameterises(const Compilation *c)
     return c->options->specialize == KRS_SPECIALIZE_STRUCTURE;
 }
 
-uint32_t least_instances(const Compilation *c)
+uint32_t min_instances(const Compilation *c)
 {
-    return c->request->least_instances ? c->request->least_instances : LEAST_INSTANCES;
+    return c->request->min_instances ? c->request->min_instances : MIN_INSTANCES;
 }
 
 static void elaborate_with(Compilation *c, IterationTrials *iterations)
@@ -135,7 +135,7 @@ static void elaborate_with(Compilation *c, IterationTrials *iterations)
 KrsStatus pass_elaborate(Compilation *c)
 {
     const Diags     before     = c->diags;
-    IterationTrials iterations = {.least = least_instances(c)};
+    IterationTrials iterations = {.least = min_instances(c)};
     elaborate_with(c, c->request->single_iterations ? NULL : &iterations);
     if (iterations.refused) {
         c->diags.count    = before.count;

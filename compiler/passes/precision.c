@@ -22,13 +22,13 @@
 
 /* The relative error of a coordinate that shaders assume (ROUNDING in frame.glsl). */
 static const double ROUNDING = 2.4e-7;
-/* The largest permitted error in pixels: the tolerance of a march (MOST_TOLERANCE in
+/* The largest permitted error in pixels: the tolerance of a march (MAX_TOLERANCE in
    trace.comp). */
-static const double MOST_OF_PIXEL = 1.0 / 64;
+static const double MAX_OF_PIXEL = 1.0 / 64;
 
 bool krs_needs_rebase(double coordinate, double pixel)
 {
-    return ROUNDING * coordinate > MOST_OF_PIXEL * pixel;
+    return ROUNDING * coordinate > MAX_OF_PIXEL * pixel;
 }
 
 /* The least reach of taps for a normal, relative to coordinates, and their reach in pixels (NOISE in
@@ -47,13 +47,13 @@ double krs_seen_reach(double distance, double pixel, double lines)
 
 bool krs_may_blur_normals(double coordinate, double distance, double pixel, double lines)
 {
-    return coordinate + distance > KRS_LEAST_GAIN * krs_seen_reach(distance, pixel, lines) &&
-           krs_normal_blur(coordinate + distance, pixel) > KRS_LEAST_BLUR;
+    return coordinate + distance > KRS_MIN_GAIN * krs_seen_reach(distance, pixel, lines) &&
+           krs_normal_blur(coordinate + distance, pixel) > KRS_MIN_BLUR;
 }
 
 /* Answers of a device are relative to a nearer base where coordinates are so many times as large as what is
    seen, from its middle on (query.c of the runtime). */
-static const double MOST_REACH = 10;
+static const double MAX_REACH = 10;
 
 /* A moving eye may come near to any surface, so coordinates above this number need rebasing. */
 static const double FAR_OUT = 64;
@@ -184,7 +184,7 @@ bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, bool 
                     (moves && reach_of_eye(&view, camera->nodes.eye) > FAR_OUT);
     }
     if (!pictures && size_of(scene) > 0) /* a device may be asked about what no camera sees */
-        needs = needs || reach_of_boxes(scene) > MOST_REACH * 0.5 * size_of(scene);
+        needs = needs || reach_of_boxes(scene) > MAX_REACH * 0.5 * size_of(scene);
     arena_free(scratch);
     return needs;
 }

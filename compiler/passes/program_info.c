@@ -150,7 +150,7 @@ void validate_info(const Compilation *c)
     const KrsProgram *program = &c->scene->program;
     assert(program->parameter_slots > 0); /* slot 0 is the time */
     assert(isfinite(program->flops) && program->flops >= 0);
-    assert(program->march_group_count != 1 && program->march_group_count <= KRS_MOST_MARCH_GROUPS);
+    assert(program->march_group_count != 1 && program->march_group_count <= KRS_MAX_MARCH_GROUPS);
     assert(!program->per_component || program->march_group_count > 0);
     assert(program->gradients || !(program->algebraic || program->open_surfaces));
     assert(!program->open_surfaces || !program->camera_relative);

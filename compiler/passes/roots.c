@@ -234,8 +234,8 @@ KrsStatus pass_lower(Compilation *c)
     Roots         *roots  = &c->scene->roots;
     Additions     *more   = &c->additions;
     LoweredGroups *groups = lowered_groups_new(s->graph, &c->work, &c->scene->arena,
-                                               least_instances(c));
-    if (c->options->pictures && !c->request->least_instances)
+                                               min_instances(c));
+    if (c->options->pictures && !c->request->min_instances)
         lowered_groups_take_few(groups);
     allocate_roots(c, find_assembly(c, groups));
     if (!lower_components(c, s->graph, groups))

@@ -8,11 +8,11 @@
 #include "compiler/print/emitter.h"
 
 /* Beyond so many, neighbours share a part. */
-enum { MOST_SCENE_PARTS = 64 };
+enum { MAX_SCENE_PARTS = 64 };
 
 uint32_t module_scene_part_count(size_t components)
 {
-    return components < MOST_SCENE_PARTS ? (uint32_t)components : MOST_SCENE_PARTS;
+    return components < MAX_SCENE_PARTS ? (uint32_t)components : MAX_SCENE_PARTS;
 }
 
 uint32_t module_scene_part_first(size_t part, size_t components)

@@ -167,7 +167,7 @@ bool mirror_repeats(const Emitter *e, const Expr *fold)
 
 /* Rows need two or three more numbers of the frame for each mirror.  A driver takes ever longer for
    those that do not fit into registers, so scenes with more mirrors go without rows. */
-enum { MOST_MIRRORS = 64 };
+enum { MAX_MIRRORS = 64 };
 
 static const MirrorNodes no_nodes = {false, {NODE_NONE, NODE_NONE}};
 
@@ -208,7 +208,7 @@ MirrorNodes *module_parameterise_mirrors(Graph *graph, Arena *arena)
     size_t       mirrors = 0;
     for (Node n = 0; n < count; n++)
         mirrors += may_be_in_row(graph, n);
-    if (mirrors == 0 || mirrors > MOST_MIRRORS)
+    if (mirrors == 0 || mirrors > MAX_MIRRORS)
         return NULL;
     MirrorNodes *nodes = arena_new_array(arena, MirrorNodes, count);
     for (Node n = 0; n < count; n++)

@@ -10,7 +10,7 @@
 
 /* Drivers end all loops of a lane after some iterations, without a word: lavapipe after 65535.  A lane may
    find 64 surfaces in a dispatch, with these iterations for each. */
-enum { MOST_ITERATIONS = 256 };
+enum { MAX_ITERATIONS = 256 };
 
 static bool is_noise(const Expr *expr) { return expr->op == OP_noise2 || expr->op == OP_noise3; }
 
@@ -93,7 +93,7 @@ static void emit_noises(Emitter *e, uint32_t rank, Op op)
         if (is_computed(e, n) && e->rank[n] == rank && e->graph->items[n].op == op)
             array_push(e->scratch, &noises, n);
     }
-    if (noises.count >= KRS_LEAST_FUSED_NOISES && noises.count <= MOST_ITERATIONS - e->iterations) {
+    if (noises.count >= KRS_MIN_FUSED_NOISES && noises.count <= MAX_ITERATIONS - e->iterations) {
         e->iterations += (uint32_t)noises.count;
         emit_loop(e, &noises);
         return;

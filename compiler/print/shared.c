@@ -7,7 +7,7 @@
 #include "compiler/print/emitter.h"
 
 /* With more values than this a function of its own is shorter to read. */
-enum { MOST_SHARED = 12 };
+enum { MAX_SHARED = 12 };
 
 /* What is known of a node here. */
 enum { UNKNOWN, OF_THE_DISTANCE, SEEN };
@@ -57,7 +57,7 @@ bool emit_find_shared(Emitter *e, uint32_t component, NodeList *shared)
     visit(e, &path, shared);
     forget(e, path.items, path.count);
     forget(e, e->needed.items, e->needed.count);
-    return shared->count <= MOST_SHARED;
+    return shared->count <= MAX_SHARED;
 }
 
 static const char *name_of(Emitter *e, const char *what, size_t number)

@@ -14,7 +14,7 @@
 #include "compiler/print/emitter.h"
 
 /* Expressions are nested to this depth and length at most: compilers of shaders recurse. */
-enum { MOST_NESTING = 6, MOST_INLINE = 72 };
+enum { MAX_NESTING = 6, MAX_INLINE = 72 };
 
 /* What names of values begin with. */
 static char type_letter(GraphType type)
@@ -240,7 +240,7 @@ void emit_node(Emitter *e, Node n)
     bool        plain = is_leaf(expr) || part;
     e->nesting[n]     = plain ? 0 : deep + 1;
     e->text[n]        = text;
-    if (plain || (e->uses[n] == 1 && e->nesting[n] < MOST_NESTING && strlen(text) < MOST_INLINE))
+    if (plain || (e->uses[n] == 1 && e->nesting[n] < MAX_NESTING && strlen(text) < MAX_INLINE))
         return;
     emit_comment(e, expr->span);
     Text name = {.arena = e->scratch};

@@ -120,7 +120,7 @@ typedef struct KrsVariant {
 } KrsVariant;
 
 /* Fewer noises are not worth a loop. */
-enum { KRS_LEAST_FUSED_NOISES = 4 };
+enum { KRS_MIN_FUSED_NOISES = 4 };
 
 /* A number that tells texts apart, for caches. */
 uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, size_t count);

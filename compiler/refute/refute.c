@@ -23,7 +23,7 @@ static const double OPERATIONS_PER_SECOND = 1e8;
 /* After so many somebody is asked whether to go on. */
 static const uint64_t SLICE = 10000000;
 
-enum { MOST_SHAPES = 4096, MOST_TRIALS = 6 };
+enum { MAX_SHAPES = 4096, MAX_TRIALS = 6 };
 
 /* ---- shapes ---- */
 
@@ -37,7 +37,7 @@ static bool is_known(const Refuter *r, const Shape *shape)
 
 static void add_suspects(Refuter *r, const Shape *shape, uint32_t component, size_t parent)
 {
-    if (r->suspects.count >= MOST_SHAPES || is_known(r, shape))
+    if (r->suspects.count >= MAX_SHAPES || is_known(r, shape))
         return;
     size_t own = r->suspects.count;
     array_push(r->in->arena, &r->suspects, ((Suspect){shape, component, parent}));
@@ -76,7 +76,7 @@ static void record(Finding *finding, bool lipschitz, Witness witness, const Node
 static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_t operations,
                          Finding *finding)
 {
-    uint32_t   trials     = needs_parameters(&search->tape) ? MOST_TRIALS : 1;
+    uint32_t   trials     = needs_parameters(&search->tape) ? MAX_TRIALS : 1;
     size_t     slots      = r->graph->parameters.count;
     NodeValue *parameters = arena_new_array(r->in->scratch, NodeValue, slots);
     bool       refuted    = false;

@@ -10,14 +10,14 @@
 bool is_wrapper(const Shape *shape) { return !shape_info[shape->kind].own; }
 
 /* Most nodes of a shape that is searched: a search keeps much of each. */
-enum { MOST_SEARCHED = 100000 };
+enum { MAX_SEARCHED = 100000 };
 
 static Lowering lowering_of(Refuter *r, LoweredShapes *lowered_shapes)
 {
     return (Lowering){.graph          = r->graph,
                       .scratch        = r->in->scratch,
                       .lowered_shapes = lowered_shapes,
-                      .most           = r->graph->count + MOST_SEARCHED};
+                      .most           = r->graph->count + MAX_SEARCHED};
 }
 
 Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz, LoweredShapes *lowered_shapes)

@@ -165,7 +165,7 @@ static BoundEntry entry_for(Listing *l, const Shape *shape, Box box, uint32_t de
 
 static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t alike)
 {
-    if (l->entries.count == KRS_MOST_BOUNDS) {
+    if (l->entries.count == KRS_MAX_BOUNDS) {
         l->more++;
         return;
     }

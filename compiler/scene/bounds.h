@@ -7,7 +7,7 @@
 #include "compiler/shape/shape.h"
 #include "krs/krs.h"
 
-enum { KRS_MOST_BOUNDS = 256 }; /* of one component */
+enum { KRS_MAX_BOUNDS = 256 }; /* of one component */
 
 /* An entry of a list.  In the trees of one loop most say the same, but for the box. */
 typedef struct BoundEntry {

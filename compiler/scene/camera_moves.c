@@ -7,9 +7,9 @@
 #include <string.h>
 
 /* How near the line of sight may come to the upright direction, as a cosine. */
-#define MOST_UPRIGHT 0.9995
+#define MAX_UPRIGHT 0.9995
 /* No zoom goes nearer to its point, in parts of its distance. */
-#define LEAST_FACTOR 1e-3
+#define MIN_FACTOR 1e-3
 
 static double dot(const double a[3], const double b[3])
 {
@@ -76,7 +76,7 @@ void krs_camera_axes(const KrsCamera *camera, double forward[3], double right[3]
 /* The angle upwards that leaves the line of sight off the upright direction. */
 static double limit_up(const double forward[3], const double upright[3], double angle)
 {
-    const double most  = acos(MOST_UPRIGHT);
+    const double most  = acos(MAX_UPRIGHT);
     const double above = acos(fmin(fmax(dot(forward, upright), -1), 1)); /* angle from the top */
     return fmin(fmax(angle, above - (M_PI - most)), above - most);
 }
@@ -130,7 +130,7 @@ void krs_camera_pan(KrsCamera *camera, double right, double up)
 void krs_camera_dolly(KrsCamera *camera, const double *point, double factor)
 {
     double target[3];
-    factor = fmax(factor, LEAST_FACTOR);
+    factor = fmax(factor, MIN_FACTOR);
     memcpy(target, point ? point : camera->target, sizeof target);
     for (int i = 0; i < 3; i++) {
         camera->eye[i]    = target[i] + factor * (camera->eye[i] - target[i]);

@@ -56,7 +56,7 @@ typedef struct KrsView {
 typedef struct KrsEmissive {
     double middle[3], radius, radiance;
 } KrsEmissive;
-enum { KRS_MOST_EMISSIVE = 32 };
+enum { KRS_MAX_EMISSIVE = 32 };
 
 /* Components that are marched together, apart from other groups.  A text may have one group only,
    chosen by its number from 1. */
@@ -64,7 +64,7 @@ typedef struct KrsMarchGroup {
     double flops;           /* of the distances of its components */
     double low[3], high[3]; /* box around them */
 } KrsMarchGroup;
-enum { KRS_MOST_MARCH_GROUPS = 8 };
+enum { KRS_MAX_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
     uint64_t      shaders; /* the same number: the same shaders (krs_scene_update found no other) */
@@ -95,7 +95,7 @@ typedef struct KrsProgram {
     bool          films;   /* a material may have a thin film */
     bool          subsurface;  /* light may go on below the surface of a component */
     bool          anisotropic; /* a material may be rougher along its tangent than across */
-    KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
+    KrsMarchGroup march_groups[KRS_MAX_MARCH_GROUPS];
     size_t        march_group_count; /* 0: all components are marched together */
     bool          per_component;     /* it is faster to march one group after the other */
     uint32_t      scene_parts;       /* number of parts of krs_scene_part_distance */
@@ -141,10 +141,10 @@ size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 /* Balls around what emits light in the frame, within a box.  Returns how many; small ones and few
-   cost least, so that none is divided whose radius is below `least_radius`.  Light that is emitted
+   cost least, so that none is divided whose radius is below `min_radius`.  Light that is emitted
    elsewhere is not in them. */
 size_t krs_frame_emissive(KrsFrame *frame, const double low[3], const double high[3],
-                          double least_radius, KrsEmissive balls[KRS_MOST_EMISSIVE]);
+                          double min_radius, KrsEmissive balls[KRS_MAX_EMISSIVE]);
 /* Tells whether the rounding error of such a coordinate in single precision is visible in pixels of this
    width.  Then points must be relative to an origin near the camera. */
 bool krs_needs_rebase(double coordinate, double pixel);
@@ -154,11 +154,11 @@ double krs_normal_blur(double coordinate, double pixel);
 /* Tells how large camera-relative coordinates are about, at this distance from the eye: no larger, and in narrow
    views and orthographic ones twice the height of so many lines of pixels of this width. */
 double krs_seen_reach(double distance, double pixel, double lines);
-/* Camera-relative coordinates are not worth their cost where others are less than KRS_LEAST_GAIN times as
-   large, or the blur is less than KRS_LEAST_BLUR.  Whether what is seen may have more of both, where the
+/* Camera-relative coordinates are not worth their cost where others are less than KRS_MIN_GAIN times as
+   large, or the blur is less than KRS_MIN_BLUR.  Whether what is seen may have more of both, where the
    eye has this coordinate, and the nearest surface this distance from it and pixels of this width. */
-#define KRS_LEAST_GAIN 4
-#define KRS_LEAST_BLUR 0.1
+#define KRS_MIN_GAIN 4
+#define KRS_MIN_BLUR 0.1
 bool krs_may_blur_normals(double coordinate, double distance, double pixel, double lines);
 /* Slots of the values that depend on the origin of camera-relative points, computed in double
    precision: camera_relative_slots vec4s. */

@@ -18,12 +18,12 @@
 #include "compiler/scene/program.h"
 
 enum {
-    MOST_CUTS      = 8 * KRS_MOST_EMISSIVE,
+    MAX_CUTS       = 8 * KRS_MAX_EMISSIVE,
     CUTS_FOR_TIGHT = 512, /* of all parts together */
-    MOST_TIGHT     = 32,  /* parts whose boxes are made tight */
+    MAX_TIGHT      = 32,  /* parts whose boxes are made tight */
     RIM_POINTS     = 128,
-    MOST_WITH_RIMS = 4, /* balls that are made smaller by points on their rims */
-    MOST_ASKED     = 64
+    MAX_WITH_RIMS  = 4, /* balls that are made smaller by points on their rims */
+    MAX_ASKED      = 64
 };
 /* What balls send together in which no light was found, in parts of what all others do. */
 #define SENT_BY_DARK 0.05
@@ -44,9 +44,9 @@ typedef struct Cell {
 typedef struct Cells {
     KrsFrame *frame;
     Box       region;
-    Box       tight[MOST_TIGHT]; /* around the first parts, in this frame */
+    Box       tight[MAX_TIGHT]; /* around the first parts, in this frame */
     size_t    tight_count;
-    Cell      items[KRS_MOST_EMISSIVE];
+    Cell      items[KRS_MAX_EMISSIVE];
     size_t    count;
 } Cells;
 
@@ -160,20 +160,20 @@ static void cut_cell(Cells *cells, size_t number)
 }
 
 /* Tells how urgent it is to cut a cell.  Where no light was found there may be none. */
-static double find_urgency(const Cell *cell, double least_radius)
+static double find_urgency(const Cell *cell, double min_radius)
 {
     const bool   may_be_dark = cell->count == 1 && cell->radiance == 0;
     const double urgency     = may_be_dark ? DARK * cell->radius : cell->radius;
-    return cell->count == 1 && urgency <= least_radius ? 0 : urgency;
+    return cell->count == 1 && urgency <= min_radius ? 0 : urgency;
 }
 
 /* The cell to cut next; the number of cells if there is none. */
-static size_t find_next(const Cells *cells, double least_radius)
+static size_t find_next(const Cells *cells, double min_radius)
 {
     size_t found = cells->count;
     double most  = 0;
     for (size_t i = 0; i < cells->count; i++) {
-        const double urgency = find_urgency(&cells->items[i], least_radius);
+        const double urgency = find_urgency(&cells->items[i], min_radius);
         found                = urgency > most ? i : found;
         most                 = fmax(most, urgency);
     }
@@ -181,10 +181,10 @@ static size_t find_next(const Cells *cells, double least_radius)
 }
 
 /* Cuts cells, the largest first, until none is left that must be. */
-static void cut_cells(Cells *cells, double least_radius, size_t most)
+static void cut_cells(Cells *cells, double min_radius, size_t most)
 {
-    for (size_t cuts = 0; cuts < most && cells->count < KRS_MOST_EMISSIVE; cuts++) {
-        const size_t next = find_next(cells, least_radius);
+    for (size_t cuts = 0; cuts < most && cells->count < KRS_MAX_EMISSIVE; cuts++) {
+        const size_t next = find_next(cells, min_radius);
         if (next == cells->count)
             return;
         cut_cell(cells, next);
@@ -204,7 +204,7 @@ static double find_discs(const Cells *cells)
 static void refine(Cells *cells)
 {
     Cells finer = *cells;
-    for (int cuts = 0; cuts < MOST_CUTS && finer.count > 0 && finer.count < KRS_MOST_EMISSIVE;
+    for (int cuts = 0; cuts < MAX_CUTS && finer.count > 0 && finer.count < KRS_MAX_EMISSIVE;
          cuts++) {
         cut_cells(&finer, 0, 1);
         if (find_discs(&finer) < WORTH_IT * find_discs(cells))
@@ -270,7 +270,7 @@ static double find_magnified(const Cells *cells, const double middle[3])
 /* What a ball sends, as the radiance of its disc.  Of many parts some are asked. */
 static double radiance_of(const Cells *cells, const Cell *cell)
 {
-    const size_t step = 1 + cell->count / MOST_ASKED;
+    const size_t step = 1 + cell->count / MAX_ASKED;
     double       sum  = 0;
     if (cell->count == 1)
         return cell->radiance;
@@ -290,7 +290,7 @@ static double radiance_of(const Cells *cells, const Cell *cell)
 static KrsEmissive ball_of(const Cells *cells, Cell *cell)
 {
     KrsEmissive ball;
-    if (cells->count <= MOST_WITH_RIMS && cell->count == 1)
+    if (cells->count <= MAX_WITH_RIMS && cell->count == 1)
         shrink(cells, cell);
     ball.radiance = radiance_of(cells, cell);
     ball.radius   = cell->radius * find_magnified(cells, cell->middle);
@@ -313,19 +313,19 @@ static void light_up(KrsEmissive *balls, size_t count)
 }
 
 size_t krs_frame_emissive(KrsFrame *frame, const double low[3], const double high[3],
-                          double least_radius, KrsEmissive balls[KRS_MOST_EMISSIVE])
+                          double min_radius, KrsEmissive balls[KRS_MAX_EMISSIVE])
 {
     Cells cells = {.frame = frame};
     for (int k = 0; k < 3; k++)
         cells.region.axis[k] = (Range){low[k], high[k]};
     frame_refresh_points(frame);
     const size_t count = list_lit(&cells);
-    for (size_t i = 0; i < count && count <= MOST_TIGHT; i++) {
+    for (size_t i = 0; i < count && count <= MAX_TIGHT; i++) {
         cells.tight[i]    = find_tight(&cells, i, CUTS_FOR_TIGHT / count);
         cells.tight_count = i + 1;
     }
     add_cell(&cells, hull_of(&cells, 0, count), 0, count);
-    cut_cells(&cells, least_radius, MOST_CUTS);
+    cut_cells(&cells, min_radius, MAX_CUTS);
     refine(&cells);
     for (size_t i = 0; i < cells.count; i++)
         balls[i] = ball_of(&cells, &cells.items[i]);

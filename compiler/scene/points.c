@@ -200,7 +200,7 @@ static bool deal_out(struct FrameLanes *lanes, Deal *deal)
 KrsStatus points_distances(KrsFrame *frame, const double (*points)[3], size_t count, bool bound,
                            double *distances)
 {
-    LaneWork works[MOST_PARTS];
+    LaneWork works[MAX_PARTS];
     if (!frame_lanes(frame))
         return KRS_OUT_OF_MEMORY;
     LaneTape tape = frame->lanes->distance;

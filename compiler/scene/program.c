@@ -163,9 +163,9 @@ void krs_scene_free(KrsScene *scene) { scene_free(scene); }
 
 /* Drivers keep the values of the frame in registers, and need minutes where there are thousands:
    bench/measurements.md. */
-enum { MOST_VALUE_SLOTS = 1000 };
+enum { MAX_VALUE_SLOTS = 1000 };
 
 bool krs_structure_is_affordable(const KrsScene *scene)
 {
-    return scene->program.value_slots <= MOST_VALUE_SLOTS;
+    return scene->program.value_slots <= MAX_VALUE_SLOTS;
 }

@@ -402,12 +402,12 @@ static double march_clearance(RayMarch *march, double t)
    position, where the value at one end is halved when the other end has moved twice. */
 static double find_crossing(RayMarch *march, double clearance)
 {
-    enum { MOST_ROUNDS = 100 };
+    enum { MAX_ROUNDS = 100 };
     double low = march->t, high = march->t + march->step;
     double at_low = march->clearance, at_high = clearance;
     double enough = fmax(rounding_at(march, high), march->tolerance / 16);
     int    moved  = 0;
-    for (int i = 0; i < MOST_ROUNDS && at_high < 0 && at_low > 0 && high - low > enough; i++) {
+    for (int i = 0; i < MAX_ROUNDS && at_high < 0 && at_low > 0 && high - low > enough; i++) {
         double t    = low + (high - low) * at_low / (at_low - at_high);
         t           = fmin(fmax(t, low + 0.25 * enough), high - 0.25 * enough);
         double at_t = march_clearance(march, t);

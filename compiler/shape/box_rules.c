@@ -29,7 +29,7 @@ uint32_t map_box_nodes(const Map *map, Node *nodes, uint32_t count)
     return add_node(map->shift, nodes, count);
 }
 
-uint32_t box_nodes(const Shape *shape, Node nodes[MOST_BOX_NODES])
+uint32_t box_nodes(const Shape *shape, Node nodes[MAX_BOX_NODES])
 {
     uint32_t count = map_box_nodes(&shape->map, nodes, 0);
     for (int i = 0; i < 2; i++) {

@@ -27,8 +27,8 @@ typedef struct BoxInput {
 uint32_t     box_part_count(const Shape *shape);
 const Shape *box_part(const Shape *shape, uint32_t index);
 /* The numbers that the rule of a shape may ask for; and those of a similarity, behind others. */
-enum { MOST_BOX_NODES = 12 };
-uint32_t box_nodes(const Shape *shape, Node nodes[MOST_BOX_NODES]);
+enum { MAX_BOX_NODES = 12 };
+uint32_t box_nodes(const Shape *shape, Node nodes[MAX_BOX_NODES]);
 uint32_t map_box_nodes(const Map *map, Node *nodes, uint32_t count);
 /* Tells whether there is a rule: else the box is found where the shape is made. */
 bool has_box_rule(const Shape *shape);

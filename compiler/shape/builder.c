@@ -96,9 +96,9 @@ static void count_tree(ShapeBuilder *builder, Shape *shape)
     }
     shape->instances   = sequences > 0 ? sequences : shape->kind != SHAPE_EMPTY;
     shape->tree_shapes = tree_shapes < UINT32_MAX ? (uint32_t)tree_shapes : UINT32_MAX;
-    if ((shape->depth > MOST_SHAPE_DEPTH || tree_shapes > MOST_TREE_SHAPES) && !builder->stopped) {
+    if ((shape->depth > MAX_SHAPE_DEPTH || tree_shapes > MAX_TREE_SHAPES) && !builder->stopped) {
         diag_add(builder->diags, DIAG_LIMIT, shape->span,
-                 tree_shapes > MOST_TREE_SHAPES
+                 tree_shapes > MAX_TREE_SHAPES
                      ? "a shape of more than 4 million parts, each counted where it is used"
                      : "shapes are nested more than 1,000 deep");
         builder->stopped = true;

@@ -8,7 +8,7 @@
 #include "compiler/base/vec.h"
 
 /* Cells that one box is cut into, about; cells of a cover, beyond which neighbours are merged. */
-enum { BOX_CELLS = 64, MOST_CELLS = 1024, MOST_OUTSIDE = 16 };
+enum { BOX_CELLS = 64, MAX_CELLS = 1024, MAX_OUTSIDE = 16 };
 
 /* Rounding, and how near to its surface the pole of an inversion counts as on it. */
 static const double ROUNDING = 1e-12, ON_SURFACE = 1e-6;
@@ -236,7 +236,7 @@ static void rise(Cluster *heap, size_t count, Cluster cluster)
 /* From all balls in one, the largest cluster is parted until there are enough. */
 static void merge_balls(Arena *arena, Cover *cover, size_t from)
 {
-    size_t   count = 1, most = MOST_CELLS - from;
+    size_t   count = 1, most = MAX_CELLS - from;
     Cluster *heap = arena_new_array(arena, Cluster, most);
     heap[0]       = cluster_of(cover, from, cover->count);
     while (count < most && size_of(&heap[0]) >= 0) {
@@ -250,11 +250,11 @@ static void merge_balls(Arena *arena, Cover *cover, size_t from)
         cover->items[from + i] = (CoverCell){.ball = heap[i].ball};
 }
 
-/* At most MOST_CELLS; what is outside of balls comes first. */
+/* At most MAX_CELLS; what is outside of balls comes first. */
 static void merge(Arena *arena, Cover *cover)
 {
     size_t outside = 0;
-    if (cover->count <= MOST_CELLS)
+    if (cover->count <= MAX_CELLS)
         return;
     for (size_t i = 0; i < cover->count; i++) {
         CoverCell cell = cover->items[i];
@@ -263,7 +263,7 @@ static void merge(Arena *arena, Cover *cover)
         cover->items[i]         = cover->items[outside];
         cover->items[outside++] = cell;
     }
-    if (outside > MOST_OUTSIDE) {
+    if (outside > MAX_OUTSIDE) {
         cover->items[0] = everything;
         cover->count    = 1;
         return;

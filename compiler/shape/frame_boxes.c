@@ -12,9 +12,9 @@
 
 /* Shapes that are looked at, each where it is used, and those that are planned: what a frame does for
    them should take less than a millisecond. */
-enum { MOST_VISITED = 1 << 16, MOST_PLANNED = 1 << 12 };
+enum { MAX_VISITED = 1 << 16, MAX_PLANNED = 1 << 12 };
 /* Of a sequence: the search for its reach takes a frame some milliseconds, then. */
-enum { MOST_STAGES = 40 };
+enum { MAX_STAGES = 40 };
 
 /* What a node depends on. */
 enum { ON_PARAMETERS = 1, ON_TIME = 2 };
@@ -100,8 +100,7 @@ static size_t add_shapes(Plan *plan, size_t count)
 
 static bool is_sequence(const Shape *shape)
 {
-    return shape->kind == SHAPE_KRS && shape->stage_count <= MOST_STAGES &&
-           sequence_is_rigid(shape);
+    return shape->kind == SHAPE_KRS && shape->stage_count <= MAX_STAGES && sequence_is_rigid(shape);
 }
 
 static const SequenceStage *copy_stages(const Shape *shape, Arena *arena)
@@ -132,10 +131,10 @@ static bool plan_shape(Plan *plan, const Shape *shape, size_t at)
     boxes->shapes.items[at].shape = shape_for_rule(shape, plan->builder->arena);
     plan->visited++;
     const uint32_t parts = box_part_count(shape);
-    if (!(has_box_rule(shape) || is_sequence(shape)) || plan->visited > MOST_VISITED ||
-        boxes->shapes.count + parts > MOST_PLANNED)
+    if (!(has_box_rule(shape) || is_sequence(shape)) || plan->visited > MAX_VISITED ||
+        boxes->shapes.count + parts > MAX_PLANNED)
         return false;
-    Node           nodes[MOST_BOX_NODES + MOST_STAGES * MOST_STAGE_NODES];
+    Node           nodes[MAX_BOX_NODES + MAX_STAGES * MAX_STAGE_NODES];
     const uint32_t count = is_sequence(shape) ? sequence_nodes(shape, nodes)
                                               : box_nodes(shape, nodes);
     const size_t   first = add_shapes(plan, parts);
@@ -164,7 +163,7 @@ void frame_boxes_plan(ShapeBuilder *builder, const Shape *const *shapes, size_t 
                       FrameBoxes *boxes)
 {
     *boxes = (FrameBoxes){.nodes.count = 0};
-    if (builder->parameters->count == 0 || count > MOST_PLANNED)
+    if (builder->parameters->count == 0 || count > MAX_PLANNED)
         return;
     Plan plan        = plan_new(builder, boxes);
     boxes->asked_for = count;
@@ -213,7 +212,7 @@ static Range range_in_frame(const BoxNumbers *numbers, Node node, uint32_t compo
 
 static Box box_by_rule(const BoxInput *in)
 {
-    ReachStage reach[MOST_STAGES];
+    ReachStage reach[MAX_STAGES];
     return in->shape->kind == SHAPE_KRS ? sequence_box(in, reach, NULL) : shape_box(in);
 }
 

@@ -77,7 +77,7 @@ static bool any_iterated(const Iterations *t, const Node *nodes, uint32_t count)
 
 static bool stage_is_iterated(const Iterations *t, const SequenceStage *stage)
 {
-    Node     nodes[MOST_BOX_NODES];
+    Node     nodes[MAX_BOX_NODES];
     uint32_t count = 0;
     switch (stage->kind) {
     case SEQUENCE_REFLECT: return any_iterated(t, (Node[]){stage->normal, stage->offset}, 2);
@@ -96,7 +96,7 @@ static bool is_iterated(const Iterations *t, const Shape *shape)
 {
     const Node others[] = {shape->distance, shape->bound, shape->formula, shape->blend.steps,
                            shape->map.scale != NODE_NONE ? shape->map.pole : NODE_NONE};
-    Node       nodes[MOST_BOX_NODES];
+    Node       nodes[MAX_BOX_NODES];
     bool       found = any_iterated(t, nodes, box_nodes(shape, nodes)) ||
                  any_iterated(t, others, sizeof others / sizeof *others);
     for (uint32_t i = 0; i < shape->stage_count && !found; i++)
@@ -128,7 +128,7 @@ static bool plan_shape(Iterations *t, const Shape *shape, IterationShape *plan)
     *plan = (IterationShape){.shape = shape};
     if (!has_box_rule(shape))
         return !is_iterated(t, shape);
-    Node      nodes[MOST_BOX_NODES];
+    Node      nodes[MAX_BOX_NODES];
     uint32_t  count = box_nodes(shape, nodes), parts = box_part_count(shape);
     bool      iterated = any_iterated(t, nodes, count);
     ArenaMark mark     = arena_mark(t->scratch);

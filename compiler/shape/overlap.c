@@ -83,7 +83,7 @@ static void add_ends(Box *whole, const Box *box)
     }
 }
 
-uint32_t most_overlap(const Box *boxes, uint32_t count, double grown, Arena *scratch)
+uint32_t max_overlap(const Box *boxes, uint32_t count, double grown, Arena *scratch)
 {
     ArenaMark mark   = arena_mark(scratch);
     Box      *larger = arena_new_array(scratch, Box, count + (size_t)1), whole = box_empty;

@@ -11,6 +11,6 @@
 
 /* The most boxes around one point when each is larger by `grown` on every side, or somewhat more: it is
    found in time that is about linear.  Empty boxes are around none. */
-uint32_t most_overlap(const Box *boxes, uint32_t count, double grown, Arena *scratch);
+uint32_t max_overlap(const Box *boxes, uint32_t count, double grown, Arena *scratch);
 
 #endif

@@ -41,6 +41,6 @@ typedef struct FrameSlopes {
 } FrameSlopes;
 
 /* The host finds each anew whenever anything changes. */
-enum { MOST_FRAME_SLOPES = 256 };
+enum { MAX_FRAME_SLOPES = 256 };
 
 #endif

@@ -13,7 +13,7 @@
 
 #include "compiler/base/vec.h"
 
-enum { MOST_BRANCHES = 512, MOST_OPENED = 2000 };
+enum { MAX_BRANCHES = 512, MAX_OPENED = 2000 };
 
 /* The search ends when no more than this fraction of the set's radius can be gained. */
 static const double TOLERANCE = 0.005;
@@ -28,7 +28,7 @@ typedef struct Branch {
 /* A heap, the branch with the largest bound on top. */
 typedef struct ReachSearch {
     const ReachStage *stages;
-    Branch            heap[MOST_BRANCHES];
+    Branch            heap[MAX_BRANCHES];
     uint32_t          count;
     double            reached; /* by a kernel's box */
 } ReachSearch;
@@ -69,7 +69,7 @@ static bool push(ReachSearch *search, Branch branch)
     branch.bound = bound_of(&search->stages[branch.stages - 1], &branch);
     if (branch.bound <= search->reached)
         return true;
-    if (search->count == MOST_BRANCHES)
+    if (search->count == MAX_BRANCHES)
         return false;
     uint32_t at      = search->count++;
     search->heap[at] = branch;
@@ -128,7 +128,7 @@ static double find_support(const ReachStage *stages, uint32_t count, const doubl
     ReachSearch search = {.stages = stages, .reached = -INFINITY};
     Branch      whole  = {.stages = count, .direction = {u[0], u[1], u[2]}};
     push(&search, whole);
-    for (int opened = 0; search.count > 0 && opened < MOST_OPENED; opened++) {
+    for (int opened = 0; search.count > 0 && opened < MAX_OPENED; opened++) {
         Branch top = pop(&search);
         if (top.bound <= search.reached + tolerance || !open_branch(&search, &top))
             return fmax(top.bound, search.reached);

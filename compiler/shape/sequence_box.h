@@ -10,8 +10,8 @@
 
 /* `reach` has room for the stages; `bounds` gets those of the stages, unless it is NULL. */
 Box sequence_box(const BoxInput *in, ReachStage *reach, LevelBound *bounds);
-/* The numbers that are asked for: at most MOST_STAGE_NODES of each stage. */
-enum { MOST_STAGE_NODES = 5 };
+/* The numbers that are asked for: at most MAX_STAGE_NODES of each stage. */
+enum { MAX_STAGE_NODES = 5 };
 uint32_t sequence_nodes(const Shape *krs, Node *nodes);
 /* Tells whether all of its stages are such. */
 bool sequence_is_rigid(const Shape *krs);

@@ -135,12 +135,12 @@ typedef struct FieldFacts {
 } FieldFacts;
 
 /* Each is about a quarter turn. */
-enum { MOST_BEND_SEGMENTS = 16 };
+enum { MAX_BEND_SEGMENTS = 16 };
 
 /* Walks of the tree are recursive. */
-enum { MOST_SHAPE_DEPTH = 1000 };
+enum { MAX_SHAPE_DEPTH = 1000 };
 /* Walks visit a shape as often as it is used, which is more often than there are shapes. */
-enum { MOST_TREE_SHAPES = 4000000 };
+enum { MAX_TREE_SHAPES = 4000000 };
 
 /* A corner of a figure's outline, [x, y], and the bulge of the arc from there to the next: the tangent of
    a quarter of its angle, above 0 to the left.  A number is a node unless that is NODE_NONE. */
@@ -163,8 +163,8 @@ struct Shape {
     const char   *given; /* what the author calls it: by the `let` that has it first; or NULL */
     const Shape **children;
     uint32_t      child_count;
-    uint32_t      depth;  /* of the tree below, at most MOST_SHAPE_DEPTH */
-    uint32_t tree_shapes; /* of that tree and itself, each where it is used; MOST_TREE_SHAPES */
+    uint32_t      depth;       /* of the tree below, at most MAX_SHAPE_DEPTH */
+    uint32_t      tree_shapes; /* of that tree and itself, each where it is used; MAX_TREE_SHAPES */
 
     uint32_t shown;   /* number from 1 of the component that it is, where it has been gathered with
                        others; else 0 */

@@ -22,8 +22,8 @@ enum { CELLS = 512, FRAME_CELLS = 64, TRIALS = 3, FIRST_TRIALS = 2 };
 
 /* A constant slope may be so many times as large as those of the first frames.  Normals beside edges
    are wrong from some thirty on.  Half of the slots are left to expressions that have no constant. */
-static const double MOST_EXCESS = 16;
-enum { MOST_PREFERRED = MOST_FRAME_SLOPES / 2 };
+static const double MAX_EXCESS = 16;
+enum { MAX_PREFERRED = MAX_FRAME_SLOPES / 2 };
 
 /* The time, and what is added to parameters without limits.  Numbers of no significance: what is
    bounded there is nowhere unbounded but by accident. */
@@ -173,10 +173,10 @@ static Node frame_slot(ShapeBuilder *builder, Node formula, Box region, Span spa
     for (size_t i = 0; i < slopes->count; i++)
         if (slopes->items[i].formula == formula && same_box(slopes->items[i].region, region))
             return graph_parameter(builder->graph, slopes->items[i].slot, TYPE_FLOAT);
-    if (slopes->count == MOST_FRAME_SLOPES && !builder->stopped) {
+    if (slopes->count == MAX_FRAME_SLOPES && !builder->stopped) {
         Diag *diag       = diag_add(builder->diags, DIAG_LIMIT, span,
                                     "more than %d expressions have a slope of each frame",
-                                    MOST_FRAME_SLOPES);
+                                    MAX_FRAME_SLOPES);
         diag->label      = "this one too changes faster and faster with a `param` or with `time`";
         diag->help       = "give the `param` a range, or use one expression for several shapes";
         builder->stopped = true;
@@ -231,11 +231,11 @@ static FirstSlopes slopes_at_first(ShapeBuilder *builder, const Graph *plain, No
 static void prefer_frames(ShapeBuilder *builder, const Graph *plain, Node root, Node formula,
                           Span span, Steepness *found)
 {
-    if (found->bound <= MOST_EXCESS || builder->slopes->count >= MOST_PREFERRED ||
+    if (found->bound <= MAX_EXCESS || builder->slopes->count >= MAX_PREFERRED ||
         !needs_the_frame_alone(builder->parameters, plain, root, builder->scratch))
         return;
     FirstSlopes slopes = slopes_at_first(builder, plain, root, found->region);
-    if (found->bound <= MOST_EXCESS * fmax(slopes.most, 1))
+    if (found->bound <= MAX_EXCESS * fmax(slopes.most, 1))
         return;
     found->bound = slopes.first;
     found->slot  = frame_slot(builder, formula, found->region, span);

@@ -14,7 +14,7 @@
 
 #include "compiler/target/dominators.h"
 
-enum { MOST_MEMBERS = 16 }; /* how deep a pointer may reach into a variable */
+enum { MAX_MEMBERS = 16 }; /* how deep a pointer may reach into a variable */
 
 /* What happens to a variable. */
 typedef struct Usage {
@@ -74,9 +74,9 @@ static void note_uses(Forwarding *forwarding)
 }
 
 /* Writes which member of which member of a variable a pointer means, from the last place of an array
-   to the front.  Returns how many there are; MOST_MEMBERS: too many, or one that is computed. */
+   to the front.  Returns how many there are; MAX_MEMBERS: too many, or one that is computed. */
 static uint16_t find_members(const Forwarding *forwarding, uint32_t pointer,
-                             uint32_t members[MOST_MEMBERS])
+                             uint32_t members[MAX_MEMBERS])
 {
     const ShaderModule *module = forwarding->module;
     uint16_t            count  = 0;
@@ -85,9 +85,9 @@ static uint16_t find_members(const Forwarding *forwarding, uint32_t pointer,
         for (uint16_t word = chain->length; word-- > 4;) {
             const uint32_t *constant =
                 forwarding->constant[module_resolve(module, chain->words[word])];
-            if (!constant || count == MOST_MEMBERS - 1)
-                return MOST_MEMBERS;
-            members[MOST_MEMBERS - ++count] = constant[3];
+            if (!constant || count == MAX_MEMBERS - 1)
+                return MAX_MEMBERS;
+            members[MAX_MEMBERS - ++count] = constant[3];
         }
         pointer = chain->words[3];
     }
@@ -99,16 +99,16 @@ static void forward(Forwarding *forwarding, Instruction *load, uint32_t value)
 {
     static const uint16_t ids[]  = {1, 3};
     ShaderModule         *module = forwarding->module;
-    uint32_t              members[MOST_MEMBERS], operands[MOST_MEMBERS + 3];
+    uint32_t              members[MAX_MEMBERS], operands[MAX_MEMBERS + 3];
     const uint16_t        count = find_members(forwarding, load->words[3], members);
-    if (count == MOST_MEMBERS)
+    if (count == MAX_MEMBERS)
         return;
     if (count == 0) {
         module->same[result_of(load)] = value;
         return;
     }
     memcpy(operands, (uint32_t[]){load->words[1], result_of(load), value}, 3 * sizeof *operands);
-    memcpy(operands + 3, members + MOST_MEMBERS - count, count * sizeof *members);
+    memcpy(operands + 3, members + MAX_MEMBERS - count, count * sizeof *members);
     *load = module_make(module, SPIRV_COMPOSITE_EXTRACT, operands, count + 3, 2, ids, 2);
 }
 

@@ -10,7 +10,7 @@
 
 /* The body may grow exponentially in the depth of calls.  Beyond this the driver had better see the
    functions. */
-static const size_t MOST_INSTRUCTIONS = 1 << 22;
+static const size_t MAX_INSTRUCTIONS = 1 << 22;
 
 typedef struct Pair {
     uint32_t id, other;
@@ -195,7 +195,7 @@ static void copy_function(Inliner *inliner, size_t at, const Instruction *call)
     }
     uint16_t last    = from[-1].opcode;
     inliner->refused = inliner->refused || (last != SPIRV_RETURN && last != SPIRV_RETURN_VALUE) ||
-                       inliner->module->body.count > MOST_INSTRUCTIONS;
+                       inliner->module->body.count > MAX_INSTRUCTIONS;
 }
 
 /* ---- afterwards ---- */

@@ -9,7 +9,7 @@
 
 #include "compiler/base/vec.h"
 
-enum { PAINTED = 1, UNPAINTED = 2, MOST_WRITTEN = 200000, MOST_DEPTH = 1000, WIDTH = 100 };
+enum { PAINTED = 1, UNPAINTED = 2, MAX_WRITTEN = 200000, MAX_DEPTH = 1000, WIDTH = 100 };
 
 Part *part_new(Import *import, unsigned line, const char *stem)
 {
@@ -78,7 +78,7 @@ bool part_holds(const Part *part, const double point[3])
     Transform back = part->transform;
     double    p[3];
     size_t    held = 0, count = part->parts.count;
-    if (!transform_invert(&back) || part->depth > MOST_DEPTH)
+    if (!transform_invert(&back) || part->depth > MAX_DEPTH)
         return false;
     transform_apply(&back, point, p);
     bool first = false, in = is_in(&part->inside, p);
@@ -175,8 +175,8 @@ static const char *write_let(PartWriter *writer, Part *part, const char *const *
 {
     Import *import = writer->import;
     Text   *text = &import->scene, name = {.arena = import->arena};
-    if (++writer->written > MOST_WRITTEN) {
-        import_refuse(import, part->line, "the scene has more than %d parts", MOST_WRITTEN);
+    if (++writer->written > MAX_WRITTEN) {
+        import_refuse(import, part->line, "the scene has more than %d parts", MAX_WRITTEN);
         return NULL;
     }
     if (part->wanted)
@@ -232,8 +232,8 @@ static const char *write_part(PartWriter *writer, Part *part, const char *around
 
 bool part_write(PartWriter *writer, Part *part)
 {
-    if (part->depth > MOST_DEPTH)
-        return import_refuse(writer->import, part->line, "parts are more than %d deep", MOST_DEPTH);
+    if (part->depth > MAX_DEPTH)
+        return import_refuse(writer->import, part->line, "parts are more than %d deep", MAX_DEPTH);
     return write_part(writer, part, NULL) != NULL;
 }
 

@@ -9,7 +9,7 @@
 
 #include "compiler/passes/compile.h"
 
-enum { MOST_NOTES = 100 };
+enum { MAX_NOTES = 100 };
 
 /* What a file says moves no cursor, and ends no comment. */
 static const char *harmless(Arena *arena, const char *format, va_list arguments)
@@ -39,12 +39,12 @@ void import_note(Import *import, unsigned line, const char *format, ...)
     va_start(arguments, format);
     ImportNote note = {harmless(import->arena, format, arguments), line};
     va_end(arguments);
-    if (import->notes.count >= MOST_NOTES - 1)
+    if (import->notes.count >= MAX_NOTES - 1)
         note.words = "more is left out than can be listed";
     for (size_t i = 0; i < import->notes.count; i++)
         if (strcmp(import->notes.items[i].words, note.words) == 0)
             return;
-    if (import->notes.count < MOST_NOTES)
+    if (import->notes.count < MAX_NOTES)
         array_push(import->arena, &import->notes, note);
 }
 

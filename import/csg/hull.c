@@ -9,7 +9,7 @@
 #include "import/csg/node.h"
 #include "compiler/base/vec.h"
 
-enum { MOST_POINTS = 4096, MOST_PATHS = 500, MOST_BALLS = 200 };
+enum { MAX_POINTS = 4096, MAX_PATHS = 500, MAX_BALLS = 200 };
 
 /* ---- polygons ---- */
 
@@ -57,9 +57,9 @@ bool csg_polygon(const CsgNode *node, Part **part)
         return count >= 3 ||
                import_refuse(node->import, node->line, "`polygon` needs three points at least");
     }
-    if (paths->list.count > MOST_PATHS)
+    if (paths->list.count > MAX_PATHS)
         return import_refuse(node->import, node->line, "`polygon` has more than %d paths",
-                             MOST_PATHS);
+                             MAX_PATHS);
     for (size_t i = 0; i < paths->list.count; i++) {
         if (!path_points(node, &paths->list.items[i], points, count, &chosen))
             return false;
@@ -127,10 +127,10 @@ bool csg_polyhedron(const CsgNode *node, Part **part)
     if (!csg_points(node, list, 3, &points))
         return false;
     size_t count = list->list.count;
-    if (!faces || faces->kind != CSG_LIST || faces->list.count < 4 || count > MOST_POINTS ||
-        faces->list.count > 2 * MOST_POINTS)
+    if (!faces || faces->kind != CSG_LIST || faces->list.count < 4 || count > MAX_POINTS ||
+        faces->list.count > 2 * MAX_POINTS)
         return import_refuse(node->import, node->line,
-                             "a polyhedron needs four faces, and at most %d points", MOST_POINTS);
+                             "a polyhedron needs four faces, and at most %d points", MAX_POINTS);
     for (size_t i = 0; i < faces->list.count; i++) {
         if (!path_points(node, &faces->list.items[i], points, count, &corners))
             return false;
@@ -176,7 +176,7 @@ static bool collect_column(Import *import, const PartColumn *column, const Trans
         transform_apply(transform, at, all->points[all->count]);
         all->radii[all->count++] = 0;
     }
-    return all->count <= MOST_POINTS;
+    return all->count <= MAX_POINTS;
 }
 
 /* Adds the balls of which a part is the hull; false where it is something else.  `radius` is that of the
@@ -204,7 +204,7 @@ static bool collect(Import *import, const Part *part, const Transform *outer, Pa
         all->radii[all->count++] = own;
         all->radius              = fmax(all->radius, own);
     }
-    return all->count <= MOST_POINTS;
+    return all->count <= MAX_POINTS;
 }
 
 /* Tells whether all balls have one size; then `radii` is not needed. */
@@ -329,7 +329,7 @@ bool csg_hull(const CsgNode *node, Part **part)
             return true;
         }
     }
-    if (!known || (!equal && (joined->figure || balls.count > MOST_BALLS)))
+    if (!known || (!equal && (joined->figure || balls.count > MAX_BALLS)))
         return import_refuse(
             node->import, node->line,
             "a hull is translated if it is of points and balls, or of upright columns");
@@ -449,7 +449,7 @@ static Part *sum_of_hulls(const CsgNode *node, const Part *a, const Part *b)
     Transform here = transform_identity();
     if (a->figure || !is_convex(a) || !is_convex(b) || !collect(node->import, a, &here, &one) ||
         !collect(node->import, b, &here, &other) || !are_of_one_size(&one) ||
-        !are_of_one_size(&other) || one.count * other.count > MOST_POINTS)
+        !are_of_one_size(&other) || one.count * other.count > MAX_POINTS)
         return NULL;
     make_room(node->import, &sums, one.count * other.count);
     for (size_t i = 0; i < one.count * other.count; i++)

@@ -5,7 +5,7 @@
 
 #include "import/csg/node.h"
 
-enum { MOST_CORNERS = 2000 };
+enum { MAX_CORNERS = 2000 };
 
 /* Corners of a polygon whose sides are moved outwards; false where sides vanish. */
 static bool move_sides(const double (*corners)[3], size_t count, double by, double (*to)[3])
@@ -71,7 +71,7 @@ static Part *widened(const CsgNode *node, const Part *figure, double by)
                                          import_number_text(node->import, figure->figure_radius + by));
         part->figure        = true;
         part->figure_radius = figure->figure_radius + by;
-    } else if (figure->corner_count >= 3 && figure->corner_count <= MOST_CORNERS &&
+    } else if (figure->corner_count >= 3 && figure->corner_count <= MAX_CORNERS &&
                is_simple((const double(*)[3])figure->corners, figure->corner_count)) {
         double(*to)[3] = arena_alloc(node->import->arena, figure->corner_count, sizeof *to);
         if (move_sides((const double(*)[3])figure->corners, figure->corner_count, by, to) &&

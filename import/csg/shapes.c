@@ -12,7 +12,7 @@
 static const double DEGREE = 3.14159265358979323846 / 180;
 
 /* So few sides are meant to be seen; more of them stand for a circle. */
-enum { MOST_SIDES_SEEN = 8, MOST_FRAGMENTS = 1000 };
+enum { MAX_SIDES_SEEN = 8, MAX_FRAGMENTS = 1000 };
 
 const CsgValue *csg_argument(const CsgNode *node, const char *name)
 {
@@ -75,7 +75,7 @@ bool csg_sides(const CsgNode *node, int *sides)
     double number;
     if (!csg_number(node, "$fn", 0, &number))
         return false;
-    *sides = number >= 1 && number <= MOST_SIDES_SEEN ? (int)fmax(number, 3) : 0;
+    *sides = number >= 1 && number <= MAX_SIDES_SEEN ? (int)fmax(number, 3) : 0;
     if (*sides == 0)
         import_note(node->import, node->line,
                     "round surfaces are round, whatever `$fn`, `$fa` and `$fs` are");
@@ -167,7 +167,7 @@ static bool column_corners(const CsgNode *node, double bottom, double top, doubl
         return false;
     if (!(count > 0))
         count = ceil(fmax(fmin(360 / angle, radius * 360 * DEGREE / size), 5));
-    int corners = count >= 3 && count <= MOST_FRAGMENTS ? (int)count : MOST_FRAGMENTS;
+    int corners = count >= 3 && count <= MAX_FRAGMENTS ? (int)count : MAX_FRAGMENTS;
     corners     = count < 3 ? 3 : corners;
     *balls      = new_balls(node, 2 * (size_t)corners, 0);
     for (int i = 0; i < 2 * corners; i++) {

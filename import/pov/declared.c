@@ -7,7 +7,7 @@
 
 #include "import/pov/reader.h"
 
-enum { MOST_ELEMENTS = 1000000 };
+enum { MAX_ELEMENTS = 1000000 };
 
 /* Blocks that are known by name and change no shape here. */
 static const char *const others[] = {"normal",      "interior",  "media",     "fog",
@@ -33,9 +33,9 @@ static bool read_sizes(PovReader *reader, PovCell *array)
         if (array->dimensions == POV_MOST_DIMENSIONS || !pov_number(reader, &size) ||
             !word_expect(&reader->words, "]"))
             return word_refuse(&reader->words, "at most five sizes");
-        if (!(size >= 1 && size * count <= MOST_ELEMENTS))
+        if (!(size >= 1 && size * count <= MAX_ELEMENTS))
             return import_refuse(reader->import, reader->words.word.line,
-                                 "an array has from 1 to %d elements", MOST_ELEMENTS);
+                                 "an array has from 1 to %d elements", MAX_ELEMENTS);
         array->sizes[array->dimensions++] = (int)size;
         count *= (int)size;
     }

@@ -9,7 +9,7 @@
 #include "compiler/base/paths.h"
 #include "compiler/base/source.h"
 
-enum { MOST_INCLUDED = 4 << 20 };
+enum { MAX_INCLUDED = 4 << 20 };
 
 static const char *const folders[] = {"/usr/share/povray-3.7/include/",
                                       "/usr/share/povray/include/",
@@ -66,7 +66,7 @@ bool pov_read_included(Import *import, unsigned line, const char *name, const ch
     *text         = NULL;
     if (!loaded.text)
         return refuse_included(import, line, name, &loaded);
-    if (loaded.length < MOST_INCLUDED && !memchr(loaded.text, '\0', loaded.length))
+    if (loaded.length < MAX_INCLUDED && !memchr(loaded.text, '\0', loaded.length))
         *text = arena_copy_text(import->arena, loaded.text, loaded.length);
     free(loaded.owned);
     return *text || import_refuse(import, line, "`%.60s` is no text, or too long", name);

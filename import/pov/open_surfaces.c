@@ -13,7 +13,7 @@
 #include "import/pov/reader.h"
 #include "compiler/base/vec.h"
 
-enum { MOST_POINTS = 10000, MOST_FIGURES = 500 };
+enum { MAX_POINTS = 10000, MAX_FIGURES = 500 };
 
 static const double FAR_AWAY = 1e5; /* open surfaces end somewhere */
 
@@ -316,10 +316,9 @@ static bool flat(PovReader *reader, unsigned line, double (*points)[3], size_t c
     Transform frame = transform_identity(), back;
     double    wide  = 0;
     if (++reader->flat_figures >
-        MOST_FIGURES) /* no scene has room for them, as it takes long to find */
+        MAX_FIGURES) /* no scene has room for them, as it takes long to find */
         return import_refuse(reader->import, line,
-                             "more than %d triangles and polygons are not translated",
-                             MOST_FIGURES);
+                             "more than %d triangles and polygons are not translated", MAX_FIGURES);
     for (size_t i = 0; i < count; i++)
         pov_point(points[i], points[i]);
     if (!frame_of(points, count, &frame))
@@ -383,9 +382,8 @@ bool pov_polygon(PovReader *reader, unsigned line, Part **part)
     double count;
     if (!pov_number(reader, &count))
         return false;
-    if (!(count >= 3 && count <= MOST_POINTS))
-        return import_refuse(reader->import, line, "a polygon has from 3 to %d points",
-                             MOST_POINTS);
+    if (!(count >= 3 && count <= MAX_POINTS))
+        return import_refuse(reader->import, line, "a polygon has from 3 to %d points", MAX_POINTS);
     double(*points)[3] = arena_alloc(reader->import->arena, (size_t)count, sizeof *points);
     for (int i = 0; i < (int)count; i++) {
         word_accept(&reader->words, ",");

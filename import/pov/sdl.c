@@ -16,7 +16,7 @@
 
 #include "import/pov/reader.h"
 
-enum { MOST_WORDS = 10000000, MOST_SOURCES = 100, MOST_NAMES = 100000 };
+enum { MAX_WORDS = 10000000, MAX_SOURCES = 100, MAX_NAMES = 100000 };
 
 /* ---- sources of words ---- */
 
@@ -29,9 +29,9 @@ static PovSource *top_source(PovReader *reader)
 
 static bool push_source(PovReader *reader, PovSource source, const char *at, unsigned line)
 {
-    if (reader->sources.count >= MOST_SOURCES)
+    if (reader->sources.count >= MAX_SOURCES)
         return import_refuse(reader->import, reader->words.word.line,
-                             "macros and files are more than %d deep in each other", MOST_SOURCES);
+                             "macros and files are more than %d deep in each other", MAX_SOURCES);
     PovSource *outer = reader->sources.count > 0 ? top_source(reader) : NULL;
     if (outer) {
         outer->at   = reader->words.at;
@@ -58,7 +58,7 @@ void pov_pop_source(PovReader *reader)
 static void raw_word(PovReader *reader)
 {
     WordReader *words = &reader->words;
-    if (++reader->words_read > MOST_WORDS)
+    if (++reader->words_read > MAX_WORDS)
         import_refuse(reader->import, words->word.line, "this program has no end, or a far one");
     for (;;) {
         words_advance_plain(words);
@@ -86,9 +86,9 @@ PovCell *pov_find(PovReader *reader, const char *name)
 static PovCell *new_name(PovReader *reader, const char *name, PovCell *cell, bool local)
 {
     PovName fresh = {name, cell};
-    if (reader->names.count >= MOST_NAMES) {
+    if (reader->names.count >= MAX_NAMES) {
         import_refuse(reader->import, reader->words.word.line, "more than %d names are declared",
-                      MOST_NAMES);
+                      MAX_NAMES);
         return NULL;
     }
     array_push(reader->import->arena, &reader->names, fresh);

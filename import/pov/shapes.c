@@ -8,7 +8,7 @@
 #include "import/pov/reader.h"
 #include "compiler/base/vec.h"
 
-enum { MOST_ORDER = 24 };
+enum { MAX_ORDER = 24 };
 
 static void comma(PovReader *reader) { word_accept(&reader->words, ","); }
 
@@ -247,9 +247,9 @@ bool pov_poly(PovReader *reader, unsigned line, Part **part)
     if (!pov_number(reader, &order))
         return false;
     comma(reader);
-    if (!(order >= 2 && order <= MOST_ORDER && order == floor(order)))
+    if (!(order >= 2 && order <= MAX_ORDER && order == floor(order)))
         return import_refuse(reader->import, line, "the order of `poly` is from 2 to %d",
-                             MOST_ORDER);
+                             MAX_ORDER);
     return polynomial(reader, line, (int)order, part);
 }
 

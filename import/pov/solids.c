@@ -9,7 +9,7 @@
 #include "import/pov/reader.h"
 #include "compiler/base/vec.h"
 
-enum { MOST_POINTS = 10000, PIECES = 12 };
+enum { MAX_POINTS = 10000, PIECES = 12 };
 
 static void comma(PovReader *reader) { word_accept(&reader->words, ","); }
 
@@ -52,9 +52,9 @@ static bool read_points(PovReader *reader, Points *points)
     double count;
     if (!pov_number(reader, &count))
         return false;
-    if (!(count >= 2 && count <= MOST_POINTS))
+    if (!(count >= 2 && count <= MAX_POINTS))
         return import_refuse(reader->import, reader->words.word.line,
-                             "a curve has from 2 to %d points", MOST_POINTS);
+                             "a curve has from 2 to %d points", MAX_POINTS);
     for (int i = 0; i < (int)count; i++) {
         double v[3];
         comma(reader);

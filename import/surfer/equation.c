@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_DEPTH = 60 };
+enum { MAX_DEPTH = 60 };
 
 typedef struct Equation {
     JsurfSurface *surface;
@@ -85,9 +85,9 @@ static bool use_parameter(Equation *equation, const char *name)
     for (size_t i = 0; i < surface->used_count; i++)
         if (surface->used[i] == property)
             return true;
-    if (surface->used_count == MOST_PARAMETERS)
+    if (surface->used_count == MAX_PARAMETERS)
         return import_refuse(surface->import, equation->line, "more than %d parameters",
-                             MOST_PARAMETERS);
+                             MAX_PARAMETERS);
     surface->used[surface->used_count++] = property;
     return true;
 }
@@ -147,9 +147,9 @@ static bool parse_factor(Equation *equation)
 /* What stands alone before `^` may have one more behind it. */
 static bool parse_power(Equation *equation)
 {
-    if (++equation->depth > MOST_DEPTH)
+    if (++equation->depth > MAX_DEPTH)
         return import_refuse(equation->surface->import, equation->line,
-                             "the equation is more than %d deep", MOST_DEPTH);
+                             "the equation is more than %d deep", MAX_DEPTH);
     bool good = parse_factor(equation);
     if (good && accept_sign(equation, '^')) {
         text_add(&equation->text, "^");

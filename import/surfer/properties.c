@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PROPERTIES = 10000 };
+enum { MAX_PROPERTIES = 10000 };
 
 typedef struct Reader {
     const char *at;
@@ -89,9 +89,9 @@ bool jsurf_read(JsurfSurface *surface)
         }
         if (*reader.at == '\0')
             break;
-        if (surface->properties.count == MOST_PROPERTIES)
+        if (surface->properties.count == MAX_PROPERTIES)
             return import_refuse(surface->import, reader.line, "more than %d properties",
-                                 MOST_PROPERTIES);
+                                 MAX_PROPERTIES);
         JsurfProperty property = {.line = reader.line};
         property.key           = read_piece(surface, &reader, true);
         reader.at += strspn(reader.at, " \t\f");

@@ -6,7 +6,7 @@
 
 #include "import/common/text.h"
 
-enum { MOST_PARAMETERS = 64 };
+enum { MAX_PARAMETERS = 64 };
 
 typedef struct JsurfProperty {
     const char *key, *value;
@@ -19,7 +19,7 @@ typedef struct JsurfSurface {
         JsurfProperty *items;
         size_t         count, capacity;
     } properties;
-    const JsurfProperty *used[MOST_PARAMETERS]; /* parameters of the equation, as it names them */
+    const JsurfProperty *used[MAX_PARAMETERS]; /* parameters of the equation, as it names them */
     size_t               used_count;
     double               scale; /* radius of the ball in the space of the equation */
 } JsurfSurface;

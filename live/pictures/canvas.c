@@ -246,7 +246,7 @@ KrsStatus canvas_adopt(Canvas *canvas, const View *view)
 }
 
 /* The sides of a picture that only compiles. */
-#define LEAST_SIDE 32
+#define MIN_SIDE 32
 
 /* Some shaders are compiled when a picture needs them: a small one is made. */
 static KrsStatus try_out(Canvas *canvas, const View *view)
@@ -255,7 +255,7 @@ static KrsStatus try_out(Canvas *canvas, const View *view)
     if (status != KRS_OK)
         return status;
     canvas_set(canvas, view); /* values that are refused need no other shaders */
-    status = canvas_add(canvas, FILM_COARSE, view, LEAST_SIDE, LEAST_SIDE, 1, true, NULL, NULL);
+    status = canvas_add(canvas, FILM_COARSE, view, MIN_SIDE, MIN_SIDE, 1, true, NULL, NULL);
     if (status != KRS_OK || view->shading != SHADING_SLOPE)
         return status;
     const float point[1][3] = {{0, 0, 0}};

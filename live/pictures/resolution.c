@@ -14,8 +14,8 @@
 #include <stdbool.h>
 
 /* What pixels do not cause may be found to be so many times longer by a single picture, and this much. */
-#define MOST_GROWTH 1.5
-#define MOST_STEP   1.0
+#define MAX_GROWTH 1.5
+#define MAX_STEP   1.0
 
 /* A picture is late from so many budgets on.  Where its pixels take less than this part of a budget, fewer
    of them are not tried. */
@@ -31,7 +31,7 @@ static double fixed_of_same(const Resolution *resolution, double ms, double pixe
 
 static double fixed_of_other(const Resolution *resolution, double ms, double pixels)
 {
-    const double most = MOST_GROWTH * resolution->fixed_ms + MOST_STEP;
+    const double most = MAX_GROWTH * resolution->fixed_ms + MAX_STEP;
     const double rest = ms - pixels * resolution->pixel_ms;
     return resolution->pixel_ms > 0 ? fmin(fmax(rest, 0), most) : 0;
 }

@@ -72,7 +72,7 @@ static bool read_file(const char *scene_path, const char *root, Bytes *bytes)
     const Loaded loaded = loader_read(&loader, path);
     loader_close(&loader);
     *bytes = (Bytes){loaded.owned, loaded.length};
-    return loaded.owned && loaded.length <= MOST_SOURCE_BYTES;
+    return loaded.owned && loaded.length <= MAX_SOURCE_BYTES;
 }
 
 Presets presets_read(const char *scene_path, const char *root)

@@ -31,9 +31,9 @@ static bool print_color(FILE *out, const double *value)
 /* Six digits do, but for values at the end of a range: rounded, they would be outside. */
 static void print_number(FILE *out, const KrsParameter *parameter, uint32_t i, double value)
 {
-    enum { FEWEST_DIGITS = 6, MOST_DIGITS = 17 };
+    enum { FEWEST_DIGITS = 6, MAX_DIGITS = 17 };
     char text[40];
-    for (int digits = FEWEST_DIGITS; digits <= MOST_DIGITS; digits++) {
+    for (int digits = FEWEST_DIGITS; digits <= MAX_DIGITS; digits++) {
         snprintf(text, sizeof text, "%.*g", digits,
                  parameter->degrees ? value / M_PI * 180 : value);
         const double number = strtod(text, NULL);

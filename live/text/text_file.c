@@ -19,7 +19,7 @@ bool text_file_read(const char *path, Bytes *bytes)
         bytes->text = source_read_open(file, &bytes->length, &reason);
     else if (file >= 0)
         close(file);
-    return bytes->text && bytes->length <= MOST_SOURCE_BYTES;
+    return bytes->text && bytes->length <= MAX_SOURCE_BYTES;
 }
 
 bool text_file_write(const char *path, const Bytes *bytes)

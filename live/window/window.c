@@ -221,13 +221,13 @@ void window_set_picture(Window *window, const uint8_t *pixels, uint32_t width, u
 void window_reserve(Window *window, double right) { window->reserved = right; }
 
 /* Less is no picture to work with. */
-enum { LEAST_PICTURE = 256 };
+enum { MIN_PICTURE = 256 };
 
 bool window_has_room_beside(const Window *window)
 {
     int width, height;
     glfwGetWindowSize(window->glfw, &width, &height);
-    return width >= window->reserved + LEAST_PICTURE;
+    return width >= window->reserved + MIN_PICTURE;
 }
 
 /* The part of the window's width that the picture has.  In a narrow window it has all, and lies

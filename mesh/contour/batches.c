@@ -35,7 +35,7 @@ static void find_group(const BatchWork *w, MeshField *field, const Group *group)
     if (pruned)
         field_focus(field, box_of_group(w, group));
     for (uint32_t i = 0, now; i < group->count; i += now) {
-        now = group->count - i < MOST_FIELD_POINTS ? group->count - i : MOST_FIELD_POINTS;
+        now = group->count - i < MAX_FIELD_POINTS ? group->count - i : MAX_FIELD_POINTS;
         w->batches->find(w->user, field, numbers + i, now);
     }
     if (pruned)

@@ -9,7 +9,7 @@
 #include "compiler/field/field.h"
 #include "mesh/contour/groups.h"
 
-/* What is done: `find` for up to MOST_FIELD_POINTS of them, which have a box around each that holds all points
+/* What is done: `find` for up to MAX_FIELD_POINTS of them, which have a box around each that holds all points
    where it asks the field, but for `margin`; it asks `questions` times for each. */
 typedef struct Batches {
     void (*box)(const void *user, size_t number, double low[3], double high[3]);

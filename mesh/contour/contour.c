@@ -44,7 +44,7 @@ static void find_distances(const void *user, const MeshField *field, const uint3
                            size_t count)
 {
     const Contour *contour = user;
-    double         positions[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    double         positions[MAX_FIELD_POINTS][3], distances[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
         tets_position(contour->tets, numbers[i], positions[i]);
     field_distances(field, (const double(*)[3])positions, count, distances);
@@ -95,7 +95,7 @@ static RootSearch root_search(const Contour *contour, const Crossing *crossing)
 static void find_places(const Contour *contour, const MeshField *field, const uint32_t *numbers,
                         size_t count)
 {
-    RootSearch searches[MOST_FIELD_POINTS];
+    RootSearch searches[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
         searches[i] = root_search(contour, &contour->crossings.items[numbers[i]]);
     find_roots(field, searches, count, 1e-4 * contour->error);
@@ -114,7 +114,7 @@ static void find_places(const Contour *contour, const MeshField *field, const ui
 static void look_at_crossings(const Contour *contour, const MeshField *field,
                               const uint32_t *numbers, size_t count)
 {
-    enum { EACH = 7, AT_ONCE = MOST_FIELD_POINTS / EACH };
+    enum { EACH = 7, AT_ONCE = MAX_FIELD_POINTS / EACH };
     double step = 1e-3 * contour->error;
     for (size_t i = 0, now; i < count; i += now) {
         double points[AT_ONCE * EACH][3], values[AT_ONCE * EACH];
@@ -177,7 +177,7 @@ static void find_line(const Contour *contour, const MeshField *field, double mis
     line->off         = fabs(missed);
     if (line->bent) {
         const double *ends[2] = {a->at, b->at};
-        line->off             = most_off(field, line->at, ends, 2);
+        line->off             = max_off(field, line->at, ends, 2);
     }
 }
 
@@ -192,7 +192,7 @@ static void find_lines(const void *user, const MeshField *field, const uint32_t 
                        size_t count)
 {
     const Contour *contour = user;
-    double         middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    double         middles[MAX_FIELD_POINTS][3], distances[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++) {
         const FaceLine *line = &contour->lines.items[numbers[i]];
         for (int k = 0; k < 3; k++)
@@ -234,7 +234,7 @@ static double off_of_fan(const Contour *contour, const MeshField *field, const P
         if (line->bent)
             around[count++] = line->at;
     }
-    return max2(fabs(patch->value), most_off(field, patch->apex, around, count));
+    return max2(fabs(patch->value), max_off(field, patch->apex, around, count));
 }
 
 /* `missed` is the distance at the middle of the crossings. */
@@ -271,7 +271,7 @@ static void find_apexes(const void *user, const MeshField *field, const uint32_t
                         size_t count)
 {
     const Contour *contour = user;
-    double         middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    double         middles[MAX_FIELD_POINTS][3], distances[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
         find_middle(contour, &contour->patches.items[numbers[i]], middles[i]);
     field_distances(field, (const double(*)[3])middles, count, distances);

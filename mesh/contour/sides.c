@@ -6,9 +6,9 @@
 #include "compiler/base/vec.h"
 
 /* Tetrahedra that have a point that may be moved. */
-enum { MOST_AROUND = 200 };
+enum { MAX_AROUND = 200 };
 /* Of the sphere around a point, that one may join. */
-enum { MOST_PARTS = 16 };
+enum { MAX_PARTS = 16 };
 
 /* The points around a point, by their number in the place, and the edges of the sphere that they are on: where those begin. */
 typedef struct Link {
@@ -57,7 +57,7 @@ static bool is_fine(const Tets *tets, uint32_t point, double longest)
 {
     int count = 0;
     for (uint32_t at = tets->points.items[point].first; at; at = tets->links.items[at - 1].next)
-        if (++count > MOST_AROUND ||
+        if (++count > MAX_AROUND ||
             tets_longest_edge(tets, &tets->list.items[tets->links.items[at - 1].tet]) > longest)
             return false;
     return true;
@@ -190,10 +190,10 @@ static long euler_of_cone(const uint32_t parts[2])
 static bool may_go(const Place *place, const Link *link, bool inside, uint32_t *leaders,
                    uint32_t *wholes, uint32_t *other)
 {
-    uint32_t parts[2], whole[MOST_PARTS], count = 0;
+    uint32_t parts[2], whole[MAX_PARTS], count = 0;
     count_around(place, link, leaders, parts);
     *other = parts[!inside];
-    if (parts[inside] == 0 || parts[inside] > MOST_PARTS || parts[!inside] == 0)
+    if (parts[inside] == 0 || parts[inside] > MAX_PARTS || parts[!inside] == 0)
         return false;
     for (uint32_t i = link->first_point; i < link->first_point + link->point_count; i++) {
         uint32_t number = place->around.items[i];
@@ -303,11 +303,11 @@ static size_t tidy(Place *place, uint32_t *moved, size_t most)
 
 /* ---- crumbs ---- */
 
-enum { MOST_OF_CRUMB = 64 };
+enum { MAX_OF_CRUMB = 64 };
 
 /* All that is inside and hangs together with a point.  Returns how many; 0: too many, or some are far or deep. */
 static size_t find_crumb(const Tets *tets, uint32_t point, const double center[3], double radius,
-                         double deep, uint32_t crumb[MOST_OF_CRUMB])
+                         double deep, uint32_t crumb[MAX_OF_CRUMB])
 {
     size_t count = 1;
     crumb[0]     = point;
@@ -326,7 +326,7 @@ static size_t find_crumb(const Tets *tets, uint32_t point, const double center[3
                     known++;
                 if (!point_is_inside(tets, other) || known < count)
                     continue;
-                if (count == MOST_OF_CRUMB)
+                if (count == MAX_OF_CRUMB)
                     return 0;
                 crumb[count++] = other;
             }
@@ -346,7 +346,7 @@ static bool drop_crumbs(Tets *tets, const double center[3], double radius, doubl
 {
     bool any = false;
     for (uint32_t i = 0; i < tets->points.count; i++) {
-        uint32_t crumb[MOST_OF_CRUMB];
+        uint32_t crumb[MAX_OF_CRUMB];
         double   at[3];
         tets_position(tets, i, at);
         if (!point_is_inside(tets, i) || distance3(at, center) > radius)
@@ -362,17 +362,17 @@ static bool drop_crumbs(Tets *tets, const double center[3], double radius, doubl
 
 bool sides_tidy(Contour *contour, const double center[3], double radius, double deep)
 {
-    enum { MOST_FREE = 10000, MOST_MOVED = 2000 };
-    uint32_t  moved[MOST_MOVED];
+    enum { MAX_FREE = 10000, MAX_MOVED = 2000 };
+    uint32_t  moved[MAX_MOVED];
     size_t    count = 0;
     Tets     *tets  = contour->tets;
     ArenaMark mark  = arena_mark(contour->arena);
     Place     place = {.tets = tets, .arena = contour->arena, .numbers = {.arena = contour->arena}};
     find_free(&place, center, radius, deep);
-    if (place.links.count > 0 && place.links.count < MOST_FREE) {
+    if (place.links.count > 0 && place.links.count < MAX_FREE) {
         for (size_t i = 0; i < place.links.count; i++)
             find_link(&place, &place.links.items[i]);
-        count = tidy(&place, moved, MOST_MOVED);
+        count = tidy(&place, moved, MAX_MOVED);
     }
     arena_rewind(contour->arena, mark);
     move(tets, moved, count);

@@ -70,10 +70,10 @@ bool snap_nearby(const MeshField *field, const Snapping *snapping, bool guess, d
     return fabs(*value) < enough;
 }
 
-double most_off(const MeshField *field, const double at[3], const double *const *others,
-                size_t count)
+double max_off(const MeshField *field, const double at[3], const double *const *others,
+               size_t count)
 {
-    double middles[MOST_FIELD_POINTS][3], values[MOST_FIELD_POINTS], most = 0;
+    double middles[MAX_FIELD_POINTS][3], values[MAX_FIELD_POINTS], most = 0;
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++)
             middles[i][k] = 0.5 * (at[k] + others[i][k]);

@@ -22,7 +22,7 @@ bool snap_nearby(const MeshField *field, const Snapping *snapping, bool guess, d
                  double *value);
 
 /* The largest value, without its sign, in the middles between a vertex and others. */
-double most_off(const MeshField *field, const double at[3], const double *const *others,
-                size_t count);
+double max_off(const MeshField *field, const double at[3], const double *const *others,
+               size_t count);
 
 #endif

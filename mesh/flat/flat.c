@@ -13,19 +13,19 @@
 #include "mesh/flat/flat_near.h"
 
 enum {
-    MOST_BOXES          = 400000,
-    MOST_BOXES_OF_DRAFT = 40000,
-    MOST_HALVINGS       = 45,
-    HALVINGS_OF_REGION  = 3,
-    PATIENCE            = 256
+    MAX_BOXES          = 400000,
+    MAX_BOXES_OF_DRAFT = 40000,
+    MAX_HALVINGS       = 45,
+    HALVINGS_OF_REGION = 3,
+    PATIENCE           = 256
 };
 /* Boxes that were looked at when more than a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
 /* At each turn planes are moved otherwise; at the last ones short edges stay, so that solids that touch stay apart. */
 enum { TURNS = 4, APART_FROM = 2 };
-static const double LEAST_KNOWN = 0.02;
+static const double MIN_KNOWN = 0.02;
 /* Parts of the size: how far faces are moved so that no four meet, about. */
-static const double ROUNDING_OF_FACES = 1e-6, LEAST_SHORT = 1e-9, TOUCHING = 1e-8;
+static const double ROUNDING_OF_FACES = 1e-6, MIN_SHORT = 1e-9, TOUCHING = 1e-8;
 
 typedef struct Halving {
     Mesher    *m;
@@ -65,9 +65,9 @@ static bool is_wanted(Mesher *m)
 static bool is_given_up(Halving *h, int halvings)
 {
     h->boxes++;
-    return (h->boxes % PATIENCE == 0 && !is_wanted(h->m)) || halvings > MOST_HALVINGS ||
-           h->boxes > (h->m->options->draft ? MOST_BOXES_OF_DRAFT : MOST_BOXES) ||
-           (h->boxes > FIRST_BOXES && (double)h->known < LEAST_KNOWN * (double)h->boxes);
+    return (h->boxes % PATIENCE == 0 && !is_wanted(h->m)) || halvings > MAX_HALVINGS ||
+           h->boxes > (h->m->options->draft ? MAX_BOXES_OF_DRAFT : MAX_BOXES) ||
+           (h->boxes > FIRST_BOXES && (double)h->known < MIN_KNOWN * (double)h->boxes);
 }
 
 /* Whether faces will be found once more, with the right numbers of sides. */
@@ -90,7 +90,7 @@ static bool halve(Halving *h, Box box, int halvings)
     if (range.low > 0 || range.high < 0)
         return true;
     bool entered = halvings % HALVINGS_OF_REGION == 0 &&
-                   halvings < MOST_REGIONS * HALVINGS_OF_REGION;
+                   halvings < MAX_REGIONS * HALVINGS_OF_REGION;
     bool done;
     if (entered)
         field_focus(h->field, box);
@@ -140,7 +140,7 @@ static bool halve_all(Halving *h)
     }
     h->faces       = (FlatFaces){.arena    = &m->arena,
                                  .size     = m->side,
-                                 .shortest = h->turn < APART_FROM ? spare_of(m) : LEAST_SHORT * m->side,
+                                 .shortest = h->turn < APART_FROM ? spare_of(m) : MIN_SHORT * m->side,
                                  .turn     = h->turn};
     h->round_boxes = (FlatBoxes){NULL, 0, 0};
     h->boxes       = 0;

@@ -163,7 +163,7 @@ static int solid_of_pair_length(Finding *f, const Form *rest, double factor, con
     find_sides(form_range(f, &rounded->forms[0]), form_range(f, &rounded->forms[1]), count, wide,
                &sides);
     bool around = sides.used == count;
-    if (sides.used > (around ? f->most_around : f->most_used)) {
+    if (sides.used > (around ? f->max_around : f->max_used)) {
         f->failed = true;
         return FLAT_NONE;
     }
@@ -240,7 +240,7 @@ static int solid_of_three(Finding *f, const Form *rest, double factor, const Rou
     FlatSlack slack = f->slack;
     Sides     bands = find_bands(f, rounded, count);
     int       solid = factor > 0 ? FLAT_ALL : FLAT_NONE;
-    f->failed |= bands.used > f->most_used;
+    f->failed |= bands.used > f->max_used;
     for (uint32_t i = 0; i < bands.used && !f->failed; i++) {
         Band band = find_band(&bands, i);
         f->slack  = slack_of_length(slack, factor * reach, band.longer, band.shorter);

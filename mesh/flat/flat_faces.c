@@ -76,31 +76,31 @@ static double above(const FlatPlane *plane, const double point[3])
 
 /* ---- polygons ---- */
 
-enum { MOST_CORNERS = 96 };
+enum { MAX_CORNERS = 96 };
 
 /* In the positive order around the normal of its plane; labels[i] is the plane at the edge from corner i. */
 typedef struct Polygon {
     int      count;
-    double   at[MOST_CORNERS][3];
-    uint32_t labels[MOST_CORNERS];
+    double   at[MAX_CORNERS][3];
+    uint32_t labels[MAX_CORNERS];
 } Polygon;
 
-enum { MOST_CELL_NODES = 16 * MOST_FLAT_NODES };
+enum { MAX_CELL_NODES = 16 * MAX_FLAT_NODES };
 
 typedef struct Cell {
     FlatFaces *faces;
     Box        box;
-    uint32_t   planes[MOST_FLATS]; /* of half-spaces */
-    int        signs[MOST_FLATS];
-    int        own;                    /* the half-space that is cut */
-    FlatNode   nodes[MOST_CELL_NODES]; /* those of the pieces, and what is left of them */
+    uint32_t   planes[MAX_FLATS]; /* of half-spaces */
+    int        signs[MAX_FLATS];
+    int        own;                   /* the half-space that is cut */
+    FlatNode   nodes[MAX_CELL_NODES]; /* those of the pieces, and what is left of them */
     int        node_count;
     bool       failed;
 } Cell;
 
 static void add_corner(Polygon *polygon, const double at[3], uint32_t label)
 {
-    if (polygon->count < MOST_CORNERS) {
+    if (polygon->count < MAX_CORNERS) {
         memcpy(polygon->at[polygon->count], at, sizeof polygon->at[0]);
         polygon->labels[polygon->count] = label;
     }
@@ -124,14 +124,14 @@ static void cut_polygon(Cell *cell, const Polygon *polygon, const double *values
             add_corner(part, between, inside ? label : polygon->labels[i]);
         }
     }
-    cell->failed |= part->count > MOST_CORNERS;
+    cell->failed |= part->count > MAX_CORNERS;
 }
 
 /* The whole plane in the box. */
 static void begin_polygon(Cell *cell, const FlatPlane *plane, Polygon *polygon)
 {
     const double *normal = plane->exact.normal;
-    double        center[3], axes[2][3], at[3], values[MOST_CORNERS], reach = 0;
+    double        center[3], axes[2][3], at[3], values[MAX_CORNERS], reach = 0;
     int           least = 0;
     Polygon       part;
     for (int k = 0; k < 3; k++) {
@@ -219,7 +219,7 @@ static int rest_of(Cell *cell, int solid, const signed char *sides)
         return first;
     if (first < 0 || (first == node.first && second == node.second))
         return first < 0 ? second : solid;
-    if (cell->node_count == MOST_CELL_NODES) {
+    if (cell->node_count == MAX_CELL_NODES) {
         cell->failed = true;
         return solid;
     }
@@ -249,7 +249,7 @@ static void cut_part(Cell *cell, const Polygon *polygon, int within, int beyond,
     int              unknown = half_space_of(cell, beyond >= 0 ? beyond : within);
     int              nodes   = cell->node_count;
     const FlatPlane *plane   = &cell->faces->planes.items[cell->planes[unknown]];
-    double           values[MOST_CORNERS];
+    double           values[MAX_CORNERS];
     for (int i = 0; i < polygon->count; i++) {
         values[i] = above(plane, polygon->at[i]);
         cell->failed |= fabs(values[i]) < NARROW * cell->faces->size;
@@ -266,7 +266,7 @@ static void cut_part(Cell *cell, const Polygon *polygon, int within, int beyond,
 
 bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces)
 {
-    signed char sides[MOST_FLATS];
+    signed char sides[MAX_FLATS];
     Cell        cell;
     if (pieces->root < 0)
         return true;

@@ -41,7 +41,7 @@ static void add_kink(Form *form, uint32_t kink, double factor)
             form_drop_kink(form, i);
         return;
     }
-    if (form->kink_count == MOST_KINKS) {
+    if (form->kink_count == MAX_KINKS) {
         form->known = false;
         return;
     }

@@ -11,14 +11,14 @@
 #include "mesh/flat/flat_planes.h"
 #include "mesh/flat/flat_rounds.h"
 
-enum { MOST_KINKS = 6 };
+enum { MAX_KINKS = 6 };
 
 /* by . p + at, and kinks: results of steps, by their numbers as operands, the last ones first. */
 typedef struct Form {
     bool     known;
     double   by[3], at;
-    uint32_t kinks[MOST_KINKS];
-    double   factors[MOST_KINKS];
+    uint32_t kinks[MAX_KINKS];
+    double   factors[MAX_KINKS];
     int      kink_count;
 } Form;
 
@@ -33,9 +33,9 @@ typedef struct Finding {
     FlatRounds      *rounds;
     FlatPieces      *pieces;
     FlatUse          use;
-    FlatSlack        slack;                  /* of what is being taken apart */
-    bool             chooses;                /* that is a condition */
-    uint32_t         most_used, most_around; /* of the sides of a polygon */
+    FlatSlack        slack;                /* of what is being taken apart */
+    bool             chooses;              /* that is a condition */
+    uint32_t         max_used, max_around; /* of the sides of a polygon */
     bool             failed;
 } Finding;
 

@@ -5,7 +5,7 @@
 
 int flat_node(Finding *f, FlatNode node)
 {
-    if (f->pieces->node_count == MOST_FLAT_NODES) {
+    if (f->pieces->node_count == MAX_FLAT_NODES) {
         f->failed = true;
         return FLAT_NONE;
     }
@@ -96,7 +96,7 @@ static int find_half_space(Finding *f, const HalfSpace *plane, int *sign)
             return (int)i;
     }
     *sign = 1;
-    if (pieces->count == MOST_FLATS) {
+    if (pieces->count == MAX_FLATS) {
         f->failed = true;
         return 0;
     }

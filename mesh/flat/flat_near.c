@@ -6,14 +6,14 @@
 #include "compiler/base/vec.h"
 
 enum {
-    MOST_THIN                 = 100,
-    MANY                      = 8,
-    MOST_SEAMS                = 50,
-    MOST_HARD                 = 10000,
-    MOST_LOOKS                = 600000,
-    MOST_LOOKS_WHERE_UNPROVEN = 100, /* for each box; all will be looked at again */
-    PATIENCE                  = 256,
-    HALVINGS_OF_REGION        = 3
+    MAX_THIN                 = 100,
+    MANY                     = 8,
+    MAX_SEAMS                = 50,
+    MAX_HARD                 = 10000,
+    MAX_LOOKS                = 600000,
+    MAX_LOOKS_WHERE_UNPROVEN = 100, /* for each box; all will be looked at again */
+    PATIENCE                 = 256,
+    HALVINGS_OF_REGION       = 3
 };
 /* In errors: boxes that are not halved any more, first and after some have been left; and those in which ways may be shorter than
    the error. */
@@ -61,9 +61,9 @@ static bool goes_on(Looking *l)
     if (++part->looks % PATIENCE == 0 && l->asks && m->options->go_on &&
         !m->options->go_on(m->options->user, 0))
         atomic_store(&m->stopped, true);
-    return !atomic_load(&m->stopped) && part->looks < MOST_LOOKS &&
-           (part->unproven == 0 || part->looks < MOST_LOOKS_WHERE_UNPROVEN * l->w->boxes->count) &&
-           part->hard < MOST_HARD && part->thin < MOST_THIN && part->seams < MOST_SEAMS;
+    return !atomic_load(&m->stopped) && part->looks < MAX_LOOKS &&
+           (part->unproven == 0 || part->looks < MAX_LOOKS_WHERE_UNPROVEN * l->w->boxes->count) &&
+           part->hard < MAX_HARD && part->thin < MAX_THIN && part->seams < MAX_SEAMS;
 }
 
 static void note_place(NearPart *part, const Box *box)
@@ -111,14 +111,14 @@ static void look(Looking *l, Box box, int halvings)
     if (range.low > 0 || range.high < 0)
         return;
     if (!goes_on(l)) {
-        if (part->looks == MOST_LOOKS || part->hard == MOST_HARD)
+        if (part->looks == MAX_LOOKS || part->hard == MAX_HARD)
             note_place(part, &box);
         return;
     }
     int    axis    = box_longest_axis(&box);
     double size    = box.axis[axis].high - box.axis[axis].low;
     double way     = size < SMALL * error ? SHORT_WAY * error : error;
-    bool   entered = halvings % HALVINGS_OF_REGION == 0 && l->field->region_count < MOST_REGIONS;
+    bool   entered = halvings % HALVINGS_OF_REGION == 0 && l->field->region_count < MAX_REGIONS;
     if (entered)
         field_focus(l->field, wider_box(box, error));
     FlatNearness nearness = FLAT_UNKNOWN;
@@ -174,10 +174,10 @@ static FlatVerdict judge(const NearWork *w, size_t parts)
     m->unresolved = 0;
     for (size_t i = 0; i < parts; i++) {
         const NearPart *part      = &w->parts[i];
-        bool            cut_short = part->looks >= MOST_LOOKS || part->hard >= MOST_HARD;
+        bool            cut_short = part->looks >= MAX_LOOKS || part->hard >= MAX_HARD;
         size_t          left      = part->thin + part->unproven + cut_short;
-        in_vain |= part->thin >= MOST_THIN;
-        by_seams |= part->seams >= MOST_SEAMS;
+        in_vain |= part->thin >= MAX_THIN;
+        by_seams |= part->seams >= MAX_SEAMS;
         m->unresolved += left;
         if (left > 0)
             memcpy(m->unresolved_at, part->left_at, sizeof m->unresolved_at);

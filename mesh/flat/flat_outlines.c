@@ -11,7 +11,7 @@
 #include "compiler/graph/lanes/lane_outlines.h"
 #include "mesh/flat/flat_circles.h"
 
-enum { MOST_CHORDS = 8 };
+enum { MAX_CHORDS = 8 };
 
 typedef struct Chord {
     double from[2], to[2];
@@ -27,9 +27,9 @@ typedef struct Place {
              around; /* where proofs are looked for curves count as well, as far as they may be from their chords */
     uint32_t table;
     size_t   count;
-    Chord    chords[MOST_CHORDS]; /* that come into it */
-    Chord    nearest;             /* of all, to its middle */
-    double   distance, across;    /* how far that is, and how much of that is across it */
+    Chord    chords[MAX_CHORDS]; /* that come into it */
+    Chord    nearest;            /* of all, to its middle */
+    double   distance, across;   /* how far that is, and how much of that is across it */
 } Place;
 
 static double cross2(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
@@ -137,7 +137,7 @@ static void look_at_chord(Finding *f, Place *place, const Chord *chord)
         note_curves(f, place);
     if (lies_beyond(place, chord, place->around))
         return;
-    if (place->count == MOST_CHORDS)
+    if (place->count == MAX_CHORDS)
         f->failed = true;
     else
         place->chords[place->count++] = *chord;
@@ -281,7 +281,7 @@ static bool is_left(const Place *place, const Chord *chords, size_t count, const
 }
 
 typedef struct Chains {
-    size_t count, begins[MOST_CHORDS + 1];
+    size_t count, begins[MAX_CHORDS + 1];
 } Chains;
 
 static bool find_chains(Place *place, Chains *chains)
@@ -346,7 +346,7 @@ static void find_place(Finding *f, const LaneCall *call, Place *place)
 int flat_solid_of_outline(Finding *f, uint32_t value)
 {
     const LaneCall *call = &f->tape->calls[f->tape->steps[value - LANE_INPUTS].operands[0]];
-    uint32_t        instances[MOST_LANE_INSTANCES], count;
+    uint32_t        instances[MAX_LANE_INSTANCES], count;
     Place           place;
     if (!lane_outline_instances(f->tape, &f->field->ranges, value - LANE_INPUTS, instances,
                                 &count)) {

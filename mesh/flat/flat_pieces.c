@@ -20,7 +20,7 @@ enum { UNKNOWN = -3 };
 static void join_faces(FieldFaces *faces, const FieldFaces *others)
 {
     for (size_t i = 0; i < others->count; i++)
-        if (!field_has_face(faces, others->operands[i]) && faces->count < MOST_FACES)
+        if (!field_has_face(faces, others->operands[i]) && faces->count < MAX_FACES)
             faces->operands[faces->count++] = others->operands[i];
 }
 
@@ -268,14 +268,14 @@ FlatWork flat_work_new(const MeshField *field, Arena *arena)
 bool flat_pieces(MeshField *field, Box box, double size, FlatRounds *rounds, FlatUse use,
                  FlatWork *work, FlatPieces *pieces)
 {
-    static const uint32_t MOST_USED[] = {8, 24}, MOST_AROUND[] = {100, 100};
-    Finding f     = {.field = field, .box = box, .size = size, .rounds = rounds, .pieces = pieces};
-    f.use         = use;
-    f.most_used   = MOST_USED[use];
-    f.most_around = MOST_AROUND[use];
-    f.tape        = &field->regions[field->region_count - 1].tape;
-    f.forms       = work->forms;
-    f.conditions  = work->conditions;
+    static const uint32_t MAX_USED[] = {8, 24}, MAX_AROUND[] = {100, 100};
+    Finding f    = {.field = field, .box = box, .size = size, .rounds = rounds, .pieces = pieces};
+    f.use        = use;
+    f.max_used   = MAX_USED[use];
+    f.max_around = MAX_AROUND[use];
+    f.tape       = &field->regions[field->region_count - 1].tape;
+    f.forms      = work->forms;
+    f.conditions = work->conditions;
     for (size_t i = 0; i < LANE_INPUTS + f.tape->count; i++)
         f.conditions[i] = UNKNOWN;
     pieces->count = pieces->node_count = 0;

@@ -17,7 +17,7 @@ typedef struct FlatSlack {
     double below, above;
 } FlatSlack;
 
-enum { MOST_FLATS = 128, MOST_FLAT_NODES = 1024 };
+enum { MAX_FLATS = 128, MAX_FLAT_NODES = 1024 };
 
 /* A solid: all, none, or a node. */
 enum { FLAT_ALL = -1, FLAT_NONE = -2 };
@@ -29,10 +29,10 @@ typedef struct FlatNode {
 
 typedef struct FlatPieces {
     size_t    count, node_count;
-    HalfSpace list[MOST_FLATS];
-    FlatSlack slack[MOST_FLATS];
-    bool chooses[MOST_FLATS]; /* its side is a condition by which one of two surfaces is taken */
-    FlatNode nodes[MOST_FLAT_NODES];
+    HalfSpace list[MAX_FLATS];
+    FlatSlack slack[MAX_FLATS];
+    bool     chooses[MAX_FLATS]; /* its side is a condition by which one of two surfaces is taken */
+    FlatNode nodes[MAX_FLAT_NODES];
     int      root;
     bool     round; /* some stand for what is round */
 } FlatPieces;

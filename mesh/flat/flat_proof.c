@@ -36,7 +36,7 @@ static double largest_of(FlatSlack slack) { return max2(slack.below, slack.above
 /* ---- one way for all ---- */
 
 typedef struct Seen {
-    bool by_sign[2][MOST_FLATS];
+    bool by_sign[2][MAX_FLATS];
 } Seen;
 
 /* 1: all of the box is outside, -1: all is inside, each by its slack. */
@@ -63,8 +63,8 @@ static signed char side_of_node(const FlatNode *node, const signed char *sides,
 /* Those whose side makes a difference where some sides are known; NULL: none is.  Parts of a node are before it. */
 static void collect(const FlatPieces *pieces, const signed char *sides, Seen *seen)
 {
-    signed char known[MOST_FLAT_NODES];
-    bool        counts[MOST_FLAT_NODES];
+    signed char known[MAX_FLAT_NODES];
+    bool        counts[MAX_FLAT_NODES];
     size_t      count = (size_t)(pieces->root + 1);
     if (pieces->root < 0)
         return;
@@ -123,7 +123,7 @@ static bool all_have_one_way(const Proof *proof) { return find_one_way(proof, NU
 /* What makes a difference in the box: so no two parts of the surface come together there, nor does a hole close. */
 static OneWay find_one_sheet(const Proof *proof)
 {
-    signed char sides[MOST_FLATS];
+    signed char sides[MAX_FLATS];
     for (size_t i = 0; i < proof->pieces->count; i++) {
         FlatGrowth growth = growth_of(proof, i, 1);
         sides[i]          = (signed char)side_of(&growth);
@@ -133,11 +133,11 @@ static OneWay find_one_sheet(const Proof *proof)
 
 /* ---- a way for each set ---- */
 
-enum { MOST_MEMBERS = 64, MOST_SETS = 128 };
+enum { MAX_MEMBERS = 64, MAX_SETS = 128 };
 
 /* Of half-spaces and complements; bit i is the growth i. */
 typedef struct Sets {
-    uint64_t items[MOST_SETS];
+    uint64_t items[MAX_SETS];
     size_t   count;
     bool     failed; /* there are more, or more members */
 } Sets;
@@ -145,7 +145,7 @@ typedef struct Sets {
 typedef struct Members {
     const Proof *proof;
     FlatGrowths  growths;
-    int          numbers[2][MOST_FLATS]; /* of growths, by sign; or one of those below */
+    int          numbers[2][MAX_FLATS]; /* of growths, by sign; or one of those below */
 } Members;
 
 enum { UNSEEN = -1, NEVER = -2, ALWAYS = -3 };
@@ -161,7 +161,7 @@ static void add_set(Sets *sets, uint64_t set)
         if ((sets->items[i] & set) != set)
             sets->items[kept++] = sets->items[i];
     sets->count  = kept;
-    sets->failed = sets->failed || kept == MOST_SETS;
+    sets->failed = sets->failed || kept == MAX_SETS;
     if (!sets->failed)
         sets->items[sets->count++] = set;
 }
@@ -170,7 +170,7 @@ static void add_set(Sets *sets, uint64_t set)
 static int member_of(Members *members, size_t plane, int sign)
 {
     int *number = &members->numbers[sign > 0][plane];
-    if (*number != UNSEEN || members->growths.count == MOST_MEMBERS)
+    if (*number != UNSEEN || members->growths.count == MAX_MEMBERS)
         return *number;
     FlatGrowth *growth = &members->growths.list[members->growths.count];
     *growth            = growth_of(members->proof, plane, sign);

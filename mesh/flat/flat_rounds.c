@@ -6,12 +6,12 @@
 #include "compiler/base/minmax.h"
 
 /* A multiple of four. */
-enum { FEWEST_SIDES = 8, MOST_SIDES = 4096 };
+enum { FEWEST_SIDES = 8, MAX_SIDES = 4096 };
 
 static const double PI = 3.14159265358979323846;
 
 /* What is left over is for edges, at which faces are farther from the surface than beside them. */
-static const double LARGEST_PART = 0.85, LEAST_PART = 0.04;
+static const double LARGEST_PART = 0.85, MIN_PART = 0.04;
 
 /*
  * A side between two corners that are w outside of a unit circle comes within it by a^2 / 8 - w, where a is its angle; one
@@ -100,8 +100,8 @@ static uint32_t sides_of(const FlatRound *round, double error)
 {
     double   part  = part_of(round, error);
     double   about = 2 * PI * sqrt(0.5 * (3 - sqrt(8)) / part);
-    uint32_t sides = 4 * (uint32_t)(min2(max2(about, FEWEST_SIDES), MOST_SIDES) / 4);
-    while (sides < MOST_SIDES && off_of(sides) > part)
+    uint32_t sides = 4 * (uint32_t)(min2(max2(about, FEWEST_SIDES), MAX_SIDES) / 4);
+    while (sides < MAX_SIDES && off_of(sides) > part)
         sides += 4;
     return sides;
 }
@@ -160,8 +160,7 @@ static bool make_finer(FlatRound *round, double error)
 {
     uint32_t sides = round->sides;
     bool     any   = false;
-    while (round->part > LEAST_PART &&
-           !(any && (round->curves || sides_of(round, error) > sides))) {
+    while (round->part > MIN_PART && !(any && (round->curves || sides_of(round, error) > sides))) {
         round->part *= 0.8;
         any = true;
     }

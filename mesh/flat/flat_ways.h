@@ -23,7 +23,7 @@ typedef struct FlatWay {
 } FlatWay;
 
 typedef struct FlatGrowths {
-    FlatGrowth list[MOST_FLATS];
+    FlatGrowth list[MAX_FLATS];
     size_t     count;
     FlatWay    level; /* of length 0; what must not change at all does not */
 } FlatGrowths;

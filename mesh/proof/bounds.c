@@ -10,12 +10,12 @@
 /* The rest of the error is for rounding: files may have single precision. */
 static const double PROVEN_ERROR = 0.999;
 /* Edges, in errors, of the smallest tetrahedra that need not be tried by cells if pieces do not fit. */
-static const double LEAST_SHARP = 4;
+static const double MIN_SHARP = 4;
 /* Edges, in errors, of the largest that are tried by cells where nothing else is known: cells are as many as squares of
    the error, and are looked at again with each tetrahedron that is smaller. */
-static const double LEAST_KNOWN = 6;
+static const double MIN_KNOWN = 6;
 /* Edges, in errors, below which what curves too much for second derivatives is left to cells. */
-static const double LEAST_SMOOTH = 12;
+static const double MIN_SMOOTH = 12;
 /* Deviations, in those that fit, up to which parts of such a one fit so often that they are looked at before cells are. */
 static const double NEARLY = 2;
 
@@ -83,7 +83,7 @@ TetState state_by_bounds(const Mesher *m, const Tet *tet)
     if (tet->deviation <= tet->slope * proven_error(m))
         return TET_FITS;
     bool   parts_may = tet->deviation <= NEARLY * tet->slope * m->error;
-    double by_cells  = parts_may || tet->deviation == INFINITY ? LEAST_KNOWN : LEAST_SMOOTH;
+    double by_cells  = parts_may || tet->deviation == INFINITY ? MIN_KNOWN : MIN_SMOOTH;
     return tets_longest_edge(&m->tets, tet) > by_cells * m->error ? TET_REFUTED : TET_UNPROVEN;
 }
 
@@ -119,9 +119,9 @@ static bool one_may_fit(Mesher *m, const SmoothCell *middle, double share, const
 static void look_closer(Mesher *m, Verifier *verifier, SmoothCell *cell, const Placed *placed,
                         size_t count)
 {
-    static const double AT_BEST = 0.85, MOST_TURN = 3.5;
+    static const double AT_BEST = 0.85, MAX_TURN = 3.5;
     SmoothCell          middle;
-    if (!cell->empty && smooth_turn(cell) < MOST_TURN &&
+    if (!cell->empty && smooth_turn(cell) < MAX_TURN &&
         smooth_look_at_middle(verifier->field, cell, &middle) &&
         one_may_fit(m, &middle, AT_BEST, placed, count)) {
         smooth_look_closer(verifier->field, m->error, cell);
@@ -137,7 +137,7 @@ static void mark_hopeless(Mesher *m, const Placed *placed, size_t count)
         Tet *tet      = &m->tets.list.items[placed[i].tet];
         tet->hopeless = tet->state == TET_REFUTED &&
                         tet->deviation > FAR_TOO_WIDE * tet->slope * m->error &&
-                        tets_longest_edge(&m->tets, tet) > LEAST_SMOOTH * m->error;
+                        tets_longest_edge(&m->tets, tet) > MIN_SMOOTH * m->error;
     }
 }
 
@@ -157,7 +157,7 @@ static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed 
             tet->state = TET_FITS;
         else {
             tet->deviation = INFINITY;
-            if (tets_longest_edge(&m->tets, tet) > LEAST_SHARP * m->error)
+            if (tets_longest_edge(&m->tets, tet) > MIN_SHARP * m->error)
                 tet->state = TET_REFUTED;
         }
     }
@@ -168,7 +168,7 @@ static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed 
 static bool is_worth_another_look(const Mesher *m, const Placed *placed, size_t count)
 {
     const Tet *tet = &m->tets.list.items[placed[0].tet];
-    return count > 1 && tets_longest_edge(&m->tets, tet) > LEAST_SMOOTH * m->error;
+    return count > 1 && tets_longest_edge(&m->tets, tet) > MIN_SMOOTH * m->error;
 }
 
 static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, size_t count)

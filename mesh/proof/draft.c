@@ -17,7 +17,7 @@ enum { PROBES = 5, STEPS = 3 };
    and so deep in a tetrahedron without triangles none is. */
 static const double ON_SURFACE = 0.1, OFF = 0.5, DEEP = 0.6;
 /* Edges, in errors, of the smallest that are bisected, with triangles and without. */
-static const double LEAST_OFF_SURFACE = 1, LEAST_MISSED = 2;
+static const double MIN_OFF_SURFACE = 1, MIN_MISSED = 2;
 
 /* A point on the way to the surface. */
 typedef struct Probe {
@@ -42,13 +42,13 @@ static void place_probes(const double corners[4][3], Probe probes[PROBES])
 
 static void step_probe(Probe *probe, const double values[4], double step)
 {
-    static const double LEAST_SQUARE = 1e-2;
+    static const double MIN_SQUARE = 1e-2;
     double              gradient[3];
     for (int k = 0; k < 3; k++)
         gradient[k] = (values[k + 1] - values[0]) / step;
     double square = dot3(gradient, gradient);
     probe->value  = values[0];
-    if (square > LEAST_SQUARE)
+    if (square > MIN_SQUARE)
         add_scaled3(probe->at, probe->at, -values[0] / square, gradient);
 }
 
@@ -177,7 +177,7 @@ static TetState draft_state(const Mesher *m, const MeshField *field, const Tet *
 {
     const Contour *contour = &m->contour;
     const Patch   *patch   = tet->triangle_count > 0 ? &contour->patches.items[tet->patch] : NULL;
-    double         least   = (patch ? LEAST_OFF_SURFACE : LEAST_MISSED) * m->error;
+    double         least   = (patch ? MIN_OFF_SURFACE : MIN_MISSED) * m->error;
     TetState       fits    = patch ? TET_FITS : TET_EMPTY;
     if (verify_is_far(&m->tets, tet))
         return TET_EMPTY;
@@ -194,7 +194,7 @@ void draft_group(Mesher *m, Verifier *verifier, const Group *group)
         Tet *tet   = tet_of_group(m, group, i);
         tet->state = (uint8_t)draft_state(m, verifier->field, tet);
         if ((tet->state == TET_FITS || tet->state == TET_EMPTY) &&
-            tets_longest_edge(&m->tets, tet) > LEAST_MISSED * m->error &&
+            tets_longest_edge(&m->tets, tet) > MIN_MISSED * m->error &&
             goes_through(m, verifier->field, tet))
             tet->state = TET_REFUTED;
     }

@@ -18,8 +18,8 @@ typedef struct Mesher {
     const MeshSolid      *solid;
     double                low[3], high[3], error, side;
     double                spared; /* of the error, for leaving out triangles */
-    MeshField             fields[MOST_PARTS];
-    Verifier              verifiers[MOST_PARTS];
+    MeshField             fields[MAX_PARTS];
+    Verifier              verifiers[MAX_PARTS];
     Tets                  tets;
     Contour               contour;
     Bvh                   bvh;

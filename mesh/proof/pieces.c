@@ -25,7 +25,7 @@ static double growth(const FieldPieces *pieces, size_t i, const double direction
 static double find_slope(const FieldPieces *pieces)
 {
     enum { TURNS = 24 };
-    double direction[3] = {0, 0, 0}, own[MOST_PIECES][3], best = 0;
+    double direction[3] = {0, 0, 0}, own[MAX_PIECES][3], best = 0;
     for (size_t i = 0; i < pieces->count; i++) {
         for (int k = 0; k < 3; k++)
             own[i][k] = pieces->signs[i] * 0.5 *
@@ -75,7 +75,7 @@ void pieces_look(MeshField *field, Box box, PieceCell *cell)
 
 /* Values are those of pieces with the sign of the side: what is asked for is how far above 0 they may be. */
 typedef struct PartPoint {
-    double at[3], values[MOST_PIECES];
+    double at[3], values[MAX_PIECES];
 } PartPoint;
 
 typedef struct Part {
@@ -96,7 +96,7 @@ static double bend(const Measure *m, size_t piece, const double a[3], const doub
 
 /* The most that a piece may be in a part.  Points are taken in the order of their values: those so low that pairs with
    them add nothing leave what the others permit. */
-static double most_of_piece(const Measure *m, size_t piece, const Part *part)
+static double max_of_piece(const Measure *m, size_t piece, const Part *part)
 {
     double q[4][4], values[4], least = INFINITY, low = -INFINITY;
     int    order[4] = {0, 1, 2, 3};
@@ -132,13 +132,13 @@ static double most_of_piece(const Measure *m, size_t piece, const Part *part)
     return least;
 }
 
-static double most_of_part(const Measure *m, const Part *part)
+static double max_of_part(const Measure *m, const Part *part)
 {
     const FieldPieces *pieces = &m->cell->pieces;
-    double             most[MOST_PIECES], stack[MOST_PIECE_STEPS];
+    double             most[MAX_PIECES], stack[MAX_PIECE_STEPS];
     int                depth = 0;
     for (size_t i = 0; i < pieces->count; i++)
-        most[i] = most_of_piece(m, i, part);
+        most[i] = max_of_piece(m, i, part);
     for (size_t i = 0; i < pieces->step_count; i++) {
         int step = pieces->steps[i];
         if (step >= 0) {
@@ -179,9 +179,9 @@ static void halve_part(const Measure *m, const Part *part, Part halves[2])
 
 static double measure_part(Measure *m, const Part *part, int halvings)
 {
-    enum { MOST_HALVINGS = 9 };
-    double most = most_of_part(m, part);
-    if (most <= m->enough || halvings == MOST_HALVINGS || --m->budget < 0)
+    enum { MAX_HALVINGS = 9 };
+    double most = max_of_part(m, part);
+    if (most <= m->enough || halvings == MAX_HALVINGS || --m->budget < 0)
         return most;
     Part   halves[2];
     double parts;
@@ -198,7 +198,7 @@ static double measure_part(Measure *m, const Part *part, int halvings)
 enum { CROSSINGS = 4, BENDS = 8, APEX = 12, POINTS = 13, NONE = -1 };
 
 typedef struct Points {
-    double at[POINTS][3], values[POINTS][MOST_PIECES];
+    double at[POINTS][3], values[POINTS][MAX_PIECES];
     bool   inside[4];
 } Points;
 
@@ -290,7 +290,7 @@ static FaceCut find_cut(const Contour *contour, const Tet *tet, const Points *po
 static void find_points(const Contour *contour, const MeshField *field, const PieceCell *cell,
                         const Tet *tet, Points *points)
 {
-    double at[POINTS][3], values[POINTS * MOST_PIECES];
+    double at[POINTS][3], values[POINTS * MAX_PIECES];
     tets_corners(contour->tets, tet, at);
     for (int i = 4; i < POINTS; i++)
         memcpy(at[i], at[0], sizeof at[i]);

@@ -14,7 +14,7 @@
 typedef struct PieceCell {
     bool        known;
     FieldPieces pieces;
-    double      above[MOST_PIECES][6], below[MOST_PIECES][6]; /* as of SmoothCell */
+    double      above[MAX_PIECES][6], below[MAX_PIECES][6]; /* as of SmoothCell */
     double      slope,
         steep; /* all pieces grow by that along one direction, and none by more along any */
 } PieceCell;

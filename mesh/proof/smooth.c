@@ -102,13 +102,13 @@ double smooth_turn(const SmoothCell *cell)
 
 /* ---- parts of cells ---- */
 
-enum { MOST_CELL_PARTS = 1 << SMOOTH_HALVINGS };
+enum { MAX_CELL_PARTS = 1 << SMOOTH_HALVINGS };
 
 /* The parts of a box where the value may be as small as the error, and what second derivatives are in all. */
 typedef struct CellParts {
     double      error;
-    LaneHessian hull, hessians[MOST_CELL_PARTS];
-    Box         boxes[MOST_CELL_PARTS];
+    LaneHessian hull, hessians[MAX_CELL_PARTS];
+    Box         boxes[MAX_CELL_PARTS];
     int         count;
 } CellParts;
 
@@ -194,10 +194,10 @@ bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, Smoot
 /* ---- points ---- */
 
 /* Points of which those within the mesh's part of the tetrahedron are a mean: its vertices first. */
-enum { MOST_MESH_POINTS = 9, MOST_POINTS = 12 };
+enum { MAX_MESH_POINTS = 9, MAX_POINTS = 12 };
 
 typedef struct Side {
-    const double *at[MOST_POINTS];
+    const double *at[MAX_POINTS];
     int           count, on_mesh;
     const double *form;      /* of a cell */
     double        depths[4]; /* of its corners */
@@ -220,20 +220,20 @@ double smooth_bend(const double form[6], const double a[3], const double b[3])
 
 /* The most that the sum of w_i w_j q_ij over all pairs is, for weights w >= 0 whose sum is 1.  With q the squares of lengths
    it is that of the radius of the smallest ball around the points. */
-static double most_of_pair(double q) { return 0.25 * q; }
+static double max_of_pair(double q) { return 0.25 * q; }
 
 double smooth_most_of_three(double a, double b, double c)
 {
     double longest = max2(a, max2(b, c)),
            square  = 2 * (a * b + b * c + c * a) - a * a - b * b - c * c;
     if (2 * longest >= a + b + c || square <= 0)
-        return most_of_pair(longest);
+        return max_of_pair(longest);
     return ROUNDING * a * b * c / square;
 }
 
 /* Of four whose pairs that are not neighbours have `a` and `b`, and all others at most c: with the share s of
    the first pair it is at most s^2 a / 4 + (1 - s)^2 b / 4 + s (1 - s) c. */
-static double most_of_ring(double a, double b, double c)
+static double max_of_ring(double a, double b, double c)
 {
     double curve = 0.25 * (a + b) - c, best = max2(0.25 * a, 0.25 * b);
     double s = curve < 0 ? 0.5 * (0.5 * b - c) / curve : 0;
@@ -275,7 +275,7 @@ static MeshPart mesh_part(const Contour *contour, const Tet *tet)
 
 /* A fan has a cone from its apex over each part of the tetrahedron's boundary, and cones have at most the vertices of
    one line and the apex.  Two triangles are bounded by the hull of all four. */
-static double most_on_mesh(const MeshPart *part, const double form[6])
+static double max_on_mesh(const MeshPart *part, const double form[6])
 {
     const Patch *patch = part->patch;
     uint32_t     count = patch->corner_count;
@@ -285,9 +285,9 @@ static double most_on_mesh(const MeshPart *part, const double form[6])
         const double *m = part->bends[i], *apex = patch->apex;
         double        ab = smooth_bend(form, a, b), pa = smooth_bend(form, apex, a),
                pb = smooth_bend(form, apex, b);
-        most      = max2(most, m ? most_of_ring(ab, smooth_bend(form, apex, m),
-                                                max2(max2(pa, pb), max2(smooth_bend(form, a, m),
-                                                                        smooth_bend(form, b, m))))
+        most      = max2(most, m ? max_of_ring(ab, smooth_bend(form, apex, m),
+                                               max2(max2(pa, pb), max2(smooth_bend(form, a, m),
+                                                                       smooth_bend(form, b, m))))
                                  : smooth_most_of_three(ab, pa, pb));
     }
     if (patch->fan)
@@ -299,7 +299,7 @@ static double most_on_mesh(const MeshPart *part, const double form[6])
     double sides = 0;
     for (int i = 0; i < 4; i++)
         sides = max2(sides, smooth_bend(form, c[i], c[(i + 1) % 4]));
-    return most_of_ring(smooth_bend(form, c[0], c[2]), smooth_bend(form, c[1], c[3]), sides);
+    return max_of_ring(smooth_bend(form, c[0], c[2]), smooth_bend(form, c[1], c[3]), sides);
 }
 
 /* ---- one side ---- */
@@ -328,7 +328,7 @@ static Side start_side(const MeshPart *part, const double form[6])
 static double deviation_of_side(const Side *side, const MeshPart *part, double most)
 {
     double deep = -INFINITY, pairs = 0, least = part->patch ? -part->value : INFINITY;
-    bool   shallow[MOST_POINTS] = {false}, any = false;
+    bool   shallow[MAX_POINTS] = {false}, any = false;
     for (int i = side->on_mesh; i < side->count; i++) {
         double longest = 0, depth = side->depths[i - side->on_mesh];
         for (int j = 0; j < side->count; j++)
@@ -353,7 +353,7 @@ static double deviation_of_side(const Side *side, const MeshPart *part, double m
 
 /* How much a form permits between a corner and any point of the tetrahedron: of a mean of corners it is the mean, less the
    sum of w_i w_j times the form between each pair. */
-static double most_from(const double form[6], const double (*corners)[3], int from)
+static double max_from(const double form[6], const double (*corners)[3], int from)
 {
     double most = 0, least = 0;
     for (int i = 0; i < 4; i++) {
@@ -372,7 +372,7 @@ double smooth_level(const SmoothCell *cell, const double (*corners)[3], const do
         double depth = (inside ? values[i] : -values[i]) - most;
         if (!(depth > 0))
             continue;
-        double bend = most_from(inside ? cell->above : cell->below, corners, i);
+        double bend = max_from(inside ? cell->above : cell->below, corners, i);
         double rest = max2(ROUNDING * sqrt(0.5 * bend) - sqrt(depth), 0);
         least       = min2(least, most + ROUNDING * rest * rest);
     }
@@ -387,7 +387,7 @@ static double deviation_of(const SmoothCell *cell, const MeshPart *part, const S
     for (int k = 0; k < 2; k++) {
         if (sides[k].count == sides[k].on_mesh)
             continue;
-        double most      = part->patch ? part->value + 0.5 * most_on_mesh(part, sides[k].form)
+        double most      = part->patch ? part->value + 0.5 * max_on_mesh(part, sides[k].form)
                                        : -INFINITY;
         double deviation = deviation_of_side(&sides[k], part, most);
         if (part->patch && deviation > most)

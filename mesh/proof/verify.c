@@ -17,7 +17,7 @@
 #include "mesh/proof/lens.h"
 #include "mesh/proof/marks.h"
 
-enum { MOST_UNRESOLVED = 16, MOST_HALVINGS = 80 };
+enum { MAX_UNRESOLVED = 16, MAX_HALVINGS = 80 };
 /* Parts of a cell's radius from where on a lens is worth another try: the last was too thick; or the surface had
    an edge, or derivatives no bounds, which parts share with the whole more often. */
 static const double LESS_FLAT = 0.7, LESS_STEEP = 0.35;
@@ -160,7 +160,7 @@ static bool leave_unresolved(Verifier *verifier, const double center[3], double 
     return true;
 }
 
-enum { CELLS_AT_ONCE = 8, MOST_CELLS = 1024 };
+enum { CELLS_AT_ONCE = 8, MAX_CELLS = 1024 };
 
 /* A part of a tetrahedron. */
 typedef struct Cell {
@@ -179,7 +179,7 @@ typedef struct CellView {
 
 /* Cells that are still to be looked at, the smallest last. */
 typedef struct Cells {
-    Cell   items[MOST_CELLS];
+    Cell   items[MAX_CELLS];
     size_t count;
     int    side; /* -1 or 1 if the mesh leaves all of the tetrahedron inside or outside, else 0 */
 } Cells;
@@ -246,16 +246,16 @@ static bool cell_is_near_mesh(Verifier *verifier, Cells *cells, const Cell *cell
         return true;
     if (cells->side * view->distance < -error)
         return false;
-    if (fabs(view->distance) > view->radius || verifier->unresolved >= MOST_UNRESOLVED)
+    if (fabs(view->distance) > view->radius || verifier->unresolved >= MAX_UNRESOLVED)
         return true;
     if (view->may_be_flat) {
         if (is_flat(verifier, cell, view))
             return true;
         lens = (view->has_gradient ? LESS_FLAT : LESS_STEEP) * view->radius;
     }
-    if (view->radius < TINY_CELL * error || cell->halvings == MOST_HALVINGS)
+    if (view->radius < TINY_CELL * error || cell->halvings == MAX_HALVINGS)
         return leave_unresolved(verifier, view->center, view->distance);
-    if (cells->count + 2 > MOST_CELLS)
+    if (cells->count + 2 > MAX_CELLS)
         return false;
     halve_cell(cells, cell, lens);
     return true;

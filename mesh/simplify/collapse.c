@@ -10,7 +10,7 @@
 #include "compiler/field/bvh.h"
 #include "mesh/simplify/fans.h"
 
-enum { MOST_STAR = 48, PATIENCE = 32 };
+enum { MAX_STAR = 48, PATIENCE = 32 };
 #define NO_VERTEX UINT32_MAX
 /* Height over the longest edge, of triangles that are made. */
 static const double THIN = 1e-5;
@@ -118,9 +118,9 @@ static Candidate pop(Collapse *c)
 
 /* ---- what is around a vertex ---- */
 
-/* Its triangles; more than MOST_STAR: there are too many.  Those that are dead leave its list, which would grow with each
+/* Its triangles; more than MAX_STAR: there are too many.  Those that are dead leave its list, which would grow with each
    collapse. */
-static size_t star_of(Collapse *c, uint32_t vertex, uint32_t star[MOST_STAR])
+static size_t star_of(Collapse *c, uint32_t vertex, uint32_t star[MAX_STAR])
 {
     size_t    count = 0;
     uint32_t *link  = &c->first[vertex];
@@ -130,8 +130,8 @@ static size_t star_of(Collapse *c, uint32_t vertex, uint32_t star[MOST_STAR])
             *link = c->next[corner - 1];
             continue;
         }
-        if (count == MOST_STAR)
-            return MOST_STAR + 1;
+        if (count == MAX_STAR)
+            return MAX_STAR + 1;
         star[count++] = (corner - 1) / 3;
         link          = &c->next[corner - 1];
     }
@@ -158,10 +158,10 @@ static uint32_t corner_after(const uint32_t triangle[3], uint32_t vertex)
 /* The cheapest collapse of a vertex that comes after one that cannot be, if there is one. */
 static void propose_vertex(Collapse *c, uint32_t vertex, const Candidate *after)
 {
-    uint32_t  star[MOST_STAR];
+    uint32_t  star[MAX_STAR];
     size_t    count = star_of(c, vertex, star);
     Candidate least = {INFINITY, vertex, NO_VERTEX, c->stamps[vertex]};
-    if (c->fixed[vertex] || count > MOST_STAR)
+    if (c->fixed[vertex] || count > MAX_STAR)
         return;
     for (size_t i = 0; i < count; i++) {
         uint32_t  to     = corner_after(c->triangles[star[i]], vertex);
@@ -183,9 +183,9 @@ static void propose_vertex(Collapse *c, uint32_t vertex, const Candidate *after)
 static bool stays_closed(Collapse *c, const uint32_t *star, size_t count, uint32_t from,
                          uint32_t to)
 {
-    uint32_t around[MOST_STAR];
+    uint32_t around[MAX_STAR];
     size_t   around_count = star_of(c, to, around), shared = 0, common = 0;
-    if (around_count > MOST_STAR)
+    if (around_count > MAX_STAR)
         return false;
     c->mark++;
     for (size_t i = 0; i < count; i++) {
@@ -215,7 +215,7 @@ static void replace(const uint32_t old[3], uint32_t from, uint32_t to, uint32_t 
 
 /* The triangles that a collapse makes, with the numbers of those that they replace. */
 typedef struct Made {
-    uint32_t corners[MOST_STAR][3], numbers[MOST_STAR];
+    uint32_t corners[MAX_STAR][3], numbers[MAX_STAR];
     size_t   count;
     double   off, missed; /* as of Collapse */
 } Made;
@@ -338,11 +338,11 @@ static void move_over(Collapse *c, const uint32_t *star, size_t count, const Mad
 /* What was proposed of vertices around is no longer so. */
 static void propose_around(Collapse *c, uint32_t vertex)
 {
-    uint32_t star[MOST_STAR];
+    uint32_t star[MAX_STAR];
     size_t   count = star_of(c, vertex, star);
     c->stamps[vertex]++;
     propose_vertex(c, vertex, NULL);
-    for (size_t i = 0; i < count && count <= MOST_STAR; i++) {
+    for (size_t i = 0; i < count && count <= MAX_STAR; i++) {
         uint32_t other = corner_after(c->triangles[star[i]], vertex);
         c->stamps[other]++;
         propose_vertex(c, other, NULL);
@@ -378,12 +378,12 @@ static void collapse_all(Collapse *c)
             !c->rules->is_wanted(c->rules->user, 1 - (double)c->heap.count / (double)most))
             return;
         Candidate candidate = pop(c);
-        uint32_t  star[MOST_STAR];
+        uint32_t  star[MAX_STAR];
         Made      made;
         if (candidate.stamp != c->stamps[candidate.from])
             continue;
         size_t count = star_of(c, candidate.from, star);
-        if (count <= MOST_STAR &&
+        if (count <= MAX_STAR &&
             may_collapse(c, star, count, candidate.from, candidate.to, &made)) {
             move_over(c, star, count, &made, candidate.from);
             collapse(c, star, count, candidate.from, candidate.to);

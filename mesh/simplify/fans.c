@@ -12,7 +12,7 @@
 
 #include "compiler/base/vec.h"
 
-enum { MOST_SPOKES = 48 };
+enum { MAX_SPOKES = 48 };
 
 /* A point of the plane, and its height above it. */
 typedef struct Above {
@@ -21,8 +21,8 @@ typedef struct Above {
 
 /* `from` is at the origin; the border goes from a[i] to b[i]. */
 typedef struct Fans {
-    Above  to, a[MOST_SPOKES], b[MOST_SPOKES];
-    bool   stays[MOST_SPOKES]; /* the triangle does not have `to` */
+    Above  to, a[MAX_SPOKES], b[MAX_SPOKES];
+    bool   stays[MAX_SPOKES]; /* the triangle does not have `to` */
     size_t count;
 } Fans;
 
@@ -72,7 +72,7 @@ static bool find_fans(const double (*at)[3], const uint32_t (*triangles)[3], con
 {
     double axes[3][3];
     int    rounds = 0;
-    if (count > MOST_SPOKES || !find_axes(at, triangles, star, count, axes))
+    if (count > MAX_SPOKES || !find_axes(at, triangles, star, count, axes))
         return false;
     fans->count = count;
     fans->to    = project((const double(*)[3])axes, at[from], at[to]);

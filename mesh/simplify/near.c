@@ -19,7 +19,7 @@
 
 #include "compiler/base/vec.h"
 
-enum { MOST_CUTS = 12 };
+enum { MAX_CUTS = 12 };
 
 /* ---- the mesh ---- */
 
@@ -121,12 +121,12 @@ static bool is_edge_seen(const Frame *frame, const Seen *a, const Seen *b)
     return low <= high;
 }
 
-enum { MOST_CORNERS = 6 };
+enum { MAX_CORNERS = 6 };
 
 /* Leaves what has more than the least share of a corner; returns how many corners are left. */
 static int clip(Seen *corners, int count, int share, double least)
 {
-    Seen left[MOST_CORNERS + 1];
+    Seen left[MAX_CORNERS + 1];
     int  left_count = 0;
     for (int i = 0; i < count; i++) {
         const Seen *a = &corners[i], *b = &corners[(i + 1) % count];
@@ -145,7 +145,7 @@ static int clip(Seen *corners, int count, int share, double least)
     return left_count;
 }
 
-static int clip_all(const Seen triangle[3], double least, Seen corners[MOST_CORNERS + 1])
+static int clip_all(const Seen triangle[3], double least, Seen corners[MAX_CORNERS + 1])
 {
     int count = 3;
     memcpy(corners, triangle, 3 * sizeof *corners);
@@ -205,7 +205,7 @@ static bool has_layers(const Layers *layers)
 /* What a part is too high of is `*far`; `*highest` is at least the height of all parts. */
 static bool is_low(const Frame *frame, const Seen triangle[3], Seen *far, double *highest)
 {
-    Seen   corners[MOST_CORNERS + 1];
+    Seen   corners[MAX_CORNERS + 1];
     double most = fmax(fabs(triangle[0].height),
                        fmax(fabs(triangle[1].height), fabs(triangle[2].height)));
     if (most <= frame->error) {
@@ -230,7 +230,7 @@ static bool face(NearLook *look, uint32_t triangle)
     for (; look->slots[slot]; slot = (slot + 1) % FACED_SLOTS)
         if (look->faced[look->slots[slot] - 1] == triangle)
             return true;
-    if (look->faced_count == MOST_FACED)
+    if (look->faced_count == MAX_FACED)
         return false;
     look->faced[look->faced_count++] = triangle;
     look->slots[slot]                = (uint32_t)look->faced_count;
@@ -258,7 +258,7 @@ static void see_triangle(const NearMesh *mesh, const Frame *frame, uint32_t tria
 /* Whether it surely is above or below some of the triangle. */
 static bool is_faced(const NearMesh *mesh, const Frame *frame, uint32_t triangle)
 {
-    Seen seen[3], corners[MOST_CORNERS + 1];
+    Seen seen[3], corners[MAX_CORNERS + 1];
     see_triangle(mesh, frame, triangle, seen);
     return faces_same_side(frame, seen) && clip_all(seen, 3 * frame->rounding, corners) > 0;
 }
@@ -428,7 +428,7 @@ static bool is_near(const NearMesh *mesh, const double corners[3][3], double err
 {
     const Bvh *bvh      = &mesh->bvh;
     Nearness   nearness = {corners, error, bvh, 0};
-    bool       whole    = cuts == MOST_CUTS;
+    bool       whole    = cuts == MAX_CUTS;
     forget_faced(look);
     if (!(whole && start_count > 0) && are_near(bvh, look->last, corners, error))
         return true;
@@ -460,5 +460,5 @@ bool is_near_mesh(const NearMesh *mesh, const double corners[3][3], double error
     look->distance = error;
     if (mesh->bvh.triangle_count == 0)
         return false;
-    return is_near(mesh, corners, error, starts, start_count, MOST_CUTS, look);
+    return is_near(mesh, corners, error, starts, start_count, MAX_CUTS, look);
 }

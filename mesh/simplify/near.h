@@ -20,13 +20,13 @@ typedef struct NearMesh {
 void near_mesh_new(NearMesh *mesh, const double (*vertices)[3], const uint32_t (*triangles)[3],
                    size_t count, Arena *arena);
 
-enum { MOST_FACED = 4096, FACED_SLOTS = 2 * MOST_FACED };
+enum { MAX_FACED = 4096, FACED_SLOTS = 2 * MAX_FACED };
 
 /* What one thread looks with. */
 typedef struct NearLook {
     uint32_t last;     /* a triangle that may be near */
     double   distance; /* how far the last triangle that was near is from the mesh, at most */
-    uint32_t faced[MOST_FACED];
+    uint32_t faced[MAX_FACED];
     size_t   faced_count;
     uint32_t slots[FACED_SLOTS]; /* `faced` by hash: number + 1 */
 } NearLook;

@@ -17,7 +17,7 @@
 #include "mesh/simplify/near.h"
 #include "mesh/simplify/slivers.h"
 
-enum { MOST_TRIALS = 14 };
+enum { MAX_TRIALS = 14 };
 /* Of meshoptimizer's proposals, those with more faults are given up: some, and a part of their triangles. */
 static const double MANY_FAULTS = 16, PART_OF_FAULTS = 0.005;
 /* From trial to trial triangles are kept so many times as far around faults. */
@@ -157,15 +157,15 @@ static void take_least(atomic_uint *least, uint32_t number)
 /* New triangles have corners of the mesh. */
 static bool is_near_original(const Simplifier *s, const uint32_t triangle[3], NearLook *look)
 {
-    enum { MOST_AROUND = 32 };
+    enum { MAX_AROUND = 32 };
     const TriangleEdges *edges = &s->original.edges;
-    uint32_t             starts[MOST_AROUND];
+    uint32_t             starts[MAX_AROUND];
     size_t               count = 0;
     double               corners[3][3];
     for (int c = 0; c < 3; c++) {
         memcpy(corners[c], s->mesh->vertices[triangle[c]], sizeof corners[c]);
         for (uint32_t i = edges->begins[triangle[c]]; i < edges->begins[triangle[c] + 1]; i++)
-            if (count < MOST_AROUND)
+            if (count < MAX_AROUND)
                 starts[count++] = edges->items[i].triangle;
     }
     return is_near_mesh(&s->original, (const double(*)[3])corners, s->error, starts, count, look);
@@ -408,7 +408,7 @@ static void try_all(Simplifier *s, Trial *trial, double goal)
 {
     double radius = trial->radius * s->error;
     memset(s->kept, 0, s->best_count * sizeof *s->kept);
-    for (int i = 0; i < MOST_TRIALS; i++, radius *= GROWTH) {
+    for (int i = 0; i < MAX_TRIALS; i++, radius *= GROWTH) {
         trial->propose(s, trial->error * s->error, s->fraction + 0.25 * (goal - s->fraction));
         if (atomic_load(&s->stopped) || s->triangle_count == 0 ||
             s->triangle_count >= s->best_count)
@@ -444,7 +444,7 @@ static void find_triangles(Simplifier *s)
             s->positions[i][k] = (float)mesh->vertices[i][k];
     s->facing      = arena_alloc(&s->arena, count + 1, sizeof *s->facing);
     s->best_facing = arena_alloc(&s->arena, count + 1, sizeof *s->facing);
-    s->looks       = arena_new_array(&s->arena, NearLook, MOST_PARTS);
+    s->looks       = arena_new_array(&s->arena, NearLook, MAX_PARTS);
     near_mesh_new(&s->original, (const double(*)[3])mesh->vertices,
                   (const uint32_t(*)[3])mesh->triangles, count, &s->arena);
     s->best_count = count;

@@ -5,7 +5,7 @@
 
 #include "compiler/base/vec.h"
 
-enum { MOST_ROUNDS = 12 };
+enum { MAX_ROUNDS = 12 };
 /* Height over the longest edge. */
 static const double THIN = 1e-6;
 
@@ -57,7 +57,7 @@ void flip_slivers(const double (*vertices)[3], uint32_t (*triangles)[3], size_t 
 {
     Flipping f   = {.vertices = vertices, .triangles = triangles};
     bool     any = true;
-    for (int round = 0; round < MOST_ROUNDS && any; round++) {
+    for (int round = 0; round < MAX_ROUNDS && any; round++) {
         ArenaMark mark = arena_mark(arena);
         f.edges        = sort_edges((const uint32_t(*)[3])triangles, count, arena);
         f.changed      = arena_new_array(arena, bool, count + 1);

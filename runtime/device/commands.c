@@ -48,7 +48,7 @@ bool gpu_begin(Gpu *gpu)
                              }));
     gpu->marks = 0;
     if (gpu->times) {
-        vkCmdResetQueryPool(gpu->commands, gpu->times, 0, 2 + MOST_MARKS);
+        vkCmdResetQueryPool(gpu->commands, gpu->times, 0, 2 + MAX_MARKS);
         vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, gpu->times, 0);
     }
     gpu_barrier(gpu);

@@ -13,11 +13,11 @@
 
 /* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
    so many (band.c). */
-#define LEAST_TEXELS (1u << 22)
+#define MIN_TEXELS (1u << 22)
 
 bool devices_read_texels(const VkPhysicalDeviceLimits *limits)
 {
-    return limits->maxTexelBufferElements >= LEAST_TEXELS;
+    return limits->maxTexelBufferElements >= MIN_TEXELS;
 }
 
 static uint32_t needed_buffers(const VkPhysicalDeviceLimits *limits)

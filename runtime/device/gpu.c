@@ -10,8 +10,8 @@
 #include "runtime/device/shared_shaders.h"
 
 /* What every device must have at least (Vulkan, table 53). */
-#define LEAST_TEXEL_LIMIT (1u << 16)
-#define LEAST_RANGE_LIMIT (1u << 27)
+#define MIN_TEXEL_LIMIT (1u << 16)
+#define MIN_RANGE_LIMIT (1u << 27)
 
 static void read_properties(Gpu *gpu, unsigned emulation)
 {
@@ -26,8 +26,8 @@ static void read_properties(Gpu *gpu, unsigned emulation)
     gpu->properties                = properties.properties;
     VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
     if (emulation & KRS_PRETEND_LEAST_LIMITS) {
-        limits->maxTexelBufferElements = LEAST_TEXEL_LIMIT;
-        limits->maxStorageBufferRange  = LEAST_RANGE_LIMIT;
+        limits->maxTexelBufferElements = MIN_TEXEL_LIMIT;
+        limits->maxStorageBufferRange  = MIN_RANGE_LIMIT;
     }
     gpu->emulates_card = emulation & KRS_PRETEND_CARD;
     gpu->texels        = devices_read_texels(limits);
@@ -111,7 +111,7 @@ static bool make_commands(Gpu *gpu)
                               &(VkQueryPoolCreateInfo){
                                   .sType      = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType  = VK_QUERY_TYPE_TIMESTAMP,
-                                  .queryCount = 2 + MOST_MARKS,
+                                  .queryCount = 2 + MAX_MARKS,
                               },
                               NULL, &gpu->times));
     if (gpu->time_mask != 0)

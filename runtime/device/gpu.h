@@ -21,8 +21,8 @@ void gpu_close(Gpu *gpu);
 
 /* Starts recording.  What earlier work wrote can be read from here on. */
 bool gpu_begin(Gpu *gpu);
-/* Notes the time when all that was recorded so far has run; at most MOST_MARKS times. */
-enum { MOST_MARKS = 64 };
+/* Notes the time when all that was recorded so far has run; at most MAX_MARKS times. */
+enum { MAX_MARKS = 64 };
 void gpu_mark(Gpu *gpu);
 /* After gpu_finish: milliseconds up to the mark of this number, from the one before or from the
    start; 0 without a clock. */

@@ -10,7 +10,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-enum { MOST_CORES = 32, MOST_THREADS = 2 * MOST_CORES + 1 };
+enum { MAX_CORES = 32, MAX_THREADS = 2 * MAX_CORES + 1 };
 
 /* Ends when the gate opens. */
 static void *wait_at(void *gate)
@@ -23,10 +23,10 @@ static void *wait_at(void *gate)
 unsigned threads_available(unsigned wanted)
 {
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
-    pthread_t       threads[MOST_THREADS];
+    pthread_t       threads[MAX_THREADS];
     unsigned        count = 0;
     pthread_mutex_lock(&gate);
-    while (count < wanted && count < MOST_THREADS &&
+    while (count < wanted && count < MAX_THREADS &&
            pthread_create(&threads[count], NULL, wait_at, &gate) == 0)
         count++;
     pthread_mutex_unlock(&gate);
@@ -39,7 +39,7 @@ unsigned threads_available(unsigned wanted)
 unsigned threads_of_software_device(void)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    return 2 * (unsigned)(cores < 1 ? 1 : cores > MOST_CORES ? MOST_CORES : cores) + 1;
+    return 2 * (unsigned)(cores < 1 ? 1 : cores > MAX_CORES ? MAX_CORES : cores) + 1;
 }
 
 /* lavapipe and its compiler take 200 MiB of addresses before anything is drawn. */

@@ -278,7 +278,7 @@ typedef struct Loading {
     atomic_size_t        next;
 } Loading;
 
-enum { MOST_LOADERS = 16 };
+enum { MAX_LOADERS = 16 };
 typedef struct PipelineLoader {
     Loading  *loading;
     Gpu       gpu; /* a copy, which takes the note when something fails */
@@ -316,7 +316,7 @@ static void await(const Gpu *gpu, pthread_t thread)
 static size_t count_loaders(const Gpu *gpu, size_t shaders)
 {
     long   cores = sysconf(_SC_NPROCESSORS_ONLN);
-    size_t most  = cores < 1 ? 1 : cores < MOST_LOADERS ? (size_t)cores : MOST_LOADERS;
+    size_t most  = cores < 1 ? 1 : cores < MAX_LOADERS ? (size_t)cores : MAX_LOADERS;
     return gpu->messenger ? 0 : shaders < most ? shaders : most;
 }
 

@@ -51,7 +51,7 @@ static void limit_unused(Gpu *gpu)
     for (SharedShader **link = &gpu->shared_shaders; *link;) {
         SharedShader *shared = *link;
         unused += shared->users == 0;
-        if (shared->users > 0 || unused <= MOST_UNUSED_SHADERS) {
+        if (shared->users > 0 || unused <= MAX_UNUSED_SHADERS) {
             link = &shared->next;
             continue;
         }

@@ -17,7 +17,7 @@ struct SharedShader {
 };
 
 /* How many shaders stay that nobody uses. */
-enum { MOST_UNUSED_SHADERS = 64 };
+enum { MAX_UNUSED_SHADERS = 64 };
 
 /* The shader with this key, for one more user; NULL: there is none. */
 SharedShader *shared_shader_find(Gpu *gpu, CacheKey key);

@@ -139,10 +139,10 @@ static void take_counters(Job *job)
     stats->unresolved += control->unresolved;
     stats->clamped += control->clamped;
     stats->evaluations += control->evaluations;
-    if (control->most_evaluations > stats->most_evaluations_per_ray)
-        stats->most_evaluations_per_ray = control->most_evaluations;
-    control->unresolved = control->evaluations = control->most_evaluations = 0;
-    control->clamped                                                       = 0;
+    if (control->max_evaluations > stats->most_evaluations_per_ray)
+        stats->most_evaluations_per_ray = control->max_evaluations;
+    control->unresolved = control->evaluations = control->max_evaluations = 0;
+    control->clamped                                                      = 0;
 }
 
 /* Tells whether the first ray of each pixel, which goes through the middle of the lens, is not among the

@@ -9,7 +9,7 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
-static_assert((int)LEAST_NOISE_SAMPLES == KRS_LEAST_NOISY_SAMPLES, "noise.comp");
+static_assert((int)MIN_NOISE_SAMPLES == KRS_LEAST_NOISY_SAMPLES, "noise.comp");
 
 bool noise_is_wanted(const KrsRenderOptions *options)
 {
@@ -66,7 +66,7 @@ bool noise_resume(Job *job, const Plan *plan, const WorkBlock *work, uint32_t sa
                   bool *goes_on)
 {
     set_bound(job);
-    return samples < LEAST_NOISE_SAMPLES || job->options.noise == 0 ||
+    return samples < MIN_NOISE_SAMPLES || job->options.noise == 0 ||
            list_pixels(job, plan, work, NOISE_LISTS, samples, goes_on);
 }
 
@@ -83,7 +83,7 @@ bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samp
 
 bool noise_restore(Job *job, const WorkBlock *work, uint32_t samples)
 {
-    return samples < LEAST_NOISE_SAMPLES || job->options.noise == 0 ||
+    return samples < MIN_NOISE_SAMPLES || job->options.noise == 0 ||
            run_phase(job, work, NOISE_RESTORES, samples);
 }
 

@@ -15,7 +15,7 @@
 #define NOWHERE (-1e30f)
 /* The difference of neighbours, relative to those beside them, or to pixels, up to which they are of the
    same surface. */
-#define MOST_BEND  2
+#define MAX_BEND   2
 #define STEEP_RISE 2
 
 bool plate_map_exists(const Job *job)
@@ -68,7 +68,7 @@ static bool are_joined(const Map *map, const float row[4])
         return false;
     const float beside = fmaxf(change_of(row[0], row[1]), change_of(row[2], row[3]));
     const float steep  = change_of_pixel(map, fmaxf(row[1], row[2]));
-    return change_of(row[1], row[2]) <= MOST_BEND * beside + STEEP_RISE * steep;
+    return change_of(row[1], row[2]) <= MAX_BEND * beside + STEEP_RISE * steep;
 }
 
 /* Pixels beyond the picture have no surface. */

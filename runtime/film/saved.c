@@ -39,7 +39,7 @@ typedef struct Header {
     KrsWindow window;
     uint32_t  width, height;
     uint32_t  planes, mattes; /* bits of KrsPlane; whether there are mattes */
-    uint32_t  samples, most_evaluations;
+    uint32_t  samples, max_evaluations;
 } Header;
 
 /* What is true of the film whether it has samples or not. */
@@ -66,13 +66,13 @@ static Header header_of(const KrsFilm *film)
     memcpy(header.world_to_camera, film->sums->world_to_camera, sizeof header.world_to_camera);
     memcpy(header.world_to_ndc, film->sums->world_to_ndc, sizeof header.world_to_ndc);
     memcpy(header.phase_ms, stats->phase_ms, sizeof header.phase_ms);
-    header.wall_ms          = stats->wall_ms;
-    header.evaluations      = stats->evaluations;
-    header.unresolved       = stats->unresolved;
-    header.clamped          = stats->clamped;
-    header.submissions      = stats->submissions;
-    header.samples          = film->samples;
-    header.most_evaluations = stats->most_evaluations_per_ray;
+    header.wall_ms         = stats->wall_ms;
+    header.evaluations     = stats->evaluations;
+    header.unresolved      = stats->unresolved;
+    header.clamped         = stats->clamped;
+    header.submissions     = stats->submissions;
+    header.samples         = film->samples;
+    header.max_evaluations = stats->most_evaluations_per_ray;
     return header;
 }
 
@@ -88,7 +88,7 @@ static void take_header(KrsFilm *film, const Header *header)
     stats->unresolved               = header->unresolved;
     stats->clamped                  = header->clamped;
     stats->submissions              = header->submissions;
-    stats->most_evaluations_per_ray = header->most_evaluations;
+    stats->most_evaluations_per_ray = header->max_evaluations;
     film->samples                   = header->samples;
 }
 

@@ -9,10 +9,10 @@
 #include "runtime/film/noise.h"
 #include "runtime/tracer/methods.h"
 
-#define MOST_STEPS 16384
+#define MAX_STEPS 16384
 /* The most steps of a lane in a dispatch.  All loops of an invocation together stay under 32768
    iterations: some devices end them silently after 65535. */
-#define MOST_STEPS_AT_ONCE 8192
+#define MAX_STEPS_AT_ONCE 8192
 /* The steps of a pass of the schedule `queue`.  More steps leave lanes idle, fewer need more
    passes. */
 #define QUEUE_STEPS 16
@@ -79,7 +79,7 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     o->bounces = first_nonzero(o->bounces, image->bounces, KRS_DEFAULT_BOUNCES);
     o->planes  = first_nonzero(o->planes, 0, KRS_PLANE_ALL & ~KRS_PLANE_NOISE) |
                 (o->noise > 0 ? KRS_PLANE_NOISE : 0);
-    o->most_steps    = first_nonzero(o->most_steps, 0, MOST_STEPS);
+    o->most_steps    = first_nonzero(o->most_steps, 0, MAX_STEPS);
     o->steps_at_once = first_nonzero(o->steps_at_once, 0,
                                      o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
@@ -126,7 +126,7 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
         return refuse(rendering, "the roughness of a plate is at most 1, its reflectance 0.99");
     if (!(o->most_radiance >= 0))
         return refuse(rendering, "the most radiance of a ray must be above 0");
-    if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)
+    if (!(o->slice_ms > 0) || o->most_steps > MAX_STEPS || o->steps_at_once > MAX_STEPS_AT_ONCE)
         return refuse(rendering,
                       "slices must be longer than nothing, and rays have at most 16384 steps");
     return true;

@@ -88,11 +88,11 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
 }
 
 /* Glass does not count as a surface, but paths go through so many boundaries at most. */
-#define MOST_BOUNDARIES 8
+#define MAX_BOUNDARIES 8
 
 bool direct_plan(Job *job, Plan *plan)
 {
-    return add_paths(job, plan, job->rendering->program->media ? 1 + MOST_BOUNDARIES : 1);
+    return add_paths(job, plan, job->rendering->program->media ? 1 + MAX_BOUNDARIES : 1);
 }
 
 bool path_plan(Job *job, Plan *plan) { return add_paths(job, plan, job->options.bounces); }

@@ -9,7 +9,7 @@ vec2 find_widths(float roughness, float anisotropy)
 {
     float across = 1.0 - anisotropy;
     float along = roughness * roughness * sqrt(2.0 / (1.0 + across * across));
-    return max(vec2(along, across * along), LEAST_ALPHA);
+    return max(vec2(along, across * along), MIN_ALPHA);
 }
 
 // Smith's function: how much of the microfacets is hidden from a direction.

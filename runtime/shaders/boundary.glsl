@@ -20,12 +20,12 @@ float find_glass(KrsSurface surface)
 }
 
 // Nothing refracts less than this.
-const float LEAST_ETA = 1.001;
+const float MIN_ETA = 1.001;
 
 float find_eta(float here, float beyond)
 {
     float eta = clamp(beyond, 1.0, 4.0) / clamp(here, 1.0, 4.0);
-    return eta < 1.0 ? min(eta, 1.0 / LEAST_ETA) : max(eta, LEAST_ETA);
+    return eta < 1.0 ? min(eta, 1.0 / MIN_ETA) : max(eta, MIN_ETA);
 }
 
 #ifdef STARTS_BY_DISTANCE
@@ -37,12 +37,12 @@ const float START_OF_EVEN = 0.125, START = 0.5;
 
 // How high above the surface a ray starts.  Where hits are snapped, that is by what rounding may be wrong
 // by: of coordinates, and of the distance, which shows in differences around the hit.  These are large at
-// edges as well, so they count up to MOST_BEND alone.
-const float MOST_BEND = 0.04;
+// edges as well, so they count up to MAX_BEND alone.
+const float MAX_BEND = 0.04;
 float find_snapped_height(HitPoint hit, float evenness)
 {
     float bend = sqrt(max(1.0 / max(evenness * evenness, 1e-6) - 1.0, 0.0));
-    return max(SNAPPED_START * hit.rounding, 2.0 * find_reach(hit) * min(bend, MOST_BEND));
+    return max(SNAPPED_START * hit.rounding, 2.0 * find_reach(hit) * min(bend, MAX_BEND));
 }
 
 float find_height(HitPoint hit, float evenness, float distance)
@@ -56,12 +56,12 @@ float find_height(HitPoint hit, float evenness, float distance)
 // Where a ray starts that leaves the hit into a direction, on the side `side` of the surface.  That
 // is so far along the ray that it is as high above the surface as it must be.  So the ray itself is
 // not displaced, unless it leaves the surface at less than this cosine: then it is lifted, too.
-const float LEAST_COSINE = 0.25;
+const float MIN_COSINE = 0.25;
 vec3 find_start(HitPoint hit, vec3 direction, vec4 facing, float side, float distance)
 {
     float height = find_height(hit, facing.w, distance);
     float cosine = abs(dot(direction, facing.xyz));
-    float ahead = height / max(cosine, LEAST_COSINE);
+    float ahead = height / max(cosine, MIN_COSINE);
     return hit.position + ahead * direction + side * (height - ahead * cosine) * facing.xyz;
 }
 
@@ -110,7 +110,7 @@ void prepare_boundary(inout HitPoint hit, float code, vec3 facing) {}
 
 Boundary find_boundary(HitPoint hit, KrsSurface surface)
 {
-    float ior = max(surface.ior, LEAST_ETA);
+    float ior = max(surface.ior, MIN_ETA);
     return Boundary(hit.side, hit.side > 0.0 ? ior : 1.0 / ior, surface.absorption, hit.side < 0.0,
                     hit.side, -hit.side);
 }

@@ -21,16 +21,16 @@
 #endif
 
 // The least width of a lobe; at most so much a mirror blurs.
-const float LEAST_ALPHA = 1e-3;
+const float MIN_ALPHA = 1e-3;
 #ifdef ANISOTROPIC // a material may be rougher along its tangent than across
 #include "anisotropy.glsl"
 #define WIDTH vec2
-const float LEAST_TANGENT = 1e-3; // of the part across the normal; a shorter one is none
+const float MIN_TANGENT = 1e-3; // of the part across the normal; a shorter one is none
 #else
 #define WIDTH float
 #endif
 const float COAT_HEAD_ON = 0.04; // reflectance of a coat with an index of refraction of 1.5
-const float LEAST_SHEEN_ROUGHNESS = 0.3;
+const float MIN_SHEEN_ROUGHNESS = 0.3;
 
 // ---- the surface, and directions seen from it ----
 
@@ -63,7 +63,7 @@ Axes find_axes(vec3 normal, vec3 tangent)
 #ifdef ANISOTROPIC
     vec3  along = tangent - dot(tangent, normal) * normal;
     float size = length(along);
-    if (size > LEAST_TANGENT) {
+    if (size > MIN_TANGENT) {
         axes.right = along / size;
         axes.up = cross(normal, axes.right);
     }
@@ -273,10 +273,10 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
 #ifdef ANISOTROPIC
     bsdf.alpha = find_widths(surface.roughness, surface.specular_roughness_anisotropy);
 #else
-    bsdf.alpha = max(square(surface.roughness), LEAST_ALPHA);
+    bsdf.alpha = max(square(surface.roughness), MIN_ALPHA);
 #endif
     bsdf.coat = entering ? surface.coat : 0.0;
-    bsdf.coat_alpha = WIDTH(max(square(surface.coat_roughness), LEAST_ALPHA));
+    bsdf.coat_alpha = WIDTH(max(square(surface.coat_roughness), MIN_ALPHA));
     bsdf.sheen = entering ? surface.sheen : vec3(0.0);
     float ior = max(surface.ior, 1.001);
     bsdf.eta = entering ? ior : 1.0 / ior;
@@ -284,9 +284,9 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
     bsdf.grazing = surface.specular;
     bsdf.glass = (1.0 - surface.metallic) * surface.transmission;
 
-    float fuzz = max(surface.sheen_roughness, LEAST_SHEEN_ROUGHNESS);
+    float fuzz = max(surface.sheen_roughness, MIN_SHEEN_ROUGHNESS);
     bsdf.sheen_alpha = square(fuzz);
-    float row = (fuzz - LEAST_SHEEN_ROUGHNESS) / (1.0 - LEAST_SHEEN_ROUGHNESS);
+    float row = (fuzz - MIN_SHEEN_ROUGHNESS) / (1.0 - MIN_SHEEN_ROUGHNESS);
     float fuzzy = find_albedo(bsdf.eye.z, row).z;
     bsdf.sheen_scale = 1.0 / max(fuzzy, 1.0);
     bsdf.fuzzy = min(fuzzy, 1.0);

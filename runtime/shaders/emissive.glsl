@@ -20,7 +20,7 @@ struct Cones {
 #ifdef EMISSIVE
 // The most of the directions that are chosen by cones, at the first surface of a path and at others.
 // Light that bounces often is found by other directions, which count more the fewer they are.
-const float MOST_AT_FIRST = 0.5, MOST_BY_CONES = 0.3;
+const float MAX_AT_FIRST = 0.5, MAX_BY_CONES = 0.3;
 
 // The radiance of what is found in directions that surfaces choose.
 float find_around(vec3 facing)
@@ -64,7 +64,7 @@ Cones find_cones(vec3 place, vec3 facing, float dull)
     for (uint i = 0u; i < frame.emissive_count; i++)
         cones.all += find_cone(cones, i).weight;
     float by_cones = 2.0 * cones.all; // over pi
-    float most = control.value == 0u ? MOST_AT_FIRST : MOST_BY_CONES;
+    float most = control.value == 0u ? MAX_AT_FIRST : MAX_BY_CONES;
     cones.part = by_cones > 1e-20
                      ? most * dull * by_cones / (by_cones + find_around(facing)) : 0.0;
     return cones;

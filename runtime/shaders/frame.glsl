@@ -18,7 +18,7 @@ const float ROUNDING = 2.4e-7; // four units in the last place of 1
 // A pixel counts as no wider than this part of its ray where rays start, for normals, and, where hits are
 // snapped, for all.  There rays of paths start so many roundings above a surface.  So where paths go does
 // not depend on the size of the picture.
-const float MOST_WIDTH = 1.0 / 64.0, SNAPPED_START = 32.0;
+const float MAX_WIDTH = 1.0 / 64.0, SNAPPED_START = 32.0;
 
 // How a ray has ended.
 struct RayEnd {
@@ -137,7 +137,7 @@ void load_frame()
 // Tells how wide a pixel counts that is so wide at t.
 float width_at(float t, float width)
 {
-    return frame.snaps != 0u ? min(width, MOST_WIDTH * t) : width;
+    return frame.snaps != 0u ? min(width, MAX_WIDTH * t) : width;
 }
 
 // The workgroup whose items this one takes.  The stride spreads neighbours, which cost the same, over

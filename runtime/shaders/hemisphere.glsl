@@ -6,7 +6,7 @@
 
 // The least cosine between such a ray and the normal: others would creep along the surface.  It is
 // that of 1 in 2,500 of them.
-const float LEAST_RISE = 0.02;
+const float MIN_RISE = 0.02;
 
 // The ray of a point of the disc, with a density in proportion to the cosine, as light from there
 // counts.
@@ -14,6 +14,6 @@ vec3 find_hemisphere_ray(vec3 normal, vec2 disc)
 {
     vec3 right, up;
     find_frame(normal, right, up);
-    disc *= sqrt(1.0 - LEAST_RISE * LEAST_RISE);
+    disc *= sqrt(1.0 - MIN_RISE * MIN_RISE);
     return disc.x * right + disc.y * up + sqrt(1.0 - dot(disc, disc)) * normal;
 }

@@ -95,7 +95,7 @@ struct HitPoint {
     vec3  position;
     vec3  direction; // of the ray, unit
     float width;     // of a pixel there
-    float near;      // the same, but from a camera at most MOST_WIDTH of the ray
+    float near;      // the same, but from a camera at most MAX_WIDTH of the ray
     float rounding;  // error of the coordinates
     float side;      // as in RayEnd
     uint  steps;     // as in RayEnd
@@ -111,7 +111,7 @@ HitPoint hit_point_of_slot(uint slot)
     vec3  position = origin + ray.t * direction;
     float rounding = ROUNDING * (largest(position) + largest(origin));
     float width = max(width_at(ray.t, base + slope * ray.t), 1e-30); // it is a divisor
-    float near = are_of_paths() ? width : max(min(width, MOST_WIDTH * ray.t), 1e-30);
+    float near = are_of_paths() ? width : max(min(width, MAX_WIDTH * ray.t), 1e-30);
     return HitPoint(slot, position, direction, width, near, rounding, ray.side, ray.steps);
 }
 

@@ -14,13 +14,13 @@
 
 // Where a ray meets the plane of the plate in its pixel.  At an edge of the plate that may be far from
 // the pixel's own depth, which holds then.
-const float MOST_TILTED = 1.25;
+const float MAX_TILTED = 1.25;
 float find_plate(uint index, vec3 origin, vec3 direction, float at_depth)
 {
     vec4  plane = find_plate_plane(index);
     float along = dot(plane.xyz, direction);
     float t = (plane.w - dot(plane.xyz, origin)) / (abs(along) > 1e-6 ? along : 1e-6);
-    bool  near = t * MOST_TILTED > at_depth && t < at_depth * MOST_TILTED;
+    bool  near = t * MAX_TILTED > at_depth && t < at_depth * MAX_TILTED;
     return near ? t : at_depth;
 }
 

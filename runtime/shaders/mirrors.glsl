@@ -13,7 +13,7 @@
 // Roughnesses below which a ray finds what a surface mirrors, and above which it is the sky alone:
 // of metals, and of others.
 const vec2 SMOOTH_METAL = vec2(0.15, 0.3), SMOOTH_BODY = vec2(0.06, 0.12);
-const float LEAST_WEIGHT = 0.004; // rays that count less are not followed
+const float MIN_WEIGHT = 0.004; // rays that count less are not followed
 
 // The part of what a surface mirrors that a ray finds, and of what its clear coat mirrors.
 vec2 find_traced(KrsSurface surface)
@@ -59,21 +59,21 @@ Onward find_onward(HitPoint hit, KrsSurface surface, Boundary boundary, vec3 nor
 // pixel, and where the surface bends normals turn within the pixel.  The evenness tells how much
 // over the reach of differences (normals.comp).  Mirrors turn rays twice as far as normals, glass by
 // what it refracts.
-const float MOST_TURNED = 0.5; // more comes from an edge, or from detail
+const float MAX_TURNED = 0.5; // more comes from an edge, or from detail
 float find_widening(HitPoint hit, vec4 facing, bool refracts, float eta)
 {
     float evenness = max(facing.w, 1e-3);
     float bend = sqrt(max(1.0 / (evenness * evenness) - 1.0, 0.0));
     float cosine = max(abs(dot(hit.direction, facing.xyz)), 0.1);
     float turned = 2.0 * bend * hit.width / (cosine * find_reach(hit));
-    return (refracts ? abs(1.0 - 1.0 / eta) : 2.0) * min(turned, MOST_TURNED);
+    return (refracts ? abs(1.0 - 1.0 / eta) : 2.0) * min(turned, MAX_TURNED);
 }
 
 // Stores the path that goes on, and lists it.
 void follow_onward(HitPoint hit, uint index, Onward onward, vec4 facing, vec3 weight, float spread)
 {
     bool leaves = dot(onward.direction, facing.xyz) * onward.side > 0.0;
-    if (leaves && largest(weight) >= LEAST_WEIGHT) {
+    if (leaves && largest(weight) >= MIN_WEIGHT) {
         vec3 direction = normalize(onward.direction);
         vec3 start = find_start(hit, direction, facing, onward.side, 0.0);
         store_path(PATH_ORIGIN, index, vec4(start, hit.width));

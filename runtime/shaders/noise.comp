@@ -93,7 +93,7 @@ uint check_quarter(uvec2 corner, uint exist, uint sampled)
         errors[number] = error;
     }
     bool noisy = squares > control.noise * control.noise * float(bitCount(exist));
-    bool all_go_on = control.value < LEAST_NOISE_SAMPLES || noisy;
+    bool all_go_on = control.value < MIN_NOISE_SAMPLES || noisy;
     for (uint left = all_go_on ? 0u : sampled; left != 0u; left &= left - 1u) {
         uint number = uint(findLSB(left));
         if (errors[number] <= control.noise) {

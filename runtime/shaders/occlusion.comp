@@ -19,12 +19,12 @@
 #include "openness.glsl"
 
 // A mean is over hits at most ON_PLANE pixels from the plane; the sum of their weights is at least
-// LEAST_WEIGHT.  The reaches are those of the three means, in pixels.
-const float ON_PLANE = 1.5, LEAST_WEIGHT = 0.5, NEAR_REACH = 3.0, WIDE_REACH = 8.0, FAR_REACH = 4.5;
+// MIN_WEIGHT.  The reaches are those of the three means, in pixels.
+const float ON_PLANE = 1.5, MIN_WEIGHT = 0.5, NEAR_REACH = 3.0, WIDE_REACH = 8.0, FAR_REACH = 4.5;
 // The reach of the wider mean, relative to the distance of the occluders.
 const float REACH_OF_HITS = 0.7;
 // Added to the mean squares of offsets, in reaches: slopes of few noisy taps count less.
-const float LEAST_SPREAD = 0.1;
+const float MIN_SPREAD = 0.1;
 
 // The pixel of a sparse pixel's number, which is its column and row among the sparse ones of the
 // band.
@@ -109,7 +109,7 @@ float find_openness(Sums sums)
     vec2  centre = sums.offset * per_weight;
     vec3  spread = sums.square * per_weight - centre.xxy * centre.xyy;
     vec2  change = sums.sloped * per_weight - mean * centre;
-    spread.xz += LEAST_SPREAD;
+    spread.xz += MIN_SPREAD;
     vec2  slope = vec2(spread.z * change.x - spread.y * change.y,
                        spread.x * change.y - spread.y * change.x) /
                  (spread.x * spread.z - spread.y * spread.y);
@@ -144,7 +144,7 @@ void do_item(uint number)
         store_shared(wider ? RAYS_SHARED : MEANS_SHARED, slot, find_depth(hit),
                      code_of_openness(openness));
         store_occluder(wider ? LIST_WIDE : LIST_REMAINING, pixel, albedo);
-    } else if (!upsampled || sums.weight > LEAST_WEIGHT)
+    } else if (!upsampled || sums.weight > MIN_WEIGHT)
         store_lighting(control.value, slot, pack_openness(Openness(openness, albedo)));
     else
         pixel_lists[LIST_REMAINING * band_pixels() + atomicAdd(counts.remaining, 1u)] = slot;

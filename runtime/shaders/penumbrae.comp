@@ -19,7 +19,7 @@ const float WIDEST_PENUMBRA = 1024.0;
 // So many quarters to each side are asked, where the penumbra is at least so many pixels wide; more would
 // be beyond the halo of a band.
 const int   SPREAD = 1;
-const float LEAST_WIDTH = 4.15; // no width that a code says, as rounding would decide
+const float MIN_WIDTH = 4.15; // no width that a code says, as rounding would decide
 
 void begin_group() {}
 
@@ -45,7 +45,7 @@ void spread_penumbrae(uint quarter)
 {
     ivec2     place = ivec2(pixel_of(slot_of_quarter(quarter))) >> 2, tap = ivec2(-SPREAD);
     Penumbrae own = find_quarter(LIGHT_OF_QUARTERS, place);
-    bool      seeks = own.lit == 0.0 && own.width > LEAST_WIDTH * own.hidden;
+    bool      seeks = own.lit == 0.0 && own.width > MIN_WIDTH * own.hidden;
     do {
         float lit = find_quarter(LIGHT_OF_QUARTERS, place + tap).lit;
         own.lit = seeks && lit > 0.0 ? 1.0 : own.lit;

@@ -16,7 +16,7 @@ layout(std430, set = 1, binding = ANSWERS_BINDING) writeonly buffer Answers { An
 // The distance, then one step along each axis and back: their differences are the gradient.
 vec4 find_gradient(vec3 p)
 {
-    float step = work.least_step + 1e-3 * max(max(abs(p.x), abs(p.y)), abs(p.z));
+    float step = work.min_step + 1e-3 * max(max(abs(p.x), abs(p.y)), abs(p.z));
     vec4  found = vec4(0.0);
     for (uint i = 0u; i < work.taps; i++) {
         uint  axis = (i + 1u) / 2u;

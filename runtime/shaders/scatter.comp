@@ -40,14 +40,14 @@
 const uint CHOICES = 3u;      // points of the unit square for each surface of a path
 const uint FIRST_ROULETTE = 3u;
 // How much the width of a ray grows where rough surfaces scatter it, relative to a camera's.
-const float MOST_SPREAD = 3.0;
+const float MAX_SPREAD = 3.0;
 
 // Rays that rise less go along a plane for too many steps, so they are lifted.  They bring a hundred
 // thousandth of the light on a dull surface; smooth ones mirror rays that come as low.
-const float LEAST_RISE = 2e-3, LOW = 0.05;
+const float MIN_RISE = 2e-3, LOW = 0.05;
 bool goes_along(float rise, HitPoint hit, vec3 facing)
 {
-    return rise < LEAST_RISE && -dot(hit.direction, facing) > LOW;
+    return rise < MIN_RISE && -dot(hit.direction, facing) > LOW;
 }
 
 // The number of the choice at surface `control.value` of a path.
@@ -197,7 +197,7 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     float by_rays = tint == vec3(1.0) ? mixed_density(cones, point.toward, scattered.w) : 0.0;
     float share = point.density > 0.0 ? 1.0 / (1.0 + square(by_rays / point.density)) : 1.0;
     float rise = dot(point.toward, facing);
-    bool  along = is_sky && abs(rise) < LEAST_RISE;
+    bool  along = is_sky && abs(rise) < MIN_RISE;
     bool  sees = rise * light.z > 0.0 && all > 0.0 && !along;
     vec3  added = sees ? weight * scattered.rgb * point.light * share * tint : vec3(0.0);
     added = finite_or_black(added);
@@ -235,7 +235,7 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     weight *= scattered.rgb / max(scattered.w, 1e-30);
     float rise = dot(direction, facing.xyz) * sign(light.z);
     if (rise > 0.0 && goes_along(rise, hit, facing.xyz))
-        direction = normalize(direction + (LEAST_RISE - rise) * sign(light.z) * facing.xyz);
+        direction = normalize(direction + (MIN_RISE - rise) * sign(light.z) * facing.xyz);
     bool  goes_on = rise > 0.0 && scattered.w > 0.0 && largest(weight) > 0.0 && largest(weight) < 1e30;
     if (control.value >= FIRST_ROULETTE) {
         float chance = min(find_survival(weight, kept), 0.95);
@@ -245,7 +245,7 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     }
     float side = light.z < 0.0 ? -1.0 : 1.0; // of the surface, relative to the ray's
     float spread = load_path(PATH_DIRECTION, index).w;
-    spread = max(spread, min(1.0 + 2.0 * roughness, MOST_SPREAD) * frame.pixel_slope);
+    spread = max(spread, min(1.0 + 2.0 * roughness, MAX_SPREAD) * frame.pixel_slope);
     store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, side, off), hit.width));
     store_path(PATH_DIRECTION, index, vec4(direction, spread));
     store_path(PATH_WEIGHT, index, vec4(weight, sign_of_path() * scattered.w));

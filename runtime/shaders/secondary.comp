@@ -27,7 +27,7 @@
 #endif
 #include "media.glsl"
 
-const uint MOST_STEPS = 1024u;
+const uint MAX_STEPS = 1024u;
 // How many pixels above the surface rays start, where it is even and where it is not.
 const float LIFT_OF_EVEN = 0.125, LIFT = 0.5, LIFT_OF_OCCLUSION = 1.0;
 // The evenness below which a surface is uneven, and above which it is even.
@@ -38,7 +38,7 @@ const float NEAR_START = 8.0;
 // The least step of a ray: the smaller of these parts of the permitted error and of a pixel.  It
 // grows by STEP_GROWTH with each step, so that a ray which creeps along a surface leaves it; rays for
 // occlusion go farther.
-const float LEAST_STEP = 0.0625, LEAST_STEP_IN_PIXELS = 0.015625;
+const float MIN_STEP = 0.0625, MIN_STEP_IN_PIXELS = 0.015625;
 #ifdef PATH_RAYS // they start nearer to the surface
 const float STEP_GROWTH = 1.02;
 #else
@@ -47,14 +47,14 @@ const float STEP_GROWTH = 1.008, STEP_GROWTH_OF_SKY = 1.08;
 // A ray for occlusion that recedes from all there is takes steps of at least this part of its length, and
 // of all of it where it is farther than so many reaches: what is out there and counts is large.  Most of
 // those that recede more slowly graze a surface, so that they count little.
-const float LEAST_OF_LENGTH = 0.25, FAR_REACHES = 60.0;
+const float MIN_OF_LENGTH = 0.25, FAR_REACHES = 60.0;
 // For so long a ray of a path that begins behind its surface is not blocked by that.
 const float LEAVING_IN_PIXELS = 0.125;
 // The margin around a cone, in pixels: if the cone is empty, the light is visible from pixels as
 // near as that, too.
 const float CONE_MARGIN = 3.0;
 // On surfaces at a grazing angle pixels are farther apart, by at most this factor.
-const float MOST_STRETCHED = 4.0;
+const float MAX_STRETCHED = 4.0;
 // Relaxation.  SAFETY: the step, relative to the longest after which the balls would still meet.
 // LEARNING: how fast the mean slope follows the last one.  STEEPEST: the largest slope that is
 // relied on.
@@ -79,10 +79,10 @@ bool  blocked;
 bool  below_horizon;            // its point of the light is behind the surface
 float last_distance, last_step; // the distance before the last step, and its length
 bool  took_least_step;          // the last step was the least one, not the distance
-float least_step, growth;
+float min_step, growth;
 float slope;                  // of the radius along the ray: a running mean
 #ifdef STEPS
-float most_ahead;             // how far it is to the next root, or less
+float max_ahead;             // how far it is to the next root, or less
 float radius_here;            // of the empty ball around the position, of what has no roots
 float last_radius;            // the same before the last step
 #else
@@ -101,7 +101,7 @@ void begin_ray(vec3 normal, vec3 toward)
     // A ray from inside of a solid that reaches the box around all solids has met a wall there.
     blocked = (hit.side < 0.0 || is_in_medium()) && box_end < end;
     end = min(end, box_end);
-    step_limit = blocked || below_horizon ? 0u : MOST_STEPS;
+    step_limit = blocked || below_horizon ? 0u : MAX_STEPS;
 }
 
 // A point of the unit square, for the light or the hemisphere of the dispatch.
@@ -150,12 +150,12 @@ void aim_at_light(vec3 normal, vec2 square, vec2 disc)
     below_horizon = dot(normal, toward) <= 0.0 && !is_cone;
     begin_ray(normal, toward / light_distance);
     if (is_cone) {
-        float turned = max(-dot(normal, hit.direction), 1.0 / MOST_STRETCHED);
+        float turned = max(-dot(normal, hit.direction), 1.0 / MAX_STRETCHED);
         spread = radius / light_distance;
         margin = CONE_MARGIN * hit.width / turned;
         end = min(to_light, find_end_of_cone());
         blocked = blocked || facing <= 2.0 * spread;
-        step_limit = blocked ? 0u : MOST_STEPS;
+        step_limit = blocked ? 0u : MAX_STEPS;
     }
 }
 
@@ -258,12 +258,12 @@ void begin_item(uint number, bool saved)
     last_radius = 0.0;
 #endif
     took_least_step = true;
-    float least = min(LEAST_STEP * frame.error, LEAST_STEP_IN_PIXELS);
+    float least = min(MIN_STEP * frame.error, MIN_STEP_IN_PIXELS);
     growth = STEP_GROWTH;
 #ifndef PATH_RAYS
     growth = control.phase == RAYS_OVER_HEMISPHERE ? STEP_GROWTH_OF_SKY : growth;
 #endif
-    least_step = (is_cone ? 1.0 : least) * hit.width + hit.rounding;
+    min_step = (is_cone ? 1.0 : least) * hit.width + hit.rounding;
 }
 
 bool item_needs_step() { return step_count < step_limit; }
@@ -277,7 +277,7 @@ float item_distance(vec3 position)
     vec2  steps = krs_steps(position, direction, last_step > 0.0 ? last_step + some : 0.0);
     // From inside of one solid nothing is known of balls around others.
     float least = min(steps.x, steps.y);
-    most_ahead = hit.side < 0.0 ? -least : steps.x;
+    max_ahead = hit.side < 0.0 ? -least : steps.x;
     radius_here = hit.side < 0.0 ? -least : min(steps.y, end);
     return least;
 #else
@@ -326,7 +326,7 @@ float hurry(float distance)
     return 0.0;
 #else
     bool recedes = control.phase == RAYS_OVER_HEMISPHERE && distance > last_distance;
-    return recedes ? (t > FAR_REACHES * frame.occlusion_reach ? 1.0 : LEAST_OF_LENGTH) * t : 0.0;
+    return recedes ? (t > FAR_REACHES * frame.occlusion_reach ? 1.0 : MIN_OF_LENGTH) * t : 0.0;
 #endif
 }
 
@@ -352,25 +352,25 @@ void take_distance(float distance)
     float risen = mix(slope, (around - last_radius) * per_gap, LEARNING);
     slope = steps_back ? -1.0 : last_step > 0.0 ? risen : slope;
     blocked = blocked || inside && !steps_back;
-    bool  arrives = t + max(distance, least_step) >= end;
+    bool  arrives = t + max(distance, min_step) >= end;
     step_limit = !steps_back && (inside || arrives) ? 0u : step_limit;
-    took_least_step = !steps_back && distance < least_step;
+    took_least_step = !steps_back && distance < min_step;
     // Where the ray enters the solid, between the last position and this one.
     float crossing = last_step * distance / max(last_distance - distance, 1e-30);
     float relaxed = relax(around);
 #ifdef STEPS // inside of a polynomial the length may reach to its other side
     crossing = max(crossing, last_distance - last_step);
-    relaxed = min(relaxed, most_ahead);
+    relaxed = min(relaxed, max_ahead);
 #endif
-    float next = took_least_step ? least_step : max(relaxed, least_step);
+    float next = took_least_step ? min_step : max(relaxed, min_step);
     float hurried = hurry(distance);
 #ifdef STEPS
-    hurried = min(hurried, most_ahead);
+    hurried = min(hurried, max_ahead);
 #endif
     took_least_step = took_least_step || !steps_back && hurried > next;
     next = max(next, hurried);
     next = min(next, max(end - t, 0.0));
-    least_step *= growth;
+    min_step *= growth;
     t += steps_back ? last_radius - last_step : inside && !is_cone ? min(crossing, 0.0) : next;
     last_step = steps_back ? last_radius : next;
     last_distance = steps_back ? last_distance : distance;

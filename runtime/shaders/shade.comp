@@ -40,7 +40,7 @@
 // Less evenness comes from detail, not from curvature.  Mirrors make things so small that curvature
 // turns normals within a pixel, too.
 const float EVEN = 0.98, EVEN_IN_MIRRORS = 1.0;
-const float LEAST_NORMAL_REACH = 0.5; // the reach without filtering (normal_reach in job.c)
+const float MIN_NORMAL_REACH = 0.5; // the reach without filtering (normal_reach in job.c)
 const float SEEN = 0.78;              // length of the mean visible normal of a thin round thing
 
 // The most light that a hit emits: sums over rays are still finite.
@@ -93,7 +93,7 @@ float roughen(float roughness, float mean_length)
 }
 
 // Tells whether one sample stands for all that its pixel shows.
-bool filters_detail() { return frame.normal_reach > LEAST_NORMAL_REACH; }
+bool filters_detail() { return frame.normal_reach > MIN_NORMAL_REACH; }
 
 Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
 {

@@ -19,18 +19,18 @@
 #include "neighbours.glsl"
 #include "quarters.glsl"
 
-// RADIUS_OF_PENUMBRA: the radius of a mean, relative to the width of the penumbra.  LEAST_RADIUS:
+// RADIUS_OF_PENUMBRA: the radius of a mean, relative to the width of the penumbra.  MIN_RADIUS:
 // its least, in pixels.  NEAR_RADIUS: a larger radius needs a second mean.  In grazing light that
 // limit is smaller, by a factor down to GRAZING.
-const float RADIUS_OF_PENUMBRA = 0.5, LEAST_RADIUS = 1.25, NEAR_RADIUS = 2.0, GRAZING = 0.25;
+const float RADIUS_OF_PENUMBRA = 0.5, MIN_RADIUS = 1.25, NEAR_RADIUS = 2.0, GRAZING = 0.25;
 
 // Rays of few pixels would fray the edge of a narrow penumbra.  So its means reach farther along
-// the edge: distances there count by LEAST_ALONG, and in full from a radius of WIDE_ENOUGH on.
-// LEAST_CHANGE: the least sum of differences that tells a direction.
-const float LEAST_ALONG = 0.15, WIDE_ENOUGH = 6.0, LEAST_CHANGE = 1.5;
+// the edge: distances there count by MIN_ALONG, and in full from a radius of WIDE_ENOUGH on.
+// MIN_CHANGE: the least sum of differences that tells a direction.
+const float MIN_ALONG = 0.15, WIDE_ENOUGH = 6.0, MIN_CHANGE = 1.5;
 
 // Less weight than that says nothing: it may be due to rounding.
-const float LEAST_WEIGHT = 0.05;
+const float MIN_WEIGHT = 0.05;
 
 // The radius of the mean in pixels, by the four quarters around.  It is 0 where all of their pixels
 // see the light, or none does.  Fewer pixels would often agree by chance at the ends of a penumbra,
@@ -49,18 +49,18 @@ float find_radius(ivec2 pixel)
         width += weight * found.width;
         tap = ivec2(1 - tap.x, tap.y + tap.x);
     } while (tap.y < 2);
-    float radius = max(RADIUS_OF_PENUMBRA * width / max(hidden, 1e-6), LEAST_RADIUS);
+    float radius = max(RADIUS_OF_PENUMBRA * width / max(hidden, 1e-6), MIN_RADIUS);
     return lit > 0.0 && hidden > 0.0 ? radius * inversesqrt(float(control.rays)) : 0.0;
 }
 
 // The same for a pixel with a code.  Behind an edge of its own surface the blocker is near, and the
 // penumbra narrow.  Its neighbours in front of the edge see the light, and tell nothing of it.
-const float LEAST_OWN_RADIUS = 0.5;
+const float MIN_OWN_RADIUS = 0.5;
 float find_own_radius(ivec2 pixel, uint own)
 {
     float radius = find_radius(pixel);
     bool  blocked = own >= NARROWEST && own <= WIDEST;
-    float widest = max(RADIUS_OF_PENUMBRA * width_of_code(own), LEAST_OWN_RADIUS);
+    float widest = max(RADIUS_OF_PENUMBRA * width_of_code(own), MIN_OWN_RADIUS);
     return blocked ? min(radius, widest) : radius;
 }
 
@@ -87,7 +87,7 @@ vec2 find_change(uint list, ivec2 pixel, int stride)
     } while (tap.y <= 2);
     vec2  change = product - place * (known.x / max(known.y, 1.0));
     float size = length(change);
-    return size > LEAST_CHANGE ? change / size : vec2(0.0);
+    return size > MIN_CHANGE ? change / size : vec2(0.0);
 }
 
 // The mean visibility over 5x5 pixels that are `stride` apart, weighted by how near their hits are.
@@ -99,7 +99,7 @@ float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, flo
     // How little distances along the light count; 1: not at all.
     float stretched = 1.0 - min(2.0 * disc.spread, 1.0);
     vec2  change = radius > 0.0 ? find_change(list, pixel, stride) : vec2(0.0);
-    float along_edge = mix(LEAST_ALONG, 1.0, min(radius / WIDE_ENOUGH, 1.0));
+    float along_edge = mix(MIN_ALONG, 1.0, min(radius / WIDE_ENOUGH, 1.0));
     along_edge = 1.0 - along_edge * along_edge;
     ivec2 tap = ivec2(-2);
     do {
@@ -115,7 +115,7 @@ float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, flo
         sums += weight * find_seen(list, there);
         tap = next_offset(tap, 2);
     } while (tap.y <= 2 && radius > 0.0);
-    return sums.y > LEAST_WEIGHT ? sums.x / sums.y : -1.0;
+    return sums.y > MIN_WEIGHT ? sums.x / sums.y : -1.0;
 }
 
 void begin_group() {}

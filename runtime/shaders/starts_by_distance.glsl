@@ -5,9 +5,9 @@
  * So they start nearer than by pixels, unless the hit is far off.  The distance may be a bound that
  * is too small; then the ray may begin on the wrong side.
  */
-const float LEAST_ROUNDINGS = 4.0;
+const float MIN_ROUNDINGS = 4.0;
 
 float find_height(HitPoint hit, float evenness, float distance)
 {
-    return 2.0 * max(LEAST_ROUNDINGS * hit.rounding, abs(distance));
+    return 2.0 * max(MIN_ROUNDINGS * hit.rounding, abs(distance));
 }

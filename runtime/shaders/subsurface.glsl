@@ -13,9 +13,9 @@
  * distance does for very many events, as a ray takes a long step where nothing is near.
  */
 
-const uint  MOST_DISTANCES = 3000u; // of a walk; then it leaves where it has entered
-const float LEAST_RADIUS = 1e-3;   // of a colour, relative to the largest
-const float LEAST_SEEN = 0.02;     // a radius in pixels; light that goes less far stays
+const uint  MAX_DISTANCES = 3000u; // of a walk; then it leaves where it has entered
+const float MIN_RADIUS = 1e-3;   // of a colour, relative to the largest
+const float MIN_SEEN = 0.02;     // a radius in pixels; light that goes less far stays
 const float NEAREST = 0.05;        // the least step, in mean free paths
 const float NEAREST_IN_PIXELS = 0.25;
 const float DIFFUSES = 6.0, MARGIN = 2.0; // mean free paths: of a ball, and how far it is from walls
@@ -67,7 +67,7 @@ Inside find_inside(vec3 color, vec3 radius)
     vec3   root = 4.09712 + 4.20863 * color -
                   sqrt(9.59217 + 41.6808 * color + 17.7126 * color * color);
     vec3   lost = clamp(root * root, 0.0, 1.0);
-    inside.density = 1.0 / max(radius, LEAST_RADIUS * most);
+    inside.density = 1.0 / max(radius, MIN_RADIUS * most);
     inside.kept = 1.0 - lost;
     inside.decay = inside.density * sqrt(3.0 * lost / (1.0 + lost)); // Grosjean 1956
     return inside;
@@ -169,7 +169,7 @@ Walk walk_below(HitPoint hit, vec3 facing, vec3 color, vec3 radius)
     Walk   walk = Walk(hit.position, facing, vec3(1.0), false);
     float  most = max(max(radius.x, radius.y), radius.z);
     Inside inside = find_inside(color, max(radius, 1e-12));
-    if (most < LEAST_SEEN * hit.width) {
+    if (most < MIN_SEEN * hit.width) {
         walk.weight = color;
         return walk;
     }
@@ -178,7 +178,7 @@ Walk walk_below(HitPoint hit, vec3 facing, vec3 color, vec3 radius)
     vec3  direction = choose_way_in(facing);
     float left = choose_length(inside, walk.weight), gone = 0.0; // to the next event; since the last
     float step = 0.0, before = 0.0; // the last step, and the depth before it
-    for (uint i = 0u; i < MOST_DISTANCES; i++) {
+    for (uint i = 0u; i < MAX_DISTANCES; i++) {
         float depth = -krs_subsurface(walk.position);
         if (depth <= 0.0 && i > 0u) {
             float back = step * -depth / max(before - depth, 1e-30);

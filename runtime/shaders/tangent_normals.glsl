@@ -9,7 +9,7 @@
  *
  * The file that includes this has the hit and the taps.
  */
-const float LEAST_OUTSIDE = 0.4; // least slope of the distance, at the first tap outside
+const float MIN_OUTSIDE = 0.4; // least slope of the distance, at the first tap outside
 const float NEARER = 0.125;      // the reach of nearer taps, relative to the first one
 const float NOISE_NEARER = 1e-4; // their least reach, relative to coordinates: less is rounding
 const uint  POINTS = 7u;         // the hit, and those beside it
@@ -17,9 +17,9 @@ const uint  MOVES = 5u;          // steps of each, before taps at it and outside
 const uint  POINT_TAPS = MOVES + 2u;
 const float ARRIVED = 0.005;     // how far from the surface a point may end, in reaches
 const float OUTSIDE = 0.25;      // how far outside of a point its last tap is, in reaches
-const float LEAST_NEARER = 0.5;  // least slope of the distance up to there
+const float MIN_NEARER = 0.5;  // least slope of the distance up to there
 // Where no point is confirmed, the mean of all normals counts, in parts of reaches from the surface.
-const float NEAR = 0.1, LEAST_WEIGHT = 1e-3;
+const float NEAR = 0.1, MIN_WEIGHT = 1e-3;
 
 vec3  place;  // of the next tap
 vec3  normal; // of a point, before the tap outside of it
@@ -48,7 +48,7 @@ void begin_nearer()
 {
     t = max(NEARER * t, NOISE_NEARER * largest(hit.position) + hit.rounding);
     place = find_point(0u);
-    sum *= LEAST_WEIGHT;
+    sum *= MIN_WEIGHT;
     taps = 2u;
     tap_limit = taps + POINTS * POINT_TAPS;
 }
@@ -65,12 +65,12 @@ void take_nearer(vec3 uphill, float distance, vec3 facing)
         normal = facing;
         before = distance;
         place += OUTSIDE * t * normal;
-        sum += max(1.0 - abs(distance) / (NEAR * t), LEAST_WEIGHT) * normal;
+        sum += max(1.0 - abs(distance) / (NEAR * t), MIN_WEIGHT) * normal;
     } else {
         bool  arrived = abs(before) <= ARRIVED * t && dot(normal, normal) > 0.0;
         float rise = hit.side * (distance - before);
         place = find_point((taps - 3u) / POINT_TAPS + 1u);
-        if (arrived && rise >= LEAST_NEARER * OUTSIDE * t) {
+        if (arrived && rise >= MIN_NEARER * OUTSIDE * t) {
             sum = normal;
             tap_limit = taps;
         }
@@ -99,7 +99,7 @@ void take_tangent(vec3 gradient, float distance)
 #endif
         if (!known)
             begin_nearer();
-    } else if (!(hit.side * distance >= LEAST_OUTSIDE * t)) {
+    } else if (!(hit.side * distance >= MIN_OUTSIDE * t)) {
         begin_nearer();
     }
 }

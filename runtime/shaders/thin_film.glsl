@@ -13,14 +13,14 @@
 
 // The middle and the standard deviation of each band, in waves in a micrometre.
 const vec3 WAVES = vec3(1.0 / 0.611, 1.0 / 0.549, 1.0 / 0.465), WAVES_APART = vec3(0.08, 0.11, 0.12);
-const uint MOST_TERMS = 8u;
+const uint MAX_TERMS = 8u;
 // The reflectance of a metal is at most this, so that an index of refraction has it.
-const float MOST_HEAD_ON = 0.9998;
+const float MAX_HEAD_ON = 0.9998;
 
 // The index of refraction that has this reflectance in a vacuum, head on.
 vec3 ior_of(vec3 head_on)
 {
-    vec3 root = sqrt(clamp(head_on, 0.0, MOST_HEAD_ON));
+    vec3 root = sqrt(clamp(head_on, 0.0, MAX_HEAD_ON));
     return (1.0 + root) / (1.0 - root);
 }
 
@@ -30,7 +30,7 @@ vec3 sum_ways(float outer, vec3 inner, vec3 cosine, vec3 left)
 {
     vec3 both = outer * inner, sum = vec3(1.0), term = vec3(1.0);
     vec3 before = vec3(1.0), now = cosine, fade = left, fading = left * left * left;
-    for (uint m = 1u; m <= MOST_TERMS; m++) { // cosines of m times the phase, left^(m m)
+    for (uint m = 1u; m <= MAX_TERMS; m++) { // cosines of m times the phase, left^(m m)
         term *= -both;
         sum += 2.0 * term * now * fade;
         vec3 next = 2.0 * cosine * now - before;

@@ -5,9 +5,9 @@
  * The way to the light is straight, as if nothing refracted, and each boundary reflects what it does
  * of light that meets it head on.  Where bodies of glass overlap they count as one.
  */
-const uint  MOST_TINT_STEPS = 256u;
+const uint  MAX_TINT_STEPS = 256u;
 // The least step in pixels, by which a boundary is found too late, and how it grows.
-const float LEAST_STEP = 0.5, GROWTH = 1.03;
+const float MIN_STEP = 0.5, GROWTH = 1.03;
 
 struct Glass {
     vec3  color, absorption;
@@ -46,11 +46,11 @@ vec3 find_start_of_way(HitPoint hit, vec3 facing)
 // The tint of a way that is `end` long, if it casts a shadow; `width`: that of the pixel.
 vec3 find_tint_of_way(vec3 start, vec3 toward, float end, float width, bool casts)
 {
-    float t = 0.0, entered = 0.0, least = LEAST_STEP * width;
+    float t = 0.0, entered = 0.0, least = MIN_STEP * width;
     vec3  tint = vec3(1.0);
     bool  inside = false;
     Glass glass = Glass(vec3(1.0), vec3(0.0), 1.0);
-    for (uint step = 0u; casts && step < MOST_TINT_STEPS && t <= end; step++) {
+    for (uint step = 0u; casts && step < MAX_TINT_STEPS && t <= end; step++) {
         vec3  position = start + t * toward;
         float distance = krs_glass(position);
         if (distance < 0.0 && !inside) {

@@ -55,12 +55,12 @@
 #endif
 
 const uint PLAIN = 1u, RELAXED = 2u, AUTOMATIC = 3u; // TRACE: as KrsTrace
-const uint MOST_BEAM_STEPS = 256u; // the rest is left to the rays
+const uint MAX_BEAM_STEPS = 256u; // the rest is left to the rays
 
 // The longest interval that may stay unverified: in permitted errors, and in pixels at most.  Twigs
 // of a tenth of a pixel lose less than 1 % by it (tests/oracle/coverage.c).
 const float TOLERANCE = 0.05;
-const float MOST_TOLERANCE = 0.0125;
+const float MAX_TOLERANCE = 0.0125;
 // RELAXATION: the relaxed step, relative to the distance.  LEARNING: how fast the mean slope
 // follows the last one.
 const float RELAXATION = 1.2;
@@ -131,7 +131,7 @@ vec4  kept_starts, more_starts; // starts of the first tile, and of the second
 void begin_group(uint first)
 {
     most_steps = found_tiles = 0u;
-    tolerance_in_pixels = min(TOLERANCE * frame.error, MOST_TOLERANCE);
+    tolerance_in_pixels = min(TOLERANCE * frame.error, MAX_TOLERANCE);
     find_tiles(8u, first_8, count_8);
     find_tiles(32u, first_32, count_32);
     first_tile = tile_of_item(first);
@@ -388,7 +388,7 @@ void begin_item(uint number, bool saved)
 
 bool item_needs_step()
 {
-    uint most = control.phase == TRACE_RAYS ? frame.most_steps : MOST_BEAM_STEPS;
+    uint most = control.phase == TRACE_RAYS ? frame.most_steps : MAX_BEAM_STEPS;
     return exists && (march.state == STATE_MARCHING || march.state == STATE_REFINING) &&
            march.steps < most;
 }
@@ -514,7 +514,7 @@ void end_group(uint steps)
     if (sum > 0u)
         atomicAdd(counts.evaluations, sum);
     if (most > 0u)
-        atomicMax(counts.most_evaluations, most);
+        atomicMax(counts.max_evaluations, most);
 }
 
 #include "schedule.glsl"

@@ -24,8 +24,8 @@ typedef unsigned int uvec2[2];
 CONSTANT(TILE, 8);             /* side of a tile, in pixels */
 CONSTANT(QUARTERS_OF_TILE, 4); /* each has a cone (hit_lists.glsl) */
 CONSTANT(LIGHTS_AT_ONCE, 3);   /* lights of a dispatch of shade.comp */
-CONSTANT(GROUP_LISTS, 9);      /* KRS_MOST_MARCH_GROUPS, and one for no group */
-CONSTANT(MOST_CHAINED, 48);    /* most dispatches of a chain */
+CONSTANT(GROUP_LISTS, 9);      /* KRS_MAX_MARCH_GROUPS, and one for no group */
+CONSTANT(MAX_CHAINED, 48);     /* most dispatches of a chain */
 
 /* ---- Bindings in set 1, of pictures ---- */
 
@@ -141,7 +141,7 @@ struct NextDispatch {
 /* push_constant of point_query.comp. */
 struct PointWork {
     uint  count, taps; /* points; distances for each: 1, or 7 with normals */
-    float least_step;  /* to a tap for a normal */
+    float min_step;    /* to a tap for a normal */
 };
 
 #ifdef __STDC_VERSION__
@@ -223,13 +223,13 @@ static_assert(sizeof(PointWorkBlock) == 12, "std430");
     uint remaining;                   /* pixels that need rays or a mean of their own */           \
     uint unresolved;                  /* rays that ran out of steps */                             \
     uint evaluations;                 /* of distances, by beams and rays */                        \
-    uint most_evaluations;            /* by one ray */                                             \
+    uint max_evaluations;             /* by one ray */                                             \
     uint wide;                        /* pixels that need a wide mean of a shadow (shadow.comp) */ \
     uint quarters;                    /* quarters of tiles in which something is hit */            \
     uint of_march_group[GROUP_LISTS]; /* pixels that hit something, by march group */              \
     uint groups[3];                   /* workgroups of the next dispatch */                        \
     uint stopped;                     /* the dispatch at which the chain stopped; 0: none */       \
-    uint ran[MOST_CHAINED];           /* workgroups that each dispatch had */                      \
+    uint ran[MAX_CHAINED];            /* workgroups that each dispatch had */                      \
     uint clamped;                     /* rays whose light was clamped */                           \
     uint sampled;                     /* pixels whose samples go on */
 
@@ -249,7 +249,7 @@ typedef struct ControlBlock {
     CONTROL_ROWS(MEMBERS_OF_FLOATS, MEMBERS_OF_UINTS)
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (40 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (40 + 26 + MAX_CHAINED) * sizeof(uint32_t), "std430");
 #define ROW_OF_CONTROL_BEGINS(row, a, b, c, d) \
     static_assert(offsetof(ControlBlock, a) == 16 * (row), "std430");
 CONTROL_ROWS(ROW_OF_CONTROL_BEGINS, ROW_OF_CONTROL_BEGINS)
@@ -388,7 +388,7 @@ CONSTANT(PLATE_JOINS_BELOW, 2);
 CONSTANT(PLATE_BLOCK, 16); /* side of a block, in pixels */
 /* The least samples of a pixel, which may end when they are a power of two.  The error is estimated
    from half as many on, by means of two halves. */
-CONSTANT(LEAST_NOISE_SAMPLES, 16);
+CONSTANT(MIN_NOISE_SAMPLES, 16);
 CONSTANT(FIRST_NOISE_SAMPLES, 4);
 
 struct Light {
@@ -410,7 +410,7 @@ CONSTANT(LIGHT_FIRST_TYPE, 8);
    and then anisotropic_albedo_table.def: a row for each cosine, roughness and anisotropy. */
 CONSTANT(ALBEDO_SIDE, 64);
 CONSTANT(ALBEDO_ROWS, 4096);
-CONSTANT(MOST_EMISSIVE, 32); /* KRS_MOST_EMISSIVE */
+CONSTANT(MAX_EMISSIVE, 32); /* KRS_MAX_EMISSIVE */
 CONSTANT(EMISSIVE_ROWS, 2);
 CONSTANT(WIDE_ALBEDOS_AT, 4096 + 2 * 32);
 CONSTANT(WIDE_COSINES, 12);
@@ -444,7 +444,7 @@ static_assert(sizeof(LightBlock) == 16 * LIGHT_ROWS, "std430");
 typedef struct EmissiveBall EmissiveBlock;
 static_assert(sizeof(EmissiveBlock) == 16 * EMISSIVE_ROWS, "std430");
 enum { WIDE_ALBEDO_ROWS = WIDE_COSINES * WIDE_ROUGHNESSES * WIDE_ANISOTROPIES };
-static_assert(WIDE_ALBEDOS_AT == ALBEDO_ROWS + EMISSIVE_ROWS * MOST_EMISSIVE, "rows of inputs");
+static_assert(WIDE_ALBEDOS_AT == ALBEDO_ROWS + EMISSIVE_ROWS * MAX_EMISSIVE, "rows of inputs");
 static_assert(LIGHTS_AT == WIDE_ALBEDOS_AT + WIDE_ALBEDO_ROWS, "rows of inputs");
 typedef struct ListedRay ListedRayBlock;
 static_assert(sizeof(ListedRayBlock) == 32, "std430");

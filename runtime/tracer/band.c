@@ -28,7 +28,7 @@ static void band_destroy(Gpu *gpu, Band *band)
 
 /* The most beams of a band of this many pixels, whatever its shape and position.  There is a beam
    for every tile of 8x8 pixels, for each of its quarters, and for every tile of 32x32. */
-static VkDeviceSize most_beams(uint64_t pixels)
+static VkDeviceSize max_beams(uint64_t pixels)
 {
     return 2 * (pixels / TILE + 2 * KRS_MOST_SIDE / TILE);
 }
@@ -47,7 +47,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
     const bool         read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
     const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
     const VkDeviceSize hit           = HIT_BYTES + (paths ? PATH_BYTES : 0);
-    const VkDeviceSize beams = most_beams(pixels), tiles = ((paths ? pixels : beams) + 3) / 4 * 4;
+    const VkDeviceSize beams = max_beams(pixels), tiles = ((paths ? pixels : beams) + 3) / 4 * 4;
     const VkDeviceSize results = pixels * rows_of_results(noise, lights) * RESULT_BYTES;
     const struct {
         Buffer      *buffer;
@@ -111,7 +111,7 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
 
 /* The most pixels that a band may have on this device.  All of its buffers must fit into the
    device's memory, and none may be longer than shaders can read. */
-static uint64_t most_pixels(const Gpu *gpu, bool paths, uint32_t lights)
+static uint64_t max_pixels(const Gpu *gpu, bool paths, uint32_t lights)
 {
     const uint64_t                rows     = RESULT_ROWS + lights;
     const uint64_t                hit      = HIT_BYTES + (paths ? PATH_BYTES : 0);
@@ -136,8 +136,7 @@ uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t
 {
     Gpu           *gpu    = &rendering->renderer->gpu;
     const uint64_t across = round_to_tiles(cover->width) + 2 * halo;
-    for (uint64_t pixels = most_pixels(gpu, paths, lights); pixels >= BAND_PIXELS_MIN;
-         pixels /= 2) {
+    for (uint64_t pixels = max_pixels(gpu, paths, lights); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within((uint32_t)across, pixels);
         rows          = rows > 2 * halo + TILE ? rows - 2 * halo : TILE;
         rows          = rows < cover->height ? rows : cover->height;

@@ -18,7 +18,7 @@
 static_assert(WORD_OF(items) == ITEMS_WORD && WORD_OF(groups) == GROUPS_WORD &&
                   WORD_OF(stopped) == STOPPED_WORD && WORD_OF(ran) == RAN_WORD,
               "next_dispatch.comp");
-static_assert((int)GROUP_LISTS == 1 + KRS_MOST_MARCH_GROUPS &&
+static_assert((int)GROUP_LISTS == 1 + KRS_MAX_MARCH_GROUPS &&
                   (int)PERSPECTIVE == (int)KRS_PERSPECTIVE &&
                   (int)ORTHOGRAPHIC == (int)KRS_ORTHOGRAPHIC && (int)PANORAMA == (int)KRS_PANORAMA,
               "compile.h");
@@ -41,7 +41,7 @@ static double next_slice(double items, double ms, double target_ms)
 /* The workgroups that have so many items. */
 static uint32_t groups_of_slice(double items, double in_group)
 {
-    return (uint32_t)fmin(fmax(items / in_group, 1), MOST_GROUPS);
+    return (uint32_t)fmin(fmax(items / in_group, 1), MAX_GROUPS);
 }
 
 /* A phase may turn out to have more passes than was expected, but reported progress never
@@ -181,7 +181,7 @@ static double weight_of(const Job *job, const Dispatch *dispatch)
            (dispatch->phase == KRS_PHASE_PRIMARY ? fmax(dispatch->work.steps / steps, 1) : 1);
 }
 
-static uint32_t most_groups(Job *job, const Dispatch *dispatch)
+static uint32_t max_groups(Job *job, const Dispatch *dispatch)
 {
     const double at_once = *items_at_once(job, dispatch->phase, dispatch->shader);
     return groups_of_slice(at_once, weight_of(job, dispatch));
@@ -197,7 +197,7 @@ static void record(Job *job, uint32_t i)
                                         items->each,
                                         items->resets,
                                         dispatch->in_group,
-                                        most_groups(job, dispatch),
+                                        max_groups(job, dispatch),
                                         i + 1,
                                         dispatch->clears};
     WorkBlock               work     = dispatch->work;
@@ -282,7 +282,7 @@ bool dispatch_finish(Job *job)
 static bool add_to_chain(Job *job, const Dispatch *dispatch)
 {
     Chain *chain = &job->chain;
-    if (chain->count == MOST_CHAINED && !dispatch_finish(job))
+    if (chain->count == MAX_CHAINED && !dispatch_finish(job))
         return false;
     chain->list[chain->count++] = *dispatch;
     return true;
@@ -365,7 +365,7 @@ LaneBudget lane_budget(const Job *job)
 {
     uint32_t steps = job->options.steps_at_once;
     if (job->schedule == KRS_SCHEDULE_REFILL)
-        steps = 8 * steps < MOST_LANE_STEPS ? 8 * steps : MOST_LANE_STEPS;
+        steps = 8 * steps < MAX_LANE_STEPS ? 8 * steps : MAX_LANE_STEPS;
     steps = rendering_steps_within(job->rendering, steps);
     if (job->schedule == KRS_SCHEDULE_REFILL)
         return (LaneBudget){job->gpu->refill_lanes, 128, steps};

@@ -6,13 +6,13 @@
 #include <assert.h>
 #include <math.h>
 
-static_assert((int)MOST_EMISSIVE == (int)KRS_MOST_EMISSIVE, "the same number of balls");
+static_assert((int)MAX_EMISSIVE == (int)KRS_MAX_EMISSIVE, "the same number of balls");
 
 /* Light is looked for so far from the eye, in parts of the distance of the target, where the scene
    has no end. */
 #define REACH 16.0
 /* Balls are not divided that are smaller than this, in parts of that distance. */
-#define LEAST_RADIUS 0.08
+#define MIN_RADIUS 0.08
 
 /* A distance in the scene, as the camera sees it. */
 static double find_scale(const KrsCamera *camera)
@@ -35,11 +35,11 @@ static void find_region(const KrsProgram *program, const KrsCamera *camera, doub
 }
 
 uint32_t emissive_find(const KrsProgram *program, const KrsCamera *camera, KrsFrame *frame,
-                       const double rebase_origin[3], EmissiveBlock balls[MOST_EMISSIVE])
+                       const double rebase_origin[3], EmissiveBlock balls[MAX_EMISSIVE])
 {
-    KrsEmissive  found[KRS_MOST_EMISSIVE];
+    KrsEmissive  found[KRS_MAX_EMISSIVE];
     double       low[3], high[3];
-    const double least = LEAST_RADIUS * find_scale(camera);
+    const double least = MIN_RADIUS * find_scale(camera);
     find_region(program, camera, low, high);
     const size_t count = krs_frame_emissive(frame, low, high, least, found);
     for (size_t i = 0; i < count; i++) {

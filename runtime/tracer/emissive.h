@@ -8,6 +8,6 @@
 
 /* Finds them, relative to the origin of points.  Returns how many. */
 uint32_t emissive_find(const KrsProgram *program, const KrsCamera *camera, KrsFrame *frame,
-                       const double rebase_origin[3], EmissiveBlock balls[MOST_EMISSIVE]);
+                       const double rebase_origin[3], EmissiveBlock balls[MAX_EMISSIVE]);
 
 #endif

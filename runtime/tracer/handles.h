@@ -85,7 +85,7 @@ typedef struct Band {
 
 /* In place of a march group's number: all components but planes, which rays intersect without a
    march. */
-enum { MARCH_WITHOUT_PLANES = 1 + KRS_MOST_MARCH_GROUPS };
+enum { MARCH_WITHOUT_PLANES = 1 + KRS_MAX_MARCH_GROUPS };
 /* Likewise: all components, which each ray marches scene part by scene part (packed.glsl). */
 enum { MARCH_PACKED = 1 + MARCH_WITHOUT_PLANES, MARCH_KINDS };
 
@@ -114,7 +114,7 @@ struct KrsRendering {
     /* The number of the caller's zones that shaders of this frame have room for. */
     uint32_t zone_slots;
     /* The largest number that any shaders have room for. */
-    uint32_t   most_zone_slots;
+    uint32_t   max_zone_slots;
     bool       camera_relative; /* this frame's points are relative to the camera */
     KrsPurpose purpose;
     RayKind    scene_rays; /* the kind for the scene's own cameras */

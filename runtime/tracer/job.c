@@ -31,7 +31,7 @@ const Shader *job_pixel_shader(const Job *job, PixelShader shader)
 
 bool job_has_beams(const Job *job)
 {
-    const uint32_t least = MOST_BEAM_STEPS / 2;
+    const uint32_t least = MAX_BEAM_STEPS / 2;
     return !job->options.no_beams && !job->rays && job->view.camera.projection != KRS_PANORAMA &&
            job->view.camera.aperture == 0 && /* else the rays of a tile do not meet in the eye */
            rendering_has_beams(job->rendering, job->options.trace) &&

@@ -24,8 +24,8 @@ typedef struct Items {
 typedef struct LaneBudget {
     uint32_t lanes, items_per_lane, steps;
 } LaneBudget;
-#define MOST_LANE_STEPS 16384 /* for all items that a lane takes in a dispatch */
-#define MOST_BEAM_STEPS 256   /* for a beam, as in trace.comp */
+#define MAX_LANE_STEPS 16384 /* for all items that a lane takes in a dispatch */
+#define MAX_BEAM_STEPS 256   /* for a beam, as in trace.comp */
 
 typedef struct Dispatch {
     KrsPhase      phase;
@@ -40,7 +40,7 @@ typedef struct Dispatch {
 
 /* Dispatches that wait to be submitted together. */
 typedef struct Chain {
-    Dispatch list[MOST_CHAINED];
+    Dispatch list[MAX_CHAINED];
     uint32_t count;
 } Chain;
 
@@ -54,10 +54,10 @@ typedef struct Job {
     const KrsRays   *rays; /* a list of rays; NULL: they are those of the view's camera */
     uint32_t         first_rows, later_rows; /* of results that rays store: the first, others */
     FrameBlock       frame;
-    EmissiveBlock    emissive[MOST_EMISSIVE]; /* frame.emissive_count of them */
-    double           rebase_origin[3];        /* points on the device are relative to it */
-    bool             begins_outside;          /* all rays begin outside of all solids */
-    KrsWindow        cover;                   /* the crop, extended to whole tiles */
+    EmissiveBlock    emissive[MAX_EMISSIVE]; /* frame.emissive_count of them */
+    double           rebase_origin[3];       /* points on the device are relative to it */
+    bool             begins_outside;         /* all rays begin outside of all solids */
+    KrsWindow        cover;                  /* the crop, extended to whole tiles */
     KrsWindow        window;           /* the pixels whose rays may meet what is marched now */
     KrsRenderStats  *stats;            /* the job adds to them */
     double           part_begun, part; /* progress before these samples; their part of 1 */

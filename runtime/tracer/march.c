@@ -10,7 +10,7 @@
 #include "runtime/tracer/pixel_filter.h"
 #include "runtime/tracer/view.h"
 
-#define MOST_PASS_STEPS 2048 /* the steps of a pass double up to this */
+#define MAX_PASS_STEPS 2048 /* the steps of a pass double up to this */
 
 bool march_clear(Job *job)
 {
@@ -61,11 +61,11 @@ static LaneBudget beam_budget(const Job *job, uint32_t most)
     LaneBudget budget     = lane_budget(job);
     budget.items_per_lane = budget.items_per_lane < most ? budget.items_per_lane : most;
     for (; budget.items_per_lane > 1; budget.items_per_lane /= 2) {
-        uint32_t half = (budget.items_per_lane + 1) * MOST_BEAM_STEPS / 2; /* as in job_has_beams */
+        uint32_t half = (budget.items_per_lane + 1) * MAX_BEAM_STEPS / 2; /* as in job_has_beams */
         if (rendering_steps_within(job->rendering, half) == half)
             break;
     }
-    budget.steps = (budget.items_per_lane + 1) * MOST_BEAM_STEPS;
+    budget.steps = (budget.items_per_lane + 1) * MAX_BEAM_STEPS;
     return budget;
 }
 
@@ -114,7 +114,7 @@ static uint32_t next_steps(const Job *job, const ControlBlock *control, uint32_t
 {
     if (control->source != ITEMS_QUEUED)
         steps = job->options.steps_at_once;
-    else if (steps < MOST_PASS_STEPS)
+    else if (steps < MAX_PASS_STEPS)
         steps *= 2;
     return rendering_steps_within(job->rendering, steps);
 }

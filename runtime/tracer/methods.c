@@ -32,11 +32,11 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
 
 /* The most iterations of all loops of an invocation together.  Some devices end loops silently
    after 65,535 iterations, and there must be enough left to finish an item that is begun. */
-#define MOST_ITERATIONS 24576
+#define MAX_ITERATIONS 24576
 
 uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted)
 {
-    uint32_t most = MOST_ITERATIONS / (1 + rendering->program->loops);
+    uint32_t most = MAX_ITERATIONS / (1 + rendering->program->loops);
     return wanted < most ? wanted : most > 0 ? most : 1;
 }
 
@@ -84,7 +84,7 @@ static bool prefers_few_shaders(const KrsRendering *rendering)
 bool rendering_gathers_noises(const KrsRendering *rendering)
 {
     return rendering->purpose == KRS_FOR_SMALL_PICTURES && gpu_is_cpu(&rendering->renderer->gpu) &&
-           rendering->program->noises >= KRS_LEAST_FUSED_NOISES;
+           rendering->program->noises >= KRS_MIN_FUSED_NOISES;
 }
 
 /* By default only on devices of type CPU: others skip far components by branches. */

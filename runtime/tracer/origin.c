@@ -20,9 +20,9 @@ enum { GRID = 8, RAYS = GRID * GRID };
 /* Rays end at this part of a pixel from the surface, which is near enough to tell how far it is. */
 static const double PART_OF_PIXEL = 0.25;
 
-/* A part of what is seen may be blurred by up to MOST_BLUR.  So may all of it, where coordinates are not
+/* A part of what is seen may be blurred by up to MAX_BLUR.  So may all of it, where coordinates are not
    MUCH_GAIN times as large as camera-relative ones. */
-static const double MOST_BLUR = 2, MUCH_GAIN = 6;
+static const double MAX_BLUR = 2, MUCH_GAIN = 6;
 
 /* What is seen from the eye, or a bound on it. */
 typedef struct Sight {
@@ -70,13 +70,13 @@ static bool blurs_normals(const Viewer *viewer, const Sight *sight)
     size_t blurred = 0;
     for (size_t i = 0; i < sight->count; i++) {
         const double coordinate = largest3(sight->hits[i].point), t = sight->hits[i].t;
-        if (blurs(viewer, coordinate, t, KRS_LEAST_GAIN, MOST_BLUR))
+        if (blurs(viewer, coordinate, t, KRS_MIN_GAIN, MAX_BLUR))
             return true;
-        blurred += blurs(viewer, coordinate, t, MUCH_GAIN, KRS_LEAST_BLUR);
+        blurred += blurs(viewer, coordinate, t, MUCH_GAIN, KRS_MIN_BLUR);
     }
     return sight->count > 0 ? 2 * blurred > sight->count
                             : blurs(viewer, sight->eye - sight->nearest, sight->nearest, MUCH_GAIN,
-                                    KRS_LEAST_BLUR);
+                                    KRS_MIN_BLUR);
 }
 
 /* The nearest point that is seen; the eye, where nothing is. */

@@ -13,7 +13,7 @@
 
 /* Of short items; all loops of a lane together may have 32,768 turns. */
 #define SHORT_ITEMS_OF_LANE 64
-#define LEAST_GROUPS        64 /* enough for all cores of the device */
+#define MIN_GROUPS          64 /* enough for all cores of the device */
 
 /* ---- making a plan ---- */
 
@@ -99,11 +99,11 @@ static Items items_of(const WorkBlock *work, ListId list)
 static LaneBudget budget_of_rays(const Job *job, uint32_t count)
 {
     LaneBudget budget = lane_budget(job);
-    budget.steps      = rendering_steps_within(job->rendering, MOST_LANE_STEPS);
+    budget.steps      = rendering_steps_within(job->rendering, MAX_LANE_STEPS);
     /* Loops in the distance leave a lane steps for few items. */
     bool loops = job->rendering->program->loops > 0;
     while (budget.lanes * budget.items_per_lane > 64 &&
-           (loops || count / (budget.lanes * budget.items_per_lane) < LEAST_GROUPS))
+           (loops || count / (budget.lanes * budget.items_per_lane) < MIN_GROUPS))
         budget.items_per_lane /= 2;
     return budget;
 }
@@ -118,7 +118,7 @@ static LaneBudget budget_of_items(const Job *job, const Pass *pass, uint32_t cou
         return budget;
     budget.items_per_lane = SHORT_ITEMS_OF_LANE;
     while (budget.items_per_lane > least &&
-           count / (budget.lanes * budget.items_per_lane) < LEAST_GROUPS)
+           count / (budget.lanes * budget.items_per_lane) < MIN_GROUPS)
         budget.items_per_lane /= 2;
     return budget;
 }
@@ -165,7 +165,7 @@ static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
 static bool run_items(Job *job, const Pass *passes, size_t count, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dispatch      dispatches[MOST_FUSED];
+    Dispatch      dispatches[MAX_FUSED];
     control->source = ITEMS_FRESH;
     for (size_t i = 0; i < count; i++)
         dispatches[i] = dispatch_of_pass(job, &passes[i], work);
@@ -188,7 +188,7 @@ static size_t count_fused(const Plan *plan, size_t first)
 {
     size_t count = 1;
     while (first + count < plan->count && plan->passes[first + count].with_previous &&
-           count < MOST_FUSED)
+           count < MAX_FUSED)
         count++;
     return count;
 }

@@ -43,14 +43,14 @@ typedef struct Pass {
     PassConstants constants;
 } Pass;
 
-enum { MOST_FUSED = 1 + KRS_MOST_MARCH_GROUPS }; /* passes in one submission */
+enum { MAX_FUSED = 1 + KRS_MAX_MARCH_GROUPS }; /* passes in one submission */
 
 typedef struct Plan {
     Gpu     *gpu; /* whose allocator the passes come from */
     Pass    *passes;
     size_t   count, room;
-    double   weight;                             /* of all passes together */
-    March    marches[2 + KRS_MOST_MARCH_GROUPS]; /* of primary rays, and of those of paths */
+    double   weight;                            /* of all passes together */
+    March    marches[2 + KRS_MAX_MARCH_GROUPS]; /* of primary rays, and of those of paths */
     size_t   march_count;
     uint32_t halo;           /* pixels on each side of a band that are traced as well */
     bool     has_paths;      /* each pixel follows a path */

@@ -56,11 +56,10 @@ double point_query_size(const KrsRendering *rendering)
 
 bool point_query_run(KrsRendering *rendering, uint32_t count, double step)
 {
-    const PointWorkBlock work = {
-        .count = count, .taps = step > 0 ? 7 : 1, .least_step = (float)step};
-    Gpu    *gpu    = &rendering->renderer->gpu;
-    Shader *shader = rendering_point_query(rendering);
-    double  ms     = 0;
+    const PointWorkBlock work = {.count = count, .taps = step > 0 ? 7 : 1, .min_step = (float)step};
+    Gpu                 *gpu  = &rendering->renderer->gpu;
+    Shader              *shader = rendering_point_query(rendering);
+    double               ms     = 0;
     if (!shader || !gpu_begin(gpu))
         return false;
     rendering_dispatch(rendering, shader, rendering->points_set, &work, sizeof work,

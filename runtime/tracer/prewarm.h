@@ -8,7 +8,7 @@
 
 /* Makes at most SHADERS_AT_ONCE shaders, and has the driver run each once in the background.  The
    scene's set may be VK_NULL_HANDLE. */
-enum { SHADERS_AT_ONCE = 16 + 2 * KRS_MOST_MARCH_GROUPS };
+enum { SHADERS_AT_ONCE = 16 + 2 * KRS_MAX_MARCH_GROUPS };
 bool shaders_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const ShaderRequest *asked,
                   size_t count, double *spirv_ms, double *pipeline_ms);
 

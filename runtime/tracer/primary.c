@@ -29,10 +29,10 @@ static double distance_to(const Job *job, const KrsMarchGroup *march_group)
 }
 
 /* Lists the numbers of the march groups, counted from 1, the nearest first.  Returns how many. */
-static size_t sort_groups(const Job *job, uint32_t groups[KRS_MOST_MARCH_GROUPS])
+static size_t sort_groups(const Job *job, uint32_t groups[KRS_MAX_MARCH_GROUPS])
 {
     const KrsProgram *program = job->rendering->program;
-    double            distance[KRS_MOST_MARCH_GROUPS];
+    double            distance[KRS_MAX_MARCH_GROUPS];
     for (uint32_t number = 0; number < program->march_group_count; number++) {
         double   own = distance_to(job, &program->march_groups[number]);
         uint32_t at  = number;
@@ -97,7 +97,7 @@ static bool find_own_normals(Job *job, uint32_t march_group, OwnGroup *group)
 
 static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
 {
-    uint32_t     groups[KRS_MOST_MARCH_GROUPS];
+    uint32_t     groups[KRS_MAX_MARCH_GROUPS];
     const size_t count       = sort_groups(job, groups);
     const bool   own_normals = primary && job->options.normals != KRS_NORMALS_ANALYTIC;
     for (size_t i = 0; i < count; i++) {

@@ -14,7 +14,7 @@ typedef struct OwnGroup {
 
 /* The shaders that find normals in this frame. */
 typedef struct Primary {
-    OwnGroup groups[1 + KRS_MOST_MARCH_GROUPS];
+    OwnGroup groups[1 + KRS_MAX_MARCH_GROUPS];
     size_t   group_count; /* 0: `normals` finds those of all hits */
     Shader  *normals;     /* for all components */
 } Primary;

@@ -20,7 +20,7 @@
 #include "runtime/tracer/rendering.h"
 #include "runtime/tracer/slots.h"
 
-enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
+enum { MAX_STEPS = 8192, MAX_LANE_STEPS = 16384 };
 
 /* What single precision can square. */
 static bool is_in_reach(const double (*vectors)[3], size_t count)
@@ -61,7 +61,7 @@ static void describe(const AnswerBlock *answer, KrsHit *hit)
 
 /* Points may be so many times as far from the base as from the middle between them: normals are differences
    over a thousandth of the coordinates, which may be a hundredth of what is seen then. */
-static const double MOST_REACH = 10;
+static const double MAX_REACH = 10;
 /* How large the surroundings of a single point are, in parts of the scene. */
 static const double PART_OF_SCENE = 0.1;
 
@@ -102,7 +102,7 @@ static bool wants_base(Asker *asker, const KrsHit *hits, uint32_t count, double 
     if (found <= 1)
         half = PART_OF_SCENE * size;
     asker->step = fmax(least, fmin(10 * least, 1e-3 * half));
-    return rendering_rebases(asker->rendering) && reach > MOST_REACH * half;
+    return rendering_rebases(asker->rendering) && reach > MAX_REACH * half;
 }
 
 /* ---- points ---- */
@@ -180,7 +180,7 @@ static bool prepare(KrsRendering *rendering)
 
 static void set_frame(KrsRendering *rendering, double tolerance)
 {
-    const FrameBlock frame = {.error = (float)tolerance, .most_steps = MOST_STEPS};
+    const FrameBlock frame = {.error = (float)tolerance, .most_steps = MAX_STEPS};
     memcpy(rendering->frame.bytes, &frame, sizeof frame);
 }
 
@@ -215,7 +215,7 @@ static bool march_rays(KrsRendering *rendering, uint32_t count)
         items_per_lane /= 2; /* groups enough for every core of the device */
     uint32_t  groups = (count + lanes * items_per_lane - 1) / (lanes * items_per_lane);
     WorkBlock work   = {
-          .steps  = rendering_steps_within(rendering, refill ? MOST_LANE_STEPS : MOST_STEPS),
+          .steps  = rendering_steps_within(rendering, refill ? MAX_LANE_STEPS : MAX_STEPS),
           .groups = groups,
           .stride = rendering_spread(rendering, groups)};
     ControlBlock *control = rendering->control.bytes;
@@ -307,9 +307,9 @@ static bool answer_rays(Asker *asker, const Question *ask, uint32_t count, KrsHi
 /* Some rays of a batch tell what is hit, also where single precision would miss it. */
 static bool look(Asker *asker, const Question *ask, uint32_t count)
 {
-    enum { MOST_LOOKS = 16 };
-    KrsHit         hits[MOST_LOOKS];
-    const uint32_t looks = count < MOST_LOOKS ? count : MOST_LOOKS;
+    enum { MAX_LOOKS = 16 };
+    KrsHit         hits[MAX_LOOKS];
+    const uint32_t looks = count < MAX_LOOKS ? count : MAX_LOOKS;
     double         base[3];
     for (uint32_t i = 0; i < looks; i++) {
         const size_t ray = (size_t)i * count / looks;

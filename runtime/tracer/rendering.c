@@ -196,8 +196,8 @@ static bool change_scene(KrsRendering *rendering, const KrsScene *scene)
 {
     rendering->parameters = rendering->table_rows = rendering->table_cells = (Buffer){0};
     rendering->table_inputs                                                = NULL;
-    rendering->zone_slots = rendering->most_zone_slots = 0;
-    rendering->camera_relative                         = false;
+    rendering->zone_slots = rendering->max_zone_slots = 0;
+    rendering->camera_relative                        = false;
     set_scene(rendering, scene);
     return scene_buffers_create(rendering) && shaders_create(rendering, rendering->purpose);
 }
@@ -280,14 +280,14 @@ void krs_rendering_free(KrsRendering *rendering)
    room serve as well. */
 static bool choose_zones(KrsRendering *rendering, size_t count)
 {
-    uint32_t most              = rendering->most_zone_slots;
+    uint32_t most              = rendering->max_zone_slots;
     rendering->camera_relative = false;
     rendering->zone_slots      = count > 0 ? most : 0;
     if (count <= most)
         return true;
     for (most = 1; most < count;)
         most *= 2;
-    rendering->zone_slots = rendering->most_zone_slots = most;
+    rendering->zone_slots = rendering->max_zone_slots = most;
     return shaders_create(rendering, rendering->purpose);
 }
 

@@ -46,6 +46,6 @@ void rendering_dispatch(KrsRendering *rendering, const Shader *shader, VkDescrip
 void rendering_dispatch_counted(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
                                 const void *work, uint32_t work_bytes);
 /* The most workgroups of a dispatch on any device. */
-enum { MOST_GROUPS = 65535 };
+enum { MAX_GROUPS = 65535 };
 
 #endif

@@ -12,7 +12,7 @@
 
 enum { ROW_BYTES = 4 * sizeof(float), CELL_BYTES = 2 * sizeof(uint32_t) };
 
-static VkDeviceSize most_texels(const Gpu *gpu, uint32_t texel_bytes)
+static VkDeviceSize max_texels(const Gpu *gpu, uint32_t texel_bytes)
 {
     const VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
     return gpu->texels ? limits->maxTexelBufferElements
@@ -25,7 +25,7 @@ static bool table_create(KrsRendering *rendering, uint32_t binding, Buffer *buff
 {
     Gpu         *gpu   = &rendering->renderer->gpu;
     VkDeviceSize bytes = buffer_texel_bytes((VkDeviceSize)texels * texel_bytes);
-    VkDeviceSize most  = most_texels(gpu, texel_bytes);
+    VkDeviceSize most  = max_texels(gpu, texel_bytes);
     if (bytes / texel_bytes > most) {
         gpu_refuse(gpu, KRS_NO_DEVICE,
                    "the device has no room for the " TABLES

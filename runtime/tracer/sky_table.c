@@ -168,7 +168,7 @@ static double lobe(double cosine, double roughness)
     return roughness < 0 ? cosine : cosine / (spread * spread);
 }
 
-#define LEAST_OF_LOBE 1e-5 /* of its peak: less is left out */
+#define MIN_OF_LOBE 1e-5 /* of its peak: less is left out */
 
 /* The weights of the texels of all rows, by their distance in columns, as seen from the middle of a
    texel of row `at`. */
@@ -183,8 +183,7 @@ static void find_lobe(const Directions *of, uint32_t at, double roughness, doubl
                                   sin(latitude) * sin(other) * cos(2 * PI * x / of->width);
             double *weight = &weights[(size_t)y * of->width + x];
             *weight        = lobe(fmin(cosine, 1), roughness);
-            *weight = *weight > LEAST_OF_LOBE * lobe(1, roughness) ? *weight * texel_angle(of, y)
-                                                                   : 0;
+            *weight = *weight > MIN_OF_LOBE * lobe(1, roughness) ? *weight * texel_angle(of, y) : 0;
             sum += *weight;
         }
     for (size_t i = 0; i < count_of(of); i++)

@@ -9,7 +9,7 @@ static uint32_t slots_without_values(const KrsProgram *program)
     return program->parameter_slots + KRS_MOST_ZONES + 1;
 }
 
-static uint32_t most_slots(const KrsRendering *rendering)
+static uint32_t max_slots(const KrsRendering *rendering)
 {
     return rendering->renderer->gpu.properties.limits.maxUniformBufferRange / (4 * sizeof(float));
 }
@@ -19,14 +19,14 @@ bool rendering_rebases(const KrsRendering *rendering)
     const KrsProgram *program = rendering->program;
     return program->camera_relative &&
            slots_without_values(program) + program->value_slots + program->camera_relative_slots <=
-               most_slots(rendering);
+               max_slots(rendering);
 }
 
 uint32_t rendering_value_slots(const KrsRendering *rendering)
 {
     const KrsProgram *program = rendering->program;
     uint32_t          slots   = slots_without_values(program) + program->value_slots;
-    return slots <= most_slots(rendering) ? program->value_slots : 0;
+    return slots <= max_slots(rendering) ? program->value_slots : 0;
 }
 
 uint32_t rendering_slots(const KrsRendering *rendering)
@@ -34,7 +34,7 @@ uint32_t rendering_slots(const KrsRendering *rendering)
     const KrsProgram *program = rendering->program;
     uint32_t          slots   = slots_without_values(program) + rendering_value_slots(rendering);
     slots += rendering_rebases(rendering) ? program->camera_relative_slots : 0;
-    if (slots <= most_slots(rendering))
+    if (slots <= max_slots(rendering))
         return slots;
     gpu_refuse(&rendering->renderer->gpu, KRS_NO_DEVICE,
                "the device has no room for the scene's %u parameters",

@@ -23,7 +23,7 @@
 
 enum {
     /* Only one thread writes at any time, and each needs memory for a chunk. */
-    MOST_WORKERS = 8
+    MAX_WORKERS = 8
 };
 
 typedef struct ExrWriter {
@@ -269,7 +269,7 @@ static void *work(void *user)
 static uint32_t count_workers(const Chunks *chunks)
 {
     cpu_set_t processors;
-    uint32_t  count = MOST_WORKERS;
+    uint32_t  count = MAX_WORKERS;
     if (sched_getaffinity(0, sizeof processors, &processors) == 0 &&
         (uint32_t)CPU_COUNT(&processors) < count)
         count = (uint32_t)CPU_COUNT(&processors);
@@ -281,7 +281,7 @@ static uint32_t count_workers(const Chunks *chunks)
 static void run_workers(Chunks *chunks)
 {
     const Picture *picture = chunks->writer->picture;
-    Worker         workers[MOST_WORKERS];
+    Worker         workers[MAX_WORKERS];
     uint32_t       count = 0, wanted = count_workers(chunks);
     size_t         samples = picture->channel_count * chunks->lines * picture->crop_width;
     for (; count < wanted; count++) {

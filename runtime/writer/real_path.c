@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_LINKS = 40 };
+enum { MAX_LINKS = 40 };
 
 char *path_folder(const char *path)
 {
@@ -57,7 +57,7 @@ char *real_path(const char *path)
     char *place = strdup(path);
     if (!place)
         return NULL;
-    for (int links = 0; links < MOST_LINKS; links++) {
+    for (int links = 0; links < MAX_LINKS; links++) {
         char *real = realpath(place, NULL), *next = NULL;
         bool  missing = !real && errno == ENOENT;
         if (missing && !(next = follow_link(place)) && errno != ENOMEM)

@@ -25,10 +25,10 @@
 
 /* In pixels at the place: how far a hit may be off, the permitted error and what stays open; and
    how deep or how near it is what rays may graze. */
-#define MOST_OFF   (0.25 + 2.0 / 64)
-#define MOST_GRAZE (1.0 / 16)
+#define MAX_OFF   (0.25 + 2.0 / 64)
+#define MAX_GRAZE (1.0 / 16)
 /* The share of rays that graze, or end where several copies meet. */
-#define MOST_EXCUSED 0.05
+#define MAX_EXCUSED 0.05
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT, ASKED = 400 };
 
 typedef struct Fixture {
@@ -102,7 +102,7 @@ static double distance_at(Fixture *fixture, Vec p)
 
 /* The deepest, or where nothing is the nearest, that a ray comes to a solid within some pixels
    around a place, before the end. */
-static double least_around(Fixture *fixture, Line ray, double t, double end, double pixel)
+static double min_around(Fixture *fixture, Line ray, double t, double end, double pixel)
 {
     double least = HUGE_VAL;
     for (int i = -64; i <= 256 && t + i / 16.0 * pixel < end; i++)
@@ -137,13 +137,13 @@ static Verdict judge(Fixture *fixture, Line ray, const Answer *truth, const Answ
     double first = fmin(truth->t, said->t);
     if (first == HUGE_VAL)
         return AGREED;
-    double pixel = pixel_at(fixture, first), most = MOST_OFF * pixel + rounding;
+    double pixel = pixel_at(fixture, first), most = MAX_OFF * pixel + rounding;
     if (fabs(truth->t - said->t) > most) {
         /* The one that goes farther has gone through, or passed by, next to nothing. */
         bool   through = truth->t < said->t;
-        double least   = through ? least_around(fixture, ray, first, said->t - pixel / 16, pixel)
+        double least   = through ? min_around(fixture, ray, first, said->t - pixel / 16, pixel)
                                  : distance_at(fixture, line_at(ray, first));
-        double graze   = MOST_GRAZE * pixel + rounding;
+        double graze   = MAX_GRAZE * pixel + rounding;
         return (through ? least > -graze : least < graze) ? GRAZED : WRONG_HIT;
     }
     if (truth->component == said->component && truth->level == said->level &&
@@ -180,7 +180,7 @@ static bool is_right(const Fixture *fixture, const Tally *tally, size_t asked)
 {
     size_t wrong   = tally->verdicts[WRONG_HIT] + tally->verdicts[WRONG_IDS];
     size_t excused = tally->verdicts[GRAZED] + tally->verdicts[MANY_MEET];
-    if (wrong == 0 && (double)excused <= MOST_EXCUSED * (double)asked)
+    if (wrong == 0 && (double)excused <= MAX_EXCUSED * (double)asked)
         return true;
     print_message(
         "# %s, %s: %zu rays, %zu hits, %zu graze, %zu where several meet, %zu hits and %zu ids "

@@ -198,7 +198,7 @@ static const double settings[][5] = {
 static const double brushed[] = {0, 0.5, 0.8, 0.95};
 
 /* Between rows of the table some of the light that bounces more than once is lost or appears. */
-#define MOST_WRONG 0.01
+#define MAX_WRONG 0.01
 
 static void lamps_are_mirrored_by_both_widths(void **state)
 {
@@ -220,7 +220,7 @@ static void lamps_are_mirrored_by_both_widths(void **state)
             for (int j = 0; j < 2; j++) {
                 const double found = look_at_plate(j ? KRS_INTEGRATOR_DIRECT
                                                      : KRS_INTEGRATOR_PREVIEW);
-                if (!(fabs(found - right) <= MOST_WRONG * right + 1e-5)) {
+                if (!(fabs(found - right) <= MAX_WRONG * right + 1e-5)) {
                     print_message("# setting %zu, anisotropy %.2f, integrator %d: %.5f instead of "
                                   "%.5f\n",
                                   i, brushed[k], j, found, right);

@@ -14,8 +14,8 @@
 
 /* What is asked for: noise as a share of that of independent rays, widths as shares of what there
    is. */
-#define MOST_NOISE       0.6
-#define MOST_WIDTH_ERROR 0.03
+#define MAX_NOISE       0.6
+#define MAX_WIDTH_ERROR 0.03
 
 typedef struct Match {
     int    umbra, penumbra, lit; /* pixels; umbra and lit with all pixels around */
@@ -62,7 +62,7 @@ static bool area_is_right(const char *name, const KrsPicture *picture, const Sho
                   name, shot->options.samples, m.umbra, m.penumbra, m.lit, m.wrong, m.noise,
                   m.expected, m.lift);
     assert_true(m.umbra > 200 && m.penumbra > 200 && m.lit > 200);
-    return m.wrong == 0 && m.noise < MOST_NOISE * m.expected && fabs(m.lift) < MOST_LIFT;
+    return m.wrong == 0 && m.noise < MAX_NOISE * m.expected && fabs(m.lift) < MAX_LIFT;
 }
 
 /* The place of a row at which a rising profile passes a level, in pixels. */
@@ -82,7 +82,7 @@ static double width_of(const double *profile, int count)
 /* Across the ledge's shadow, whose edge runs down the picture: the mean of all rows. */
 static bool width_is_right(const KrsPicture *picture, const Shot *shot)
 {
-    double seen[MOST_PIXELS] = {0}, truth[MOST_PIXELS] = {0};
+    double seen[MAX_PIXELS] = {0}, truth[MAX_PIXELS] = {0};
     compute_truths(share_above_edge, shot, 1);
     for (int k = 0; k < truths.width * truths.height; k++) {
         seen[k % truths.width] += fmax(0, seen_at(picture, k)) / truths.height;
@@ -91,7 +91,7 @@ static bool width_is_right(const KrsPicture *picture, const Shot *shot)
     double width = width_of(seen, truths.width), wanted = width_of(truth, truths.width);
     print_message("# area, edge: from 10 %% to 90 %% in %.2f pixels, in truth %.2f\n", width,
                   wanted);
-    return fabs(width / wanted - 1) < MOST_WIDTH_ERROR;
+    return fabs(width / wanted - 1) < MAX_WIDTH_ERROR;
 }
 
 static void area_shadows_are_shares_of_the_disc(void **state)
@@ -185,8 +185,8 @@ static void narrow_penumbras_converge(void **state)
     size_t              wrong    = 0;
     for (int i = 0; i < 3; i++) {
         double of_few = narrow_noise(angles[i], 16), of_many = narrow_noise(angles[i], 256);
-        wrong += !(of_many < MOST_NOISE);
-        assert_false(of_few < MOST_NOISE); /* so much would be found */
+        wrong += !(of_many < MAX_NOISE);
+        assert_false(of_few < MAX_NOISE); /* so much would be found */
     }
     assert_int_equal(wrong, 0);
 }

@@ -10,14 +10,14 @@
 #include "tests/oracle/judge.h"
 #include "tests/oracle/product.h"
 
-enum { MOST_PARTS = 12, POINTS = 80, MOST_BOUNDARY = 200000 };
+enum { MAX_PARTS = 12, POINTS = 80, MAX_BOUNDARY = 200000 };
 
 /* Of points along outlines; how far the boundary is from the nearest of them, at most. */
 static const double SPACING = 1e-3, TOLERANCE = 1.01e-3;
 
 /* ---- parts ---- */
 
-enum { MOST_TIPS = 16, MOST_CORNERS = 2 * MOST_TIPS };
+enum { MAX_TIPS = 16, MAX_CORNERS = 2 * MAX_TIPS };
 
 typedef enum Kind { CIRCLE, RECTANGLE, REGULAR, STAR, SEGMENT, ARC, ROUNDED, GROWN, KINDS } Kind;
 
@@ -73,7 +73,7 @@ static int corners_of(const Part *part, double (*corners)[2])
 
 static bool in_shape(const Part *part, double x, double y)
 {
-    double corners[MOST_CORNERS][2];
+    double corners[MAX_CORNERS][2];
     switch (part->kind) {
     case CIRCLE: return hypot(x, y) < part->a;
     case RECTANGLE: return fmax(fabs(x) - 0.5 * part->a, fabs(y) - 0.5 * part->b) < 0;
@@ -122,7 +122,7 @@ static bool in_csg_node(const Part *parts, int count, double x, double y)
 /* ---- the true boundary ---- */
 
 typedef struct Boundary {
-    double points[MOST_BOUNDARY][2];
+    double points[MAX_BOUNDARY][2];
     int    count;
 } Boundary;
 
@@ -145,7 +145,7 @@ static void draw_point(const Drawing *drawing, double x, double y, double across
         in_csg_node(drawing->parts, drawing->count, at[0] - side[0], at[1] - side[1]))
         return;
     Boundary *boundary = drawing->boundary;
-    assert_true(boundary->count < MOST_BOUNDARY);
+    assert_true(boundary->count < MAX_BOUNDARY);
     boundary->points[boundary->count][0]   = at[0];
     boundary->points[boundary->count++][1] = at[1];
 }
@@ -198,7 +198,7 @@ static void draw_part(const Drawing *drawing)
     const Part *part = drawing->part;
     double      w = 0.5 * part->a, h = 0.5 * part->b, in = part->kind == ROUNDED ? part->c : 0;
     double box[4][2] = {{w - in, h - in}, {in - w, h - in}, {in - w, in - h}, {w - in, in - h}};
-    double corners[MOST_CORNERS][2], none[2] = {0, 0};
+    double corners[MAX_CORNERS][2], none[2] = {0, 0};
     switch (part->kind) {
     case CIRCLE: draw_arc(drawing, none, part->a, 0, 2 * M_PI); break;
     case RECTANGLE: draw_corners(drawing, box, 4); break;
@@ -298,7 +298,7 @@ static double quarter(Random *random, int low, int high)
 static Part random_part(Random *random, bool even)
 {
     Part part = {.kind  = (Kind)random_below(random, KINDS),
-                 .n     = random_below(random, 4) ? 3 + random_below(random, 5) : MOST_TIPS,
+                 .n     = random_below(random, 4) ? 3 + random_below(random, 5) : MAX_TIPS,
                  .a     = quarter(random, 2, 5),
                  .b     = quarter(random, 2, 5),
                  .scale = 1,
@@ -322,7 +322,7 @@ static Part random_part(Random *random, bool even)
 
 /* Some parts, with their boundary and text. */
 typedef struct Member {
-    Part      parts[MOST_PARTS];
+    Part      parts[MAX_PARTS];
     int       count;
     Boundary  boundary;
     SceneText text;
@@ -374,14 +374,14 @@ static void loops_have_true_distances(void **state)
     static Member member;
     Random        random = {12};
     (void)state;
-    member.count = MOST_PARTS;
-    for (int i = 0; i < MOST_PARTS; i++)
-        member.parts[i] = (Part){.kind  = i < MOST_PARTS / 2 ? CIRCLE : RECTANGLE,
-                                 .a     = i < MOST_PARTS / 2 ? 0.5 : 0.75,
+    member.count = MAX_PARTS;
+    for (int i = 0; i < MAX_PARTS; i++)
+        member.parts[i] = (Part){.kind  = i < MAX_PARTS / 2 ? CIRCLE : RECTANGLE,
+                                 .a     = i < MAX_PARTS / 2 ? 0.5 : 0.75,
                                  .b     = 0.5,
                                  .scale = 1,
                                  .x     = 0.25 * (i % 6) - 0.75,
-                                 .y     = i < MOST_PARTS / 2 ? 0 : 0.125 * (i % 6),
+                                 .y     = i < MAX_PARTS / 2 ? 0 : 0.125 * (i % 6),
                                  .join  = '|'};
     find_boundary(member.parts, member.count, &member.boundary);
     check(&member,
@@ -396,7 +396,7 @@ static void copies_have_true_distances(void **state)
     static const struct {
         const char *text;
         int         count;
-        Part        parts[MOST_PARTS];
+        Part        parts[MAX_PARTS];
     } copies[] = {
         {"rectangle([0.5, 0.75]).repeat([0.5, 0.75, 0], [3, 2, 1])",
          1,

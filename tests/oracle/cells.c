@@ -226,7 +226,7 @@ static Cell cell_of(const Solid *solid, Vec p)
 }
 
 /* The least of the cells up to so many away; `side`: of these only those on the side of the point. */
-static double least_around(const Solid *solid, Vec p, int away, bool side)
+static double min_around(const Solid *solid, Vec p, int away, bool side)
 {
     const double at[3] = {p.x - solid->shift, p.y, p.z};
     Cell         own = cell_of(solid, p), low = own, high = own;
@@ -245,7 +245,7 @@ static double least_around(const Solid *solid, Vec p, int away, bool side)
     return least;
 }
 
-static double truth(const Solid *solid, Vec p) { return least_around(solid, p, 3, false); }
+static double truth(const Solid *solid, Vec p) { return min_around(solid, p, 3, false); }
 
 static bool inside(const void *user, Vec p) { return truth(user, p) <= 0; }
 
@@ -286,7 +286,7 @@ static void is_the_union(void **state)
         if (!right)
             fail_msg("%s: %.9g at %g %g %g, where the union has %.9g", solid->name, found, p.x, p.y,
                      p.z, true_distance);
-        beyond += least_around(solid, p, 1, true) > true_distance + 1e-3;
+        beyond += min_around(solid, p, 1, true) > true_distance + 1e-3;
     }
     assert_true(near > 50);
     if (solid->far_is_nearest && beyond == 0)

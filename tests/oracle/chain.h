@@ -48,7 +48,7 @@ typedef enum LinkKind {
 } LinkKind;
 extern const char *const link_names[LINK_KINDS];
 
-enum { MOST_LINKS = 40 };
+enum { MAX_LINKS = 40 };
 
 /* A primitive, or what is done to one or two solids. */
 typedef struct Link {
@@ -64,7 +64,7 @@ typedef struct Link {
 } Link;
 
 typedef struct Chain {
-    Link links[MOST_LINKS];
+    Link links[MAX_LINKS];
     int  count, root;
     bool shown[LINK_KINDS]; /* which kinds are in it */
 } Chain;

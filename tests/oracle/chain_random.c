@@ -51,7 +51,7 @@ static double size_of(const Known *known)
 
 static int add(Chain *chain, Link link)
 {
-    assert_true(chain->count < MOST_LINKS);
+    assert_true(chain->count < MAX_LINKS);
     chain->links[chain->count] = link;
     return chain->count++;
 }
@@ -202,7 +202,7 @@ static int random_solid(Chain *chain, const Recipe *recipe, int csg_nodes, Rando
                         Refusals *refusals)
 {
     int solid;
-    if (csg_nodes > 0 && chain->count < MOST_LINKS / 2) {
+    if (csg_nodes > 0 && chain->count < MAX_LINKS / 2) {
         int  left      = random_below(random, csg_nodes);
         Link link      = {.kind   = LINK_METHODS + random_below(random, LINK_KINDS - LINK_METHODS),
                           .v      = random_axis(random),
@@ -222,7 +222,7 @@ static int random_solid(Chain *chain, const Recipe *recipe, int csg_nodes, Rando
     Known known   = {.refused = true};
     if (methods)
         known = ask_about(chain, solid, NULL);
-    for (int i = 0; i < methods && !known.refused && chain->count < MOST_LINKS / 2; i++)
+    for (int i = 0; i < methods && !known.refused && chain->count < MAX_LINKS / 2; i++)
         solid = random_method(chain, solid, &known, recipe, random, refusals);
     return solid;
 }

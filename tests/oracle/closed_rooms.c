@@ -95,7 +95,7 @@ static const View views[] = {{8, 1, 0},      {2000, 1, 0}, {8, 1e-3, 0},   {8, 1
 static const unsigned sides[] = {256, 8, 16, 40};
 
 /* Light that may be lost or appear, beside noise. */
-#define MOST_LOST 0.005
+#define MAX_LOST 0.005
 
 static KrsRenderOptions options_of(PathFixture *fixture, const View *view, uint32_t bounces)
 {
@@ -119,7 +119,7 @@ static bool is_right(PathFixture *fixture, const View *view, uint32_t bounces, d
              view->size, view->place);
     Estimate found = path_fixture_estimate(fixture, options_of(fixture, view, bounces), everywhere,
                                            3);
-    return must_be_near(found, expected, MOST_LOST, name);
+    return must_be_near(found, expected, MAX_LOST, name);
 }
 
 static void rooms_lose_no_light(void **state)
@@ -151,7 +151,7 @@ static void curved_rooms_lose_no_light(void **state)
             snprintf(name, sizeof name, "curved room %zu, %u pixels", i, some[k].side);
             options.samples = PATHS / (options.crop.width * options.crop.height);
             wrong += !must_be_near(path_fixture_estimate(&fixture, options, everywhere, 3),
-                                   1 + BOUNCES, MOST_LOST, name);
+                                   1 + BOUNCES, MAX_LOST, name);
         }
         path_fixture_close(&fixture);
     }
@@ -182,7 +182,7 @@ static void low_rooms_lose_no_light(void **state)
             "wall"));
     KrsRenderOptions options = options_of(&fixture, &view, 3);
     options.camera           = 1;
-    assert_true(must_be_near(path_fixture_estimate(&fixture, options, everywhere, 3), 4, MOST_LOST,
+    assert_true(must_be_near(path_fixture_estimate(&fixture, options, everywhere, 3), 4, MAX_LOST,
                              "low room"));
     path_fixture_close(&fixture);
 }

@@ -239,12 +239,12 @@ static void every_method_has_a_row(void **state)
     }
 }
 
-enum { MOST_FAMILIES = 200 };
+enum { MAX_FAMILIES = 200 };
 
 int main(void)
 {
-    struct CMUnitTest tests[MOST_FAMILIES + 2];
-    assert(family_count <= MOST_FAMILIES);
+    struct CMUnitTest tests[MAX_FAMILIES + 2];
+    assert(family_count <= MAX_FAMILIES);
     for (size_t i = 0; i < family_count; i++)
         tests[i] = (struct CMUnitTest){families[i].name, every_method_on, NULL, NULL,
                                        (void *)(uintptr_t)&families[i]};

@@ -250,8 +250,8 @@ static void take_pictures(PathFixture *fixture, const Lit *lit, Blocks *blocks)
 /* ---- The comparison ---- */
 
 /* What may be wrong in a block beside noise, as rays begin a bit above surfaces; and in all. */
-#define MOST_WRONG     0.01
-#define MOST_WRONG_ALL 0.005
+#define MAX_WRONG     0.01
+#define MAX_WRONG_ALL 0.005
 
 static bool agrees(Estimate found, Estimate right, double part)
 {
@@ -262,10 +262,10 @@ static bool agrees(Estimate found, Estimate right, double part)
 /* The blocks that differ, in any of their colours, and whether all together do. */
 static size_t count_wrong(const Blocks *found, const Blocks *right)
 {
-    size_t wrong = !agrees(found->all, right->all, MOST_WRONG_ALL);
+    size_t wrong = !agrees(found->all, right->all, MAX_WRONG_ALL);
     for (int k = 0; k < BLOCKS; k++)
         for (int i = 0; i < 3; i++)
-            wrong += !agrees(found->of[k][i], right->of[k][i], MOST_WRONG);
+            wrong += !agrees(found->of[k][i], right->of[k][i], MAX_WRONG);
     return wrong;
 }
 

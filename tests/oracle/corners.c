@@ -10,7 +10,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-enum { MOST_POINTS = 6, POINTS = 250, BALLS = 4000 };
+enum { MAX_POINTS = 6, POINTS = 250, BALLS = 4000 };
 
 static void write_points(SceneText *text, const Vec *points, int count)
 {
@@ -24,7 +24,7 @@ static void write_points(SceneText *text, const Vec *points, int count)
 
 /* A rectangle of this half size along straight legs. */
 typedef struct Legs {
-    Vec    points[MOST_POINTS], along[MOST_POINTS], up[MOST_POINTS];
+    Vec    points[MAX_POINTS], along[MAX_POINTS], up[MAX_POINTS];
     int    count; /* of points */
     double wide, high;
 } Legs;
@@ -178,8 +178,8 @@ static void radii_belong_to_points(void **state)
     static Balls balls;
     Random       random = {44};
     for (int set = 0; set < 12; set++) {
-        Vec       points[MOST_POINTS];
-        double    radii[MOST_POINTS];
+        Vec       points[MAX_POINTS];
+        double    radii[MAX_POINTS];
         int       count = 2 + set % 4;
         SceneText text  = {.length = 0};
         for (int i = 0; i < count; i++) {

@@ -20,10 +20,10 @@
 #include "tests/oracle/twigs.h"
 
 /* What is asked for, and what a test must be able to see. */
-#define MOST_NET_ERROR 0.01  /* of the coverage */
-#define MOST_NOISE     0.003 /* one standard error, as a share of the coverage */
-#define MOST_OFF       0.001 /* the share of hits whose depth is off by more than is permitted */
-#define PLANTED_ERROR  0.1   /* a fault shows at least this much */
+#define MAX_NET_ERROR 0.01  /* of the coverage */
+#define MAX_NOISE     0.003 /* one standard error, as a share of the coverage */
+#define MAX_OFF       0.001 /* the share of hits whose depth is off by more than is permitted */
+#define PLANTED_ERROR 0.1   /* a fault shows at least this much */
 
 /* ---- Ray by ray ---- */
 
@@ -100,18 +100,18 @@ static Verdict judge_shot(const Shot *shot)
 /* How many depths may be off: the permitted share, and those of rays that meet something else
    than they should.  Of the hits that are none as large a share is before another hit as of all
    rays, and so it is behind the hits that are missed; neither is counted as such. */
-static double most_off(const Verdict *verdict)
+static double max_off(const Verdict *verdict)
 {
     double hits = (double)verdict->hits, others = (double)(verdict->extra + verdict->missed);
-    return MOST_OFF * (double)verdict->common + others * hits / (PIXELS - hits);
+    return MAX_OFF * (double)verdict->common + others * hits / (PIXELS - hits);
 }
 
 /* Whether a shot keeps what is promised; all shots of a test are looked at before it fails. */
 static bool shot_is_right(Shot shot)
 {
     Verdict verdict = judge_shot(&shot);
-    return fabs(net_error(&verdict)) < MOST_NET_ERROR && net_noise(&verdict) < MOST_NOISE &&
-           (double)verdict.off <= most_off(&verdict);
+    return fabs(net_error(&verdict)) < MAX_NET_ERROR && net_noise(&verdict) < MAX_NOISE &&
+           (double)verdict.off <= max_off(&verdict);
 }
 
 /* Every width with the default error, from both cameras, and with other errors. */
@@ -236,7 +236,7 @@ static bool samples_are_right(Shot shot, uint32_t samples)
     print_shot(&shot);
     print_message("%u samples, coverage %.5f instead of %.5f, %+.2f %% (noise %.2f %%)\n", samples,
                   mean, truth.mean, 100 * (mean / truth.mean - 1), 100 * noise);
-    return fabs(mean / truth.mean - 1) < MOST_NET_ERROR && noise < MOST_NOISE;
+    return fabs(mean / truth.mean - 1) < MAX_NET_ERROR && noise < MAX_NOISE;
 }
 
 static void samples_converge_on_the_coverage(void **state)

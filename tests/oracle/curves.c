@@ -22,7 +22,7 @@ static double line_distance(const Line *line, Vec point, double t)
 }
 
 /* The least distance between two places, by trisection. */
-static double least_between(const Line *line, Vec point, double low, double high)
+static double min_between(const Line *line, Vec point, double low, double high)
 {
     for (int i = 0; i < 80; i++) {
         double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -41,8 +41,8 @@ static double line_nearest(const Line *line, Vec point)
         double after = i < line->pieces ? line_distance(line, point, (i + 1.0) / line->pieces)
                                         : HUGE_VAL;
         if (here <= before && here <= after)
-            best = fmin(best, least_between(line, point, fmax(0, i - 1.0) / line->pieces,
-                                            fmin(line->pieces, i + 1.0) / line->pieces));
+            best = fmin(best, min_between(line, point, fmax(0, i - 1.0) / line->pieces,
+                                          fmin(line->pieces, i + 1.0) / line->pieces));
         before = here;
         here   = after;
     }

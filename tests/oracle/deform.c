@@ -46,7 +46,7 @@ static void sequences_are_safe(void **state)
     Random random = {103};
     for (int i = 0; i < 80; i++) {
         Deformed chain = deformed_random(&random, 1 + random_below(&random, 2),
-                                         1 + random_below(&random, MOST_MIRRORS));
+                                         1 + random_below(&random, MAX_MIRRORS));
         check_chain(&chain, (uint64_t)i);
     }
 }

@@ -37,14 +37,14 @@ Vec    deed_forward(const Deed *deed, Vec p);
 /* Where a point was before; `turn` counts turns about the axis of a bend. */
 Vec deed_backward(const Deed *deed, Vec p, int turn);
 
-enum { MOST_DEEDS = 3, MOST_MIRRORS = 4 };
+enum { MAX_DEEDS = 3, MAX_MIRRORS = 4 };
 
 /* A solid, deformed, mirrored, and deformed again. */
 typedef struct Deformed {
     Solid solid;
-    Deed  deeds[MOST_DEEDS];
+    Deed  deeds[MAX_DEEDS];
     int   deed_count;
-    Half  mirrors[MOST_MIRRORS]; /* after the first `before` deeds */
+    Half  mirrors[MAX_MIRRORS]; /* after the first `before` deeds */
     int   mirror_count, before;
 } Deformed;
 

@@ -117,7 +117,7 @@ static const Vec    AWAY = {1.2, 1, 2};
 
 static const double DEGREE = 0.017453292519943295, EVEN = 15, TURNS = 0.2, ACROSS = 18;
 /* The most parts of pixels that are off and are not at the origin. */
-static const double MOST_EVEN = 0.003, MOST_ACROSS = 0.005;
+static const double MAX_EVEN = 0.003, MAX_ACROSS = 0.005;
 
 /* The part of a picture in its middle. */
 typedef struct Shot {
@@ -327,8 +327,8 @@ static void check(const struct Form *form, const Subject *subject, const Shot *s
     if (origin)
         known = count(origin, &there, false, hits);
     Counts counts = count(subject, shot, subject->literal, hits);
-    if (counts.off > known.off + MOST_EVEN * counts.even + 1 ||
-        counts.across > known.across + MOST_ACROSS * counts.all + 2)
+    if (counts.off > known.off + MAX_EVEN * counts.even + 1 ||
+        counts.across > known.across + MAX_ACROSS * counts.all + 2)
         fail_msg("%s of size %g, %g units away, %u lines: of %d even pixels %d are off by more "
                  "than a degree, by up to %.1f, and %d at the origin; of all %d by more than 18: "
                  "%d, and %d at the origin",
@@ -375,7 +375,7 @@ static void answers_are_right(void **state)
         cast_rays(form, &shot, hits);
         Counts known  = count_answers(&subject, &there, hits),
                counts = count_answers(&subject, &shot, hits);
-        if (counts.off > known.off + MOST_EVEN * counts.even + 1)
+        if (counts.off > known.off + MAX_EVEN * counts.even + 1)
             fail_msg(
                 "%s of size %g, %g units away, as the device answers: of %d even rays %d are off "
                 "by more than a degree, by up to %.1f, and %d at the origin",

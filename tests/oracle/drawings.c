@@ -242,7 +242,7 @@ static void random_files(void **state)
 
 /* ---- strokes ---- */
 
-enum { STROKES = 60, STROKE_POINTS = 400, MOST_POINTS = 9 };
+enum { STROKES = 60, STROKE_POINTS = 400, MAX_POINTS = 9 };
 
 static double to_segment(const double a[2], const double b[2], const double p[2])
 {
@@ -349,8 +349,8 @@ static void strokes_of_lines(void **state)
     static const char *const caps[]  = {"butt", "round", "square"};
     Bench                   *bench   = *state;
     for (int i = 0; i < STROKES; i++) {
-        double     points[MOST_POINTS][2], radius = random_between(&bench->random, 1, 8);
-        int        count = 2 + random_below(&bench->random, MOST_POINTS - 1), length = 0;
+        double     points[MAX_POINTS][2], radius = random_between(&bench->random, 1, 8);
+        int        count = 2 + random_below(&bench->random, MAX_POINTS - 1), length = 0;
         int        join = random_below(&bench->random, 3), cap = random_below(&bench->random, 3);
         char       list[512], element[1024];
         SvgDrawing drawing;

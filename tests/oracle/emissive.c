@@ -86,16 +86,16 @@ static double sent_by_ball(double x, double y, double z, double radius)
 }
 
 /* The noise of pictures that find light by chance is a hundred times as much. */
-#define MOST_NOISE 0.018
-#define MOST_WRONG 0.004
+#define MAX_NOISE 0.018
+#define MAX_WRONG 0.004
 
 /* Whether a floor is lit as it should be, and pictures would tell if it were not. */
 static bool is_right(KrsIntegrator integrator, double expected, const char *what)
 {
     const Estimate found = look(integrator);
-    if (!(found.error <= MOST_NOISE * expected))
+    if (!(found.error <= MAX_NOISE * expected))
         print_message("# %s: noise of %.4f\n", what, found.error / expected);
-    return must_be_near(found, expected, MOST_WRONG, what) && found.error <= MOST_NOISE * expected;
+    return must_be_near(found, expected, MAX_WRONG, what) && found.error <= MAX_NOISE * expected;
 }
 
 static bool is_lit_by(const char *parameter, double radiance, double expected, const char *what)
@@ -145,7 +145,7 @@ static void light_comes_through_glass(void **state)
     const Estimate found = look(KRS_INTEGRATOR_PATH);
     path_fixture_set(&fixture, "bulb", 0);
     assert_true(must_be_near(found, 50 * expected, 0.01, "a ball in glass"));
-    assert_true(found.error < 2 * MOST_NOISE * found.mean);
+    assert_true(found.error < 2 * MAX_NOISE * found.mean);
 }
 
 /* ---- Frames ---- */

@@ -297,11 +297,11 @@ static void sheets_are_thin(void **state)
 
 /* ---- random polynomials ---- */
 
-enum { MOST_TERMS = 12 };
+enum { MAX_TERMS = 12 };
 
 typedef struct Polynomial {
-    int    terms, exponents[MOST_TERMS][3];
-    double factors[MOST_TERMS];
+    int    terms, exponents[MAX_TERMS][3];
+    double factors[MAX_TERMS];
 } Polynomial;
 
 static bool in_polynomial(const void *user, Vec p)
@@ -316,7 +316,7 @@ static bool in_polynomial(const void *user, Vec p)
 
 static Polynomial random_polynomial(Random *random, SceneText *text)
 {
-    Polynomial poly   = {.terms = 2 + random_below(random, MOST_TERMS - 1)};
+    Polynomial poly   = {.terms = 2 + random_below(random, MAX_TERMS - 1)};
     int        degree = 1 + random_below(random, 9);
     scene_write(text, "show algebraic(");
     for (int k = 0; k < poly.terms; k++) {

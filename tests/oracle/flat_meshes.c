@@ -107,7 +107,7 @@ static void other_meshes_stay_even(void **state)
 
 /* ---- random solids ---- */
 
-enum { MOST_SIDES = 9, MOST_PARTS_HERE = 6 };
+enum { MAX_SIDES = 9, MAX_PARTS_HERE = 6 };
 
 typedef enum Kind { A_BOX, A_PRISM, A_POLYGON, KINDS } Kind;
 
@@ -115,7 +115,7 @@ typedef struct Part {
     Kind   kind;
     double size[3], axis[3], angle, shift[3];
     int    sides;
-    double corners[MOST_SIDES][2];
+    double corners[MAX_SIDES][2];
     char   joined; /* to what is before it */
 } Part;
 
@@ -126,7 +126,7 @@ static Part random_part(Random *random, double spread)
     Vec  axis    = random_unit(random);
     part.axis[0] = axis.x, part.axis[1] = axis.y, part.axis[2] = axis.z;
     part.angle = random_between(random, 0, 2 * PI);
-    part.sides = 3 + random_below(random, MOST_SIDES - 2);
+    part.sides = 3 + random_below(random, MAX_SIDES - 2);
     for (int k = 0; k < 3; k++) {
         part.size[k]  = random_between(random, 0.3, 1.5);
         part.shift[k] = random_between(random, -spread, spread);
@@ -259,8 +259,8 @@ static void random_solids_are_what_their_parts_say(void **state)
     (void)state;
     for (uint64_t turn = 0; turn < 80; turn++) {
         Random random = {4000 + turn};
-        Part   parts[MOST_PARTS_HERE];
-        size_t count = 1 + (size_t)random_below(&random, MOST_PARTS_HERE);
+        Part   parts[MAX_PARTS_HERE];
+        size_t count = 1 + (size_t)random_below(&random, MAX_PARTS_HERE);
         for (size_t i = 0; i < count; i++)
             parts[i] = random_part(&random, 0.8);
         text.length = 0;

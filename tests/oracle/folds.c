@@ -14,7 +14,7 @@
 
 /* ---- sets of balls ---- */
 
-enum { MOST_BALLS = 512, MOST_STEPS = 24 };
+enum { MAX_BALLS = 512, MAX_STEPS = 24 };
 
 /* The image of a kernel, and which mirrors it comes through. */
 typedef struct Image {
@@ -31,8 +31,8 @@ typedef struct Step {
 } Step;
 
 typedef struct Set {
-    Step  steps[MOST_STEPS];
-    Image images[MOST_BALLS];
+    Step  steps[MAX_STEPS];
+    Image images[MAX_BALLS];
     int   count, balls, mirrors;
 } Set;
 
@@ -62,7 +62,7 @@ static bool is_cut(const Set *set, const Step *step)
 {
     for (int i = 0; i < set->balls; i++) {
         double height = in_front(step, set->images[i].centre);
-        if (fabs(height) < set->images[i].radius || 2 * set->balls > MOST_BALLS)
+        if (fabs(height) < set->images[i].radius || 2 * set->balls > MAX_BALLS)
             return true;
     }
     return false;

@@ -311,7 +311,7 @@ static Real bisect(const Chord *chord, Real low, Real high, Real side)
 }
 
 /* Where |f| has its least between low and high, by golden section; or any place beyond a zero. */
-static Real least_between(const Chord *chord, Real low, Real high, Real side)
+static Real min_between(const Chord *chord, Real low, Real high, Real side)
 {
     Real part = GOLDEN - 1, a = high - part * (high - low), b = low + part * (high - low);
     Real at_a = chord_value(chord, a) * side, at_b = chord_value(chord, b) * side;
@@ -352,7 +352,7 @@ static Entry chord_search(Chord *chord, Real side)
         if (values[i] > 0 && !dips)
             continue;
         Real before = i > 1 || values[0] > 0 ? t - step : t;
-        Real inside = values[i] > 0 ? least_between(chord, t - step, t + step, side) : t;
+        Real inside = values[i] > 0 ? min_between(chord, t - step, t + step, side) : t;
         Real value  = chord_value(chord, inside) * side;
         if (fabsl(value) < LITTLE * chord->scale && values[i] > 0)
             entry.fate = RAY_DOUBTFUL;

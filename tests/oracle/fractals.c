@@ -178,8 +178,8 @@ static double distance_to_other_side(const Fractal *f, const Voxels *v, Random *
 /* ---- distances ---- */
 
 typedef struct Measure {
-    double most, most_inside; /* of the distance over the way to the other side */
-    double mean;              /* outside */
+    double most, max_inside; /* of the distance over the way to the other side */
+    double mean;             /* outside */
     size_t wrong_sides, count;
 } Measure;
 
@@ -202,7 +202,7 @@ static Measure measure(const Product *product, const Fractal *f, int points)
         m.wrong_sides += (d <= 0) != own && fabs(d) > 1e-12;
         m.count++;
         if (own)
-            m.most_inside = fmax(m.most_inside, -d / distance);
+            m.max_inside = fmax(m.max_inside, -d / distance);
         else {
             m.most = fmax(m.most, d / distance);
             m.mean += d / distance;
@@ -253,9 +253,9 @@ static void julia_bounds_hold(void **state)
         Product product = product_compile(text);
         Measure m       = measure(&product, &f, 1500);
         print_message("# %-18s z^%d: at most %.3f of the way, %.3f inside; mean %.2f\n",
-                      julia_sets[i].name, f.power, m.most, m.most_inside, m.mean);
+                      julia_sets[i].name, f.power, m.most, m.max_inside, m.mean);
         assert_true(m.most <= 1);
-        assert_true(m.most_inside <= 1);
+        assert_true(m.max_inside <= 1);
         assert_true(m.wrong_sides == 0);
         assert_true(m.mean > 0.3); /* else it would be of no use */
         product_free(&product);
@@ -270,7 +270,7 @@ static void a_fault_is_found(void **state)
     Fractal f       = julia_of(&julia_sets[4], text, sizeof text);
     Product product = product_compile("show julia(c: [0, 0, 0, 0], iterations: 12).scale(1.02);");
     Measure m       = measure(&product, &f, 500);
-    assert_true(m.most_inside > 1);
+    assert_true(m.max_inside > 1);
     product_free(&product);
     product = product_compile("show julia(c: [0, 0, 0, 0], iterations: 12).scale(0.9);");
     m       = measure(&product, &f, 500);
@@ -314,9 +314,9 @@ static void mandelbulbs_are_measured(void **state)
         Product product = product_compile(text);
         Measure m       = measure(&product, &f, 1500);
         print_message("# mandelbulb of %d: at most %.3f of the way, %.3f inside; mean %.2f\n",
-                      f.power, m.most, m.most_inside, m.mean);
+                      f.power, m.most, m.max_inside, m.mean);
         assert_true(m.most <= 1);
-        assert_true(m.most_inside <= 1);
+        assert_true(m.max_inside <= 1);
         assert_true(m.wrong_sides == 0);
         assert_true(m.mean > 0.25);
         product_free(&product);

@@ -48,7 +48,7 @@ static const char furnace[] =
     "             thin_film_weight: film, thin_film_thickness: thick }\n"
     "show sphere(1).paint(m);\n";
 
-enum { MOST_NUMBERS = 8 };
+enum { MAX_NUMBERS = 8 };
 
 /* A white material: numbers of the scene's parameters. */
 typedef struct White {
@@ -56,7 +56,7 @@ typedef struct White {
     struct {
         const char *parameter;
         double      number;
-    } numbers[MOST_NUMBERS];
+    } numbers[MAX_NUMBERS];
 } White;
 
 static const White whites[] = {
@@ -120,19 +120,19 @@ static void paint(const White *white, double roughness)
     for (size_t i = 0; i < sizeof usual / sizeof *usual; i++)
         path_fixture_set(&fixture, parameters[i], usual[i]);
     path_fixture_set(&fixture, "rough", roughness);
-    for (size_t i = 0; i < MOST_NUMBERS && white->numbers[i].parameter; i++)
+    for (size_t i = 0; i < MAX_NUMBERS && white->numbers[i].parameter; i++)
         path_fixture_set(&fixture, white->numbers[i].parameter, white->numbers[i].number);
 }
 
 /* The part of the light that may be lost or appear, beside noise. */
-#define MOST_LOST          0.002
-#define MOST_LOST_OF_METAL 5e-4
+#define MAX_LOST          0.002
+#define MAX_LOST_OF_METAL 5e-4
 
 /* Only glass lets paths go on within the ball. */
 static bool has_glass(const White *white)
 {
     bool found = false;
-    for (size_t i = 0; i < MOST_NUMBERS && white->numbers[i].parameter; i++)
+    for (size_t i = 0; i < MAX_NUMBERS && white->numbers[i].parameter; i++)
         found = found || strcmp(white->numbers[i].parameter, "glass") == 0;
     return found;
 }
@@ -163,7 +163,7 @@ static void white_is_not_seen(void **state)
             char         name[100];
             snprintf(name, sizeof name, "%s, roughness %.2f", whites[i].name, roughness);
             paint(&whites[i], roughness);
-            wrong += !must_be_near(look(&whites[i]), 1, MOST_LOST, name);
+            wrong += !must_be_near(look(&whites[i]), 1, MAX_LOST, name);
         }
     assert_int_equal(wrong, 0);
 }
@@ -179,7 +179,7 @@ static void metals_lose_nothing(void **state)
         paint(&whites[0], k / 20.0);
         Estimate found = look_long(&whites[0]);
         print_message("# %s: %.5f +- %.5f\n", name, found.mean, found.error);
-        wrong += !must_be_near(found, 1, MOST_LOST_OF_METAL, name);
+        wrong += !must_be_near(found, 1, MAX_LOST_OF_METAL, name);
     }
     assert_int_equal(wrong, 0);
 }
@@ -191,7 +191,7 @@ static void gray_is_seen(void **state)
     for (size_t i = 0; i < WHITES; i++) {
         paint(&whites[i], 0);
         path_fixture_set_all(&fixture, "shade", 0.95, 0.95, 0.95);
-        if (is_near(look(&whites[i]), 1, MOST_LOST))
+        if (is_near(look(&whites[i]), 1, MAX_LOST))
             fail_msg("%s is taken for white", whites[i].name);
         path_fixture_set_all(&fixture, "shade", 1, 1, 1);
     }
@@ -218,9 +218,9 @@ static bool is_found_either_way(const White *white)
     Estimate     both     = {.mean = chosen.mean, .error = hypot(chosen.error, met.error)};
     Estimate     brighter = {.mean  = too_much * chosen.mean,
                              .error = hypot(too_much * chosen.error, met.error)};
-    if (is_near(brighter, met.mean, MOST_LOST))
+    if (is_near(brighter, met.mean, MAX_LOST))
         fail_msg("%s: a sun that is too bright is not seen", white->name);
-    return must_be_near(both, met.mean, MOST_LOST, white->name);
+    return must_be_near(both, met.mean, MAX_LOST, white->name);
 }
 
 static void light_is_found_either_way(void **state)
@@ -284,7 +284,7 @@ static void previews_lose_no_sky(void **state)
             snprintf(name, sizeof name, "preview of %s, roughness %.2f", whites[i].name, k / 3.0);
             paint(&whites[i], k / 3.0);
             Estimate white = path_fixture_estimate(&fixture, PREVIEW_OPTIONS, middle, 1);
-            wrong += !must_be_near(white, 1, MOST_LOST, name);
+            wrong += !must_be_near(white, 1, MAX_LOST, name);
         }
     assert_int_equal(wrong, 0);
 }
@@ -345,7 +345,7 @@ static const char unlayered[] =
 
 /* The largest part of the light in a pixel by which preview and direct differ: the preview has a fit in
    place of the table. */
-static double most_different(const PathFixture *plain)
+static double max_different(const PathFixture *plain)
 {
     KrsRenderOptions options = PREVIEW_OPTIONS;
     double           most    = 0;
@@ -383,7 +383,7 @@ static void unlayered_previews_lose_nothing(void **state)
         path_fixture_set(&plain, "day", 0);
         path_fixture_set(&plain, "bright", IRRADIANCE);
         path_fixture_set_all(&plain, "shade", 0.9, 0.5, 0.2);
-        const double most = most_different(&plain);
+        const double most = max_different(&plain);
         print_message("# %s: %.3f of a pixel's light\n", name, most);
         wrong += !(most < 0.08);
         path_fixture_set_all(&plain, "shade", 1, 1, 1);

@@ -13,7 +13,7 @@
 #include "tests/oracle/shadow_truth.h"
 #include "tests/support/renderer.h"
 
-#define MOST_ASYMMETRY 0.03 /* of means of 20x20 pixels */
+#define MAX_ASYMMETRY 0.03 /* of means of 20x20 pixels */
 
 enum { WIDTH = 320, HEIGHT = 180 };
 
@@ -45,8 +45,8 @@ static void mark_edges(const Shot *shot, double lift, bool *edge)
 /* `lift`: shadows of a low sun move by as much as that makes. */
 static HardMatch match_hard(const KrsPicture *picture, const Shot *shot, double lift)
 {
-    HardMatch match             = {0};
-    bool      edge[MOST_PIXELS] = {false};
+    HardMatch match            = {0};
+    bool      edge[MAX_PIXELS] = {false};
     for (int i = 2; i > 0 && lift > 0; i--)
         mark_edges(shot, 0.5 * lift * i, edge);
     mark_edges(shot, 0, edge);
@@ -85,8 +85,8 @@ static const struct HardCase {
     {"balls", BALLS, {-1, 1.4, -0.6}, 0},
     {"ball, lamp", BALL_LAMP, {-3, 5.5, -1.6}, 0},
     {"twigs", TWIGS, {-0.6, 1.4, 0.3}, 0},
-    {"balls, sun at 20 degrees", BALLS, {-1, 0.4, -0.4}, MOST_LIFT},
-    {"twigs, sun at 20 degrees", TWIGS, {-1, 0.37, 0.2}, MOST_LIFT},
+    {"balls, sun at 20 degrees", BALLS, {-1, 0.4, -0.4}, MAX_LIFT},
+    {"twigs, sun at 20 degrees", TWIGS, {-1, 0.37, 0.2}, MAX_LIFT},
 };
 
 enum { HARD_CASES = sizeof hard_cases / sizeof hard_cases[0] };
@@ -231,9 +231,9 @@ static void symmetric_scenes_have_symmetric_pictures(void **state)
             text, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = plain});
         double most = asymmetry(picture);
         print_message("# symmetry: off by %.2g%s\n", most, plain ? "" : " with upsampling");
-        assert_true(most < MOST_ASYMMETRY);
-        picture->color[4 * (HEIGHT / 2 * WIDTH + 20)] += 800 * MOST_ASYMMETRY; /* a planted fault */
-        assert_false(asymmetry(picture) < MOST_ASYMMETRY);
+        assert_true(most < MAX_ASYMMETRY);
+        picture->color[4 * (HEIGHT / 2 * WIDTH + 20)] += 800 * MAX_ASYMMETRY; /* a planted fault */
+        assert_false(asymmetry(picture) < MAX_ASYMMETRY);
         krs_picture_free(picture);
     }
 }

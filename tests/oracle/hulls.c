@@ -9,7 +9,7 @@
 
 static const double PI = 3.14159265358979323846, TOLERANCE = 2e-5;
 
-enum { MOST_ITEMS = 12, DIRECTIONS = 600, BEST = 6, POINTS = 24 };
+enum { MAX_ITEMS = 12, DIRECTIONS = 600, BEST = 6, POINTS = 24 };
 
 typedef enum ItemKind {
     BALL,
@@ -30,7 +30,7 @@ typedef struct Item {
 } Item;
 
 typedef struct Items {
-    Item   items[MOST_ITEMS];
+    Item   items[MAX_ITEMS];
     int    count;
     double grown;
     bool   plane; /* discs and rectangles, seen from above */

@@ -14,7 +14,7 @@
 
 #include "tests/oracle/imported.h"
 
-enum { SURFACES = 32, TAPES = 24, MOST_STEPS = 16, POINTS = 40 };
+enum { SURFACES = 32, TAPES = 24, MAX_STEPS = 16, POINTS = 40 };
 
 static Random randomness = {15};
 
@@ -138,7 +138,7 @@ static int write_tape(Step *tape, char *text, size_t size_of_text)
 
 static double tape_value(const Step *tape, int count, const double p[3])
 {
-    double values[MOST_STEPS] = {p[0], p[1], p[2], tape[3].number};
+    double values[MAX_STEPS] = {p[0], p[1], p[2], tape[3].number};
     for (int i = 4; i < count; i++)
         values[i] = steps[tape[i].kind].value(values[tape[i].arguments[0]],
                                               values[tape[i].arguments[1]]);
@@ -150,7 +150,7 @@ static void random_tapes(void **state)
     int accepted = 0;
     (void)state;
     for (int i = 0; i < TAPES; i++) {
-        Step   tape[MOST_STEPS];
+        Step   tape[MAX_STEPS];
         char   text[4096];
         double points[POINTS][3], distances[POINTS];
         int    count = write_tape(tape, text, sizeof text);
@@ -207,7 +207,7 @@ static void quotients_have_bounds(void **state)
     int    accepted = 0;
     (void)state;
     for (int i = 0; i < TAPES; i++) {
-        Step   tape[MOST_STEPS];
+        Step   tape[MAX_STEPS];
         char   text[4096];
         double points[2 * POINTS][3], distances[2 * POINTS], steep = 0;
         int    count    = write_quotients(tape, text, sizeof text);

@@ -14,7 +14,7 @@
 
 #include "tests/oracle/imported.h"
 
-enum { TREES = 10, POINTS = 300, MOST_NODES = 64, MOST_TEXT = 16384 };
+enum { TREES = 10, POINTS = 300, MAX_NODES = 64, MAX_TEXT = 16384 };
 
 static Random randomness = {152};
 
@@ -159,9 +159,9 @@ typedef struct Node {
     double inverse[3][3], shift[3];
 } Node;
 
-static Node   nodes[MOST_NODES];
+static Node   nodes[MAX_NODES];
 static int    node_count;
-static char   text[MOST_TEXT];
+static char   text[MAX_TEXT];
 static size_t length;
 
 static void write_text(const char *format, ...)
@@ -247,7 +247,7 @@ static int write_tree(int depth)
 {
     static const char *const joins[] = {"union", "intersection", "difference", "group"};
     int                      index   = node_count++;
-    assert_true(index < MOST_NODES);
+    assert_true(index < MAX_NODES);
     Node *node = &nodes[index];
     *node      = (Node){.kind = depth == 0 ? (Kind)below(JOIN) : JOIN + (Kind)below(2)};
     if (node->kind < JOIN) {

@@ -13,7 +13,7 @@
 
 #include "tests/oracle/imported.h"
 
-enum { TREES = 16, POINTS = 300, MOST_PIECES = 3, PIECE_TEXT = 2048 };
+enum { TREES = 16, POINTS = 300, MAX_PIECES = 3, PIECE_TEXT = 2048 };
 
 static Random randomness = {2021};
 
@@ -126,8 +126,8 @@ static void resized_parts_have_their_size(void **state)
     (void)state;
     for (int trial = 0; trial < TREES; trial++) {
         char   text[PIECE_TEXT];
-        Piece  pieces[MOST_PIECES];
-        int    count = 1 + below(MOST_PIECES), longest = 0;
+        Piece  pieces[MAX_PIECES];
+        int    count = 1 + below(MAX_PIECES), longest = 0;
         double size[3], factors[3], low[3], high[3];
         bool   follows[3];
         size_t at;
@@ -193,9 +193,9 @@ static void figures_of_solids_are_their_sections_and_shadows(void **state)
     (void)state;
     for (int trial = 0; trial < 2 * TREES; trial++) {
         char   text[PIECE_TEXT];
-        Piece  pieces[MOST_PIECES];
+        Piece  pieces[MAX_PIECES];
         bool   cut = trial % 2 == 0, cuts = cut && below(2) == 0;
-        int    count = 1 + below(MOST_PIECES);
+        int    count = 1 + below(MAX_PIECES);
         size_t at    = (size_t)snprintf(text, sizeof text,
                                         "linear_extrude(height = 2, center = true) {\n"
                                            "projection(cut = %s) { %s() { ",

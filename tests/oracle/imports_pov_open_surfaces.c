@@ -15,7 +15,7 @@
 #include "tests/oracle/imported.h"
 #include "tests/oracle/pov_trees.h"
 
-enum { TRIALS = 24, RAYS = 40, STEPS = 4000, MOST_WALLS = 64 };
+enum { TRIALS = 24, RAYS = 40, STEPS = 4000, MAX_WALLS = 64 };
 
 static const double FARTHEST = 12;
 
@@ -66,7 +66,7 @@ static double settled(const PovTree *tree, int index, const Ray *ray, double low
 }
 
 typedef struct Walls {
-    double at[MOST_WALLS];
+    double at[MAX_WALLS];
     int    count;
 } Walls;
 
@@ -79,7 +79,7 @@ static void primitive_walls(const PovTree *tree, int index, const Ray *back, Wal
     for (int i = 1; i <= STEPS; i++) {
         point_at(back, i * step, q);
         bool has = pov_tree_has(tree, index, q);
-        if (has != last && walls->count < MOST_WALLS)
+        if (has != last && walls->count < MAX_WALLS)
             walls->at[walls->count++] = settled(tree, index, back, (i - 1) * step, i * step);
         last = has;
     }
@@ -119,7 +119,7 @@ static void walls_of(const PovTree *tree, int index, const Ray *ray, Walls *wall
                 if (k != i && node->join > 0)
                     seen = seen &&
                            pov_tree_has(tree, node->items[k], q) == (node->join == 1 || k == 0);
-            if (seen && walls->count < MOST_WALLS)
+            if (seen && walls->count < MAX_WALLS)
                 walls->at[walls->count++] = own.at[w];
         }
     }

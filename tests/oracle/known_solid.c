@@ -24,7 +24,7 @@ typedef enum Kind {
     KNOWN_SEQUENCE,                  /* of a kernel and `choice` mirrors: normals and offsets */
 } Kind;
 
-enum { MOST_MIRRORS = 3 };
+enum { MAX_MIRRORS = 3 };
 
 struct KnownSolid {
     Kind        kind;
@@ -32,7 +32,7 @@ struct KnownSolid {
     Vec         a, b;
     double      number;
     int         choice;
-    Half        mirrors[MOST_MIRRORS];
+    Half        mirrors[MAX_MIRRORS];
 };
 
 typedef enum CsgNode { JOIN_UNION, JOIN_INTERSECTION, JOIN_DIFFERENCE, CSG_NODES } CsgNode;
@@ -299,7 +299,7 @@ static KnownSolid *csg_node(Random *random, double width, KnownSolid *a, KnownSo
 static KnownSolid *sequence(Random *random, KnownSolid *kernel)
 {
     KnownSolid *s = make(KNOWN_SEQUENCE, kernel);
-    s->choice     = 1 + random_below(random, MOST_MIRRORS);
+    s->choice     = 1 + random_below(random, MAX_MIRRORS);
     for (int i = 0; i < s->choice; i++)
         s->mirrors[i] = (Half){random_unit(random), random_between(random, 0.1, 0.3)};
     return s;

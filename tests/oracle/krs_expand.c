@@ -17,10 +17,10 @@
 typedef struct Flavour {
     const char *name;
     int         mirrors;
-    double      near, far;   /* offsets of the mirrors */
-    double      reach;       /* kernels lie in the cube of this half size */
-    double      size;        /* of kernels */
-    int         most_bodies; /* per level */
+    double      near, far;  /* offsets of the mirrors */
+    double      reach;      /* kernels lie in the cube of this half size */
+    double      size;       /* of kernels */
+    int         max_bodies; /* per level */
     bool        capsules;
     uint64_t    seed;
 } Flavour;
@@ -65,7 +65,7 @@ static Sequence random_sequence(const Flavour *flavour, Random *random)
         sequence.mirrors[i] = (Half){random_unit(random),
                                      random_between(random, flavour->near, flavour->far)};
     for (int level = 0; level <= flavour->mirrors; level++) {
-        int count = random_below(random, flavour->most_bodies + 1);
+        int count = random_below(random, flavour->max_bodies + 1);
         for (int i = 0; i < count || (level == 0 && i == 0); i++)
             sequence.bodies[sequence.body_count++] = random_body(flavour, random, level);
     }

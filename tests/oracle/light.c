@@ -35,12 +35,12 @@ enum { CENTRE_RAYS = 16 }; /* to the light, of the reference: from the centre of
 enum { PLACES = 4, PLACE_RAYS = 8 };
 
 /* What is asked for.  In parts of the mean light: */
-#define MOST_WRONG    0.05 /* the mean of what is wrong with four rays, */
-#define MOST_UNSHADED 0.01 /* and where nothing casts shadows */
+#define MAX_WRONG    0.05 /* the mean of what is wrong with four rays, */
+#define MAX_UNSHADED 0.01 /* and where nothing casts shadows */
 /* With one ray, of means of 5x5 pixels: */
-#define MOST_NOISE  1.5   /* what is wrong, for what it is of independent rays, */
-#define LEAST_NOISE 0.025 /* and so much more, as edges are somewhere in a pixel */
-#define MOST_SEEN   0.4   /* wrong anywhere */
+#define MAX_NOISE 1.5   /* what is wrong, for what it is of independent rays, */
+#define MIN_NOISE 0.025 /* and so much more, as edges are somewhere in a pixel */
+#define MAX_SEEN  0.4   /* wrong anywhere */
 
 /* ---- The truth ---- */
 
@@ -233,8 +233,8 @@ static bool light_is_right(const char *name, const KrsPicture *one, const KrsPic
     double red   = mean_wrong(four, 0, truth.red, truth.mean_red);
     double green = mean_wrong(four, 1, truth.green, truth.mean_green);
     Noise  noise = find_noise(one);
-    bool   right = red < MOST_WRONG && green < MOST_UNSHADED && noise.worst < MOST_SEEN &&
-                 noise.mean < MOST_NOISE * noise.independent + LEAST_NOISE;
+    bool   right = red < MAX_WRONG && green < MAX_UNSHADED && noise.worst < MAX_SEEN &&
+                 noise.mean < MAX_NOISE * noise.independent + MIN_NOISE;
     print_message("# %s%s: wrong by %.3f, unshaded by %.3f; one ray: %.3f, of 5x5 %.3f (of "
                   "independent rays %.3f), the worst %.3f\n",
                   name, right ? "" : ", WRONG", red, green, noise.single, noise.mean,

@@ -7,7 +7,7 @@
 #include "tests/oracle/judge.h"
 #include "tests/oracle/product.h"
 
-enum { MOST_FIXTURES = 3, POINTS = 400 };
+enum { MAX_FIXTURES = 3, POINTS = 400 };
 
 /* A rectangle with round corners at a level; the rectangle may be a point. */
 typedef struct Fixture {
@@ -15,7 +15,7 @@ typedef struct Fixture {
 } Fixture;
 
 typedef struct Loft {
-    Fixture fixtures[MOST_FIXTURES];
+    Fixture fixtures[MAX_FIXTURES];
     int     count;
     double  height;
 } Loft;
@@ -81,16 +81,16 @@ static void lofts_are_their_definition(void **state)
 
 /* ---- between convex polygons ---- */
 
-enum { MOST_RING = 6, MOST_MEANS = MOST_RING * MOST_RING };
+enum { MAX_RING = 6, MAX_MEANS = MAX_RING * MAX_RING };
 
 typedef struct Ring {
-    double at[MOST_RING][2];
+    double at[MAX_RING][2];
     int    count;
     double level;
 } Ring;
 
 typedef struct FlatLoft {
-    Ring   rings[MOST_FIXTURES];
+    Ring   rings[MAX_FIXTURES];
     int    count;
     double height;
 } FlatLoft;
@@ -115,7 +115,7 @@ static bool is_outside(double (*points)[2], int count, const double at[2])
 static bool in_flat_loft(const void *user, Vec p)
 {
     const FlatLoft *loft = user;
-    double          at   = p.z / loft->height + 0.5, means[MOST_MEANS][2];
+    double          at   = p.z / loft->height + 0.5, means[MAX_MEANS][2];
     int             i = 0, count = 0;
     if (!(at >= 0 && at <= 1))
         return false;
@@ -151,7 +151,7 @@ static Product flat_loft_product(const FlatLoft *loft)
 /* Corners of an ellipse somewhere, either way around. */
 static FlatLoft random_flat_loft(Random *random)
 {
-    static const double levels[2][MOST_FIXTURES] = {{0, 1, 1}, {0, 0.4, 1}};
+    static const double levels[2][MAX_FIXTURES] = {{0, 1, 1}, {0, 0.4, 1}};
     FlatLoft            loft = {.count = random_between(random, 0, 1) < 0.5 ? 2 : 3};
     loft.height              = random_between(random, 0.4, 1.6);
     for (int i = 0; i < loft.count; i++) {
@@ -159,7 +159,7 @@ static FlatLoft random_flat_loft(Random *random)
         double turn = random_between(random, 0, 7), wide = random_between(random, 0.2, 0.8),
                high = random_between(random, 0.2, 0.8), aside = random_between(random, -0.3, 0.3);
         int way     = random_between(random, 0, 1) < 0.5 ? 1 : -1;
-        ring->count = 3 + (int)random_between(random, 0, MOST_RING - 2.001);
+        ring->count = 3 + (int)random_between(random, 0, MAX_RING - 2.001);
         ring->level = levels[loft.count - 2][i];
         for (int k = 0; k < ring->count; k++) {
             double angle   = turn + way * 2 * acos(-1) * k / ring->count;

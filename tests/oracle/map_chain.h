@@ -49,10 +49,10 @@ typedef struct Statement {
     Word   map;
 } Statement;
 
-enum { MOST_STATEMENTS = 40 };
+enum { MAX_STATEMENTS = 40 };
 
 typedef struct Chain {
-    Statement statements[MOST_STATEMENTS];
+    Statement statements[MAX_STATEMENTS];
     int       count, mirrors;
 } Chain;
 

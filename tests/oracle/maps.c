@@ -72,11 +72,11 @@ typedef struct Elementary {
     double number; /* angle, factor, offset or radius */
 } Elementary;
 
-enum { MOST_LETTERS = 8 };
+enum { MAX_LETTERS = 8 };
 
 /* Applied from the first to the last. */
 typedef struct Word {
-    Elementary letters[MOST_LETTERS];
+    Elementary letters[MAX_LETTERS];
     int        count;
 } Word;
 
@@ -266,7 +266,7 @@ static void products_and_inverses(void **state)
     (void)state;
     for (int trial = 0; trial < 1500; trial++) {
         start();
-        Word word = random_word(1 + trial % MOST_LETTERS, random_below(&randomness, 5));
+        Word word = random_word(1 + trial % MAX_LETTERS, random_below(&randomness, 5));
         if (trial % 20 == 0) {
             /* Poles that almost meet, a hundredth of a radius apart. */
             Elementary ball      = random_letter(INVERT);
@@ -296,7 +296,7 @@ static void matrices(void **state)
     (void)state;
     for (int trial = 0; trial < 1500; trial++) {
         start();
-        Word       word = random_word(1 + trial % MOST_LETTERS, random_below(&randomness, 4));
+        Word       word = random_word(1 + trial % MAX_LETTERS, random_below(&randomness, 4));
         Matrix     m    = word_matrix(&word);
         double     f    = exp(between(-2, 2)) * (trial % 2 ? 1 : -1);
         double     entries[4][4];

@@ -154,7 +154,7 @@ static void random_solids_are_within_the_error(void **state)
 static void nearly_all_of_a_draft_is_within_the_error(void **state)
 {
     enum { SCENES = 24 };
-    static const double MOST_FAR = 0.0005; /* part of all points */
+    static const double MAX_FAR = 0.0005; /* part of all points */
     static SceneText    text;
     size_t              looked = 0, far = 0;
     (void)state;
@@ -178,7 +178,7 @@ static void nearly_all_of_a_draft_is_within_the_error(void **state)
         known_solid_free(solid);
     }
     print_message("# drafts: %zu of %zu points are farther than the error\n", far, looked);
-    assert_true((double)far < MOST_FAR * (double)looked);
+    assert_true((double)far < MAX_FAR * (double)looked);
 }
 
 /* ---- random scenes ---- */

@@ -3,10 +3,10 @@
  */
 #include "tests/oracle/montecarlo.h"
 
-#define FARTHEST   100.0
-#define LEAST_STEP 2e-4 /* a ray may miss what is thinner */
-#define ABOVE      5e-4 /* where rays from a surface begin */
-#define DEGREE     (M_PI / 180)
+#define FARTHEST 100.0
+#define MIN_STEP 2e-4 /* a ray may miss what is thinner */
+#define ABOVE    5e-4 /* where rays from a surface begin */
+#define DEGREE   (M_PI / 180)
 
 static double bound_at(const Setting *setting, Vec p)
 {
@@ -30,7 +30,7 @@ static double first_inside(const Setting *setting, Line line, double t, double e
             return t;
         }
         before = t;
-        t += fmax(distance, LEAST_STEP);
+        t += fmax(distance, MIN_STEP);
     }
     return HUGE_VAL;
 }

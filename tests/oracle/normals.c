@@ -14,14 +14,14 @@
 
 /* ---- mirrors ---- */
 
-enum { MOST_MIRRORS = 6 };
+enum { MAX_MIRRORS = 6 };
 
 /* Balls, one before the first mirror and one after each; after a mirror all is scaled and turned
    about AXIS. */
 typedef struct Chain {
     int    mirrors;
-    Half   mirror[MOST_MIRRORS];
-    Vec    centre[MOST_MIRRORS + 1];
+    Half   mirror[MAX_MIRRORS];
+    Vec    centre[MAX_MIRRORS + 1];
     double radius, scale, angle;
 } Chain;
 
@@ -29,7 +29,7 @@ static const Vec AXIS = {1, 2, 3};
 
 static Chain random_chain(Random *random, double scale)
 {
-    Chain chain  = {.mirrors = 1 + random_below(random, MOST_MIRRORS),
+    Chain chain  = {.mirrors = 1 + random_below(random, MAX_MIRRORS),
                     .scale   = scale,
                     .angle   = scale == 1 ? 0 : random_between(random, -1, 1)};
     chain.radius = random_between(random, 0.3, 0.8);
@@ -77,7 +77,7 @@ typedef struct Expected {
 static Expected expect(const Chain *chain, Vec point, double width)
 {
     Expected result = {.distance = HUGE_VAL, .margin = HUGE_VAL};
-    double   excess[MOST_MIRRORS], stretch = 1, to_world[MOST_MIRRORS];
+    double   excess[MAX_MIRRORS], stretch = 1, to_world[MAX_MIRRORS];
     for (int level = chain->mirrors; level >= 0; level--) {
         Vec    offset   = vec_sub(point, chain->centre[level]);
         double distance = stretch * (vec_length(offset) - chain->radius);

@@ -23,14 +23,14 @@
 #include "tests/support/renderer.h"
 
 /* What is asked for, of means of 5x5 pixels of openness. */
-#define MOST_MISJUDGED   0.02 /* root of the mean square */
-#define MOST_UNLIKE      5e-3 /* by how much openness changes with a bound, on average */
-#define LEAST_CONVEX     0.998
-#define MOST_BESIDE_WALL 0.018 /* on average, of the first pixels at the foot of a wall */
-#define MOST_WRONG       0.035 /* in random rooms on average */
-#define LEAST_OPEN       0.07  /* where white occluders are held against a white world */
-#define MOST_BIAS        0.01  /* of the mean of a picture from a closed form */
-#define MOST_SPREAD      0.03  /* of its pixels */
+#define MAX_MISJUDGED   0.02 /* root of the mean square */
+#define MAX_UNLIKE      5e-3 /* by how much openness changes with a bound, on average */
+#define MIN_CONVEX      0.998
+#define MAX_BESIDE_WALL 0.018 /* on average, of the first pixels at the foot of a wall */
+#define MAX_WRONG       0.035 /* in random rooms on average */
+#define MIN_OPEN        0.07  /* where white occluders are held against a white world */
+#define MAX_BIAS        0.01  /* of the mean of a picture from a closed form */
+#define MAX_SPREAD      0.03  /* of its pixels */
 
 #define REACH 0.15 /* of the way from the eye to the target */
 
@@ -118,8 +118,8 @@ static bool is_ground_before_wall(const double *mean, const double *place, int c
     const double pixel = 9.0 / 48;
     bool         right = true;
     for (int i = 0; i < count; i++)
-        right = right && mean[i] > openness_before_wall(place[i] - pixel, 3) - MOST_BESIDE_WALL &&
-                mean[i] < openness_before_wall(place[i] + pixel, 3) + MOST_BESIDE_WALL;
+        right = right && mean[i] > openness_before_wall(place[i] - pixel, 3) - MAX_BESIDE_WALL &&
+                mean[i] < openness_before_wall(place[i] + pixel, 3) + MAX_BESIDE_WALL;
     return right;
 }
 
@@ -172,8 +172,8 @@ static void shared_rays_see_a_wall_where_it_is(void **state)
         &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_filter = true});
     double wrong = misjudge_wall(picture, 3);
     print_message("# occlusion before a wall, one ray a pixel: off by %.4f\n", wrong);
-    assert_true(wrong < MOST_BESIDE_WALL);
-    assert_false(misjudge_wall(picture, 0.3) < MOST_BESIDE_WALL);
+    assert_true(wrong < MAX_BESIDE_WALL);
+    assert_false(misjudge_wall(picture, 0.3) < MAX_BESIDE_WALL);
     krs_picture_free(picture);
 }
 
@@ -269,9 +269,9 @@ static void occlusion_is_a_share_of_the_hemisphere(void **state)
     double       off     = misjudge_room(picture, 3, reach, &count);
     print_message("# occlusion: off by %.4f, %d pixels\n", off, count);
     assert_true(count > 20000);
-    assert_true(off < MOST_MISJUDGED);
-    assert_false(misjudge_room(picture, 2, reach, &count) < MOST_MISJUDGED);
-    assert_false(misjudge_room(picture, 3, 1.5 * reach, &count) < MOST_MISJUDGED);
+    assert_true(off < MAX_MISJUDGED);
+    assert_false(misjudge_room(picture, 2, reach, &count) < MAX_MISJUDGED);
+    assert_false(misjudge_room(picture, 3, 1.5 * reach, &count) < MAX_MISJUDGED);
     krs_picture_free(picture);
 }
 
@@ -285,11 +285,11 @@ static void bounds_close_as_much_as_distances(void **state)
         KrsPicture *picture = take_room(slopes[i], 1);
         double      apart   = openness_apart(exact, picture);
         print_message("# occlusion, distance / %g: off by %.5f\n", slopes[i], apart);
-        assert_true(apart < MOST_UNLIKE);
+        assert_true(apart < MAX_UNLIKE);
         krs_picture_free(picture);
     }
     KrsPicture *larger = take_room(4, 1.1); /* so much would be found */
-    assert_false(openness_apart(exact, larger) < MOST_UNLIKE);
+    assert_false(openness_apart(exact, larger) < MAX_UNLIKE);
     krs_picture_free(larger);
     krs_picture_free(exact);
 }
@@ -302,14 +302,14 @@ static void convex_solids_are_open(void **state)
     static const struct {
         const char *text;
         double      least;
-    } solids[] = {{"sphere(1)", LEAST_CONVEX},
-                  {"sphere(1).scale([5, 1, 1])", LEAST_CONVEX},
-                  {"box([2, 1, 1]).rotate([1, 2, 3], 1).scale([1, 1, 6])", LEAST_CONVEX},
-                  {"algebraic(x^2 + y^2 + z^2 == 1)", LEAST_CONVEX},
-                  {"algebraic(x^8 + y^8 + z^8 == 1)", LEAST_CONVEX},
-                  {"field(x^2 + y^2 + abs(z)^2 - 1).within(box([8, 8, 8]))", LEAST_CONVEX},
-                  {"sphere(1).twist([0, 1, 0], 1)", LEAST_CONVEX},
-                  {"sphere(1).transform(invert([3, 0, 0], 3))", LEAST_CONVEX}};
+    } solids[] = {{"sphere(1)", MIN_CONVEX},
+                  {"sphere(1).scale([5, 1, 1])", MIN_CONVEX},
+                  {"box([2, 1, 1]).rotate([1, 2, 3], 1).scale([1, 1, 6])", MIN_CONVEX},
+                  {"algebraic(x^2 + y^2 + z^2 == 1)", MIN_CONVEX},
+                  {"algebraic(x^8 + y^8 + z^8 == 1)", MIN_CONVEX},
+                  {"field(x^2 + y^2 + abs(z)^2 - 1).within(box([8, 8, 8]))", MIN_CONVEX},
+                  {"sphere(1).twist([0, 1, 0], 1)", MIN_CONVEX},
+                  {"sphere(1).transform(invert([3, 0, 0], 3))", MIN_CONVEX}};
     for (size_t i = 0; i < sizeof solids / sizeof solids[0]; i++) {
         SceneText text = {0};
         scene_write(&text,
@@ -473,7 +473,7 @@ static void find_limits(double open, double back, double limits[2])
 {
     limits[0] = open;
     limits[1] = open + (1 - open) * back;
-    if (back == 1 && open > LEAST_OPEN)
+    if (back == 1 && open > MIN_OPEN)
         limits[0] = 1;
 }
 
@@ -516,7 +516,7 @@ static bool form_is_right(PathFixture *fixture, const Form *form, uint32_t width
     KrsPicture      *picture = path_fixture_render(fixture, &options);
     Wrong            wrong   = judge_form(picture, form, numbers, shade, back);
     krs_picture_free(picture);
-    bool right = fabs(wrong.bias) < MOST_BIAS && wrong.spread < MOST_SPREAD;
+    bool right = fabs(wrong.bias) < MAX_BIAS && wrong.spread < MAX_SPREAD;
     print_message("# %s%s of grey %.2f, %.3f %.3f %.3f, %u pixels: off by %.4f, spread %.4f\n",
                   right ? "" : "WRONG: ", form->name, back, numbers[0], numbers[1], numbers[2],
                   (unsigned)width, wrong.bias, wrong.spread);
@@ -620,7 +620,7 @@ static bool room_is_right(const Setting *setting, double part)
     }
     print_message("# %s: open by %.2f, wrong by %.3f with a ray, %.3f with four\n", room->name,
                   mean, wrong[0], wrong[1]);
-    return wrong[0] < MOST_WRONG && wrong[1] < MOST_WRONG;
+    return wrong[0] < MAX_WRONG && wrong[1] < MAX_WRONG;
 }
 
 static void rooms_are_as_open_as_rays_say(void **state)

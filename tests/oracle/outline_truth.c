@@ -45,7 +45,7 @@ static bool on_outline(const Truth *truth, const Line *line)
 static void add_line(Truth *truth, const double a[2], const double b[2])
 {
     Line line = {{a[0], a[1]}, {b[0], b[1]}};
-    assert_true(truth->count < MOST_LINES);
+    assert_true(truth->count < MAX_LINES);
     truth->lines[truth->count++] = line;
 }
 
@@ -88,7 +88,7 @@ static void cut_line(Truth *truth, size_t i)
 
 void find_truth(Truth *truth, const Curves *curves, FillRule rule)
 {
-    static bool on[MOST_LINES];
+    static bool on[MAX_LINES];
     truth->count = truth->outline = 0;
     truth->rule                   = rule;
     for (size_t i = 0; i < curves->count; i++)

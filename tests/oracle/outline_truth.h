@@ -10,14 +10,14 @@
 
 #include "compiler/outline/outline.h"
 
-enum { PARTS = 128 /* of a curve */, MOST_LINES = 40000 };
+enum { PARTS = 128 /* of a curve */, MAX_LINES = 40000 };
 
 typedef struct Line {
     double a[2], b[2];
 } Line;
 
 typedef struct Truth {
-    Line     lines[MOST_LINES]; /* those on the outline first */
+    Line     lines[MAX_LINES]; /* those on the outline first */
     size_t   count, outline;
     FillRule rule;
 } Truth;

@@ -68,7 +68,7 @@ static Estimate look_through(PathFixture *fixture, double angle, double index, d
 }
 
 /* What refracts less counts as this. */
-#define LEAST_INDEX 1.001
+#define MIN_INDEX 1.001
 
 static const double angles[] = {0, 25 * DEGREE, 45 * DEGREE, 60 * DEGREE, 70 * DEGREE};
 enum { ANGLES = sizeof angles / sizeof *angles };
@@ -78,8 +78,7 @@ static void slabs_let_light_through(void **state)
     (void)state;
     static const struct {
         double index, loss;
-    } slabs[]           = {{LEAST_INDEX, 0},   {1.5, 0},         {2.4, 0},
-                           {LEAST_INDEX, 0.7}, {LEAST_INDEX, 3}, {1.5, 1.5}};
+    } slabs[] = {{MIN_INDEX, 0}, {1.5, 0}, {2.4, 0}, {MIN_INDEX, 0.7}, {MIN_INDEX, 3}, {1.5, 1.5}};
     PathFixture fixture = path_fixture_open(slab);
     size_t      wrong   = 0;
     for (size_t i = 0; i < sizeof slabs / sizeof *slabs; i++)

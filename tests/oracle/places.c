@@ -8,10 +8,10 @@
 
 static const double PI = 3.14159265358979323846;
 
-enum { MOST_PLACES = 400, STEPS = 20000 };
+enum { MAX_PLACES = 400, STEPS = 20000 };
 
 typedef struct Places {
-    Vec at[MOST_PLACES], y[MOST_PLACES], z[MOST_PLACES];
+    Vec at[MAX_PLACES], y[MAX_PLACES], z[MAX_PLACES];
     int count;
 } Places;
 
@@ -33,7 +33,7 @@ static Places find_places(const char *list)
                     "for place in places { show sphere(0.01).move([0, 0, 1]).transform(place); }\n",
               list);
     places.count = (int)krs_component_count(product.scene) / 3;
-    assert_true(places.count <= MOST_PLACES);
+    assert_true(places.count <= MAX_PLACES);
     for (int i = 0; i < places.count; i++) {
         size_t at = (size_t)i, count = (size_t)places.count;
         places.at[i] = middle_of(product.scene, at);

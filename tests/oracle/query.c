@@ -105,14 +105,14 @@ static void zones_come_and_go(void **context)
             zones[i][3] = uniform(0.1, 0.4);
         }
         const ShaderEntry *newest = s.rendering->shaders.first;
-        const size_t       room   = s.rendering->most_zone_slots;
+        const size_t       room   = s.rendering->max_zone_slots;
         assert_int_equal(krs_frame_set_zones(s.frame, (const double(*)[4])zones, count), KRS_OK);
         points_agree(s, 2000, 1.5, 16);
         for (size_t i = 0; i < 2000; i++)
             assert_true(fabs(found[i].distance -
                              ball_less_zones(points[i], (const double(*)[4])zones, count)) < 1e-6);
         rays_agree(s, 500, 1.5, 0, 16);
-        assert_true(s.rendering->zone_slots >= count && s.rendering->most_zone_slots >= count);
+        assert_true(s.rendering->zone_slots >= count && s.rendering->max_zone_slots >= count);
         assert_true((s.rendering->shaders.first == newest) == (count <= room));
     }
     scene_close(s);

@@ -26,7 +26,7 @@ static const double enough[ALONG_POLYNOMIALS]  = {1e-10, 1e-6, 1e-6};
 static const double arrived[ALONG_POLYNOMIALS] = {1e-8, 2e-3, 2e-3};
 /* How many steps a ray may need on average and at most. */
 static const int mean_steps[ALONG_POLYNOMIALS] = {20, 100, 100};
-enum { MOST_STEPS = 20000 };
+enum { MAX_STEPS = 20000 };
 
 /* Takes `product`, which steps_free frees. */
 static Steps steps_new(Product product, AlongMethod method)
@@ -58,7 +58,7 @@ static int march(const Steps *steps, Formula *formula, double radius, Vec origin
         Vec hit = vec_add(origin, vec_scale(truth, direction));
         leeway  = surface_leeway(formula, radius, hit, direction);
     }
-    while (count < MOST_STEPS && t < end && fabs(step) > enough[steps->method] * radius) {
+    while (count < MAX_STEPS && t < end && fabs(step) > enough[steps->method] * radius) {
         step = fmax(step_at(steps, vec_add(origin, vec_scale(t, direction)), direction), 0);
         t += step;
         count++;
@@ -108,12 +108,12 @@ static void surfaces_are_not_overshot(void **state)
 
 /* ---- random polynomials ---- */
 
-enum { MOST_TERMS = 12 };
+enum { MAX_TERMS = 12 };
 
 /* The one that is looked at: a Formula has no place for it. */
 static struct Polynomial {
-    int    terms, exponents[MOST_TERMS][3];
-    double factors[MOST_TERMS];
+    int    terms, exponents[MAX_TERMS][3];
+    double factors[MAX_TERMS];
 } polynomial;
 
 static Real polynomial_value(const Real p[3])
@@ -133,7 +133,7 @@ static Real polynomial_value(const Real p[3])
 static void draw_polynomial(Random *random, int most, SceneText *text)
 {
     int degree       = 1 + random_below(random, most);
-    polynomial.terms = 2 + random_below(random, MOST_TERMS - 1);
+    polynomial.terms = 2 + random_below(random, MAX_TERMS - 1);
     text->length     = 0;
     scene_write(text, "show algebraic(");
     for (int k = 0; k < polynomial.terms; k++) {

@@ -30,7 +30,7 @@ static KrsMesh *mesh_of_text(const char *text, double error)
 /* ---- closed forms ---- */
 
 /* So many sides a polygon has at least that is within the error of a circle and has its corners on it. */
-static double least_sides(double error, double radius) { return PI / acos(1 - error / radius); }
+static double min_sides(double error, double radius) { return PI / acos(1 - error / radius); }
 
 static void solids_have_few_triangles(void **state)
 {
@@ -101,7 +101,7 @@ static void solids_have_few_triangles(void **state)
         KrsMesh  *mesh  = mesh_of_text(solids[i].text, error);
         MeshShape shape = mesh_shape(mesh);
         for (int k = 0; k < 2; k++)
-            least *= solids[i].radii[k] > 0 ? least_sides(error, solids[i].radii[k]) : 1;
+            least *= solids[i].radii[k] > 0 ? min_sides(error, solids[i].radii[k]) : 1;
         print_message("# %zu triangles, at least %.0f; volume %.6f of %.6f: %s\n",
                       mesh->triangle_count, least, shape.volume, solids[i].volume, solids[i].text);
         assert_int_equal(mesh->unresolved, 0);
@@ -206,7 +206,7 @@ static void nothing_is_reported_at_seams(void **state)
 
 /* ---- random solids ---- */
 
-enum { MOST_PARTS_HERE = 6 };
+enum { MAX_PARTS_HERE = 6 };
 
 typedef enum Kind { A_BALL, A_CYLINDER, A_CONE, A_RING, A_CAPSULE, A_BOX, KINDS } Kind;
 
@@ -219,7 +219,7 @@ typedef struct Part {
 } Part;
 
 typedef struct Parts {
-    Part   list[MOST_PARTS_HERE];
+    Part   list[MAX_PARTS_HERE];
     size_t count;
 } Parts;
 
@@ -315,7 +315,7 @@ static void random_solids_are_within_the_error(void **state)
     (void)state;
     for (uint64_t turn = 0; turn < wanted; turn++) {
         Random random = {7003 + turn};
-        Parts  parts  = {.count = 1 + (size_t)random_below(&random, MOST_PARTS_HERE)};
+        Parts  parts  = {.count = 1 + (size_t)random_below(&random, MAX_PARTS_HERE)};
         for (size_t i = 0; i < parts.count; i++)
             parts.list[i] = random_part(&random);
         double error = exp(random_between(&random, log(0.003), log(0.06)));

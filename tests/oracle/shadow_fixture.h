@@ -41,7 +41,7 @@ typedef enum FixtureKind {
 
 enum { FROM_ABOVE, FROM_THE_SIDE }; /* cameras: orthographic and perspective */
 
-enum { MOST_SOLIDS = 24, MOST_PIXELS = 1 << 16 };
+enum { MAX_SOLIDS = 24, MAX_PIXELS = 1 << 16 };
 
 typedef struct Fixture {
     bool          lamp;  /* its light has a place, else it is a sun */
@@ -49,7 +49,7 @@ typedef struct Fixture {
     const char   *ball;  /* what they are made of: a ball of radius 1; NULL: spheres */
     Vec           target;
     double        high; /* of what is seen from above */
-    Solid         solids[MOST_SOLIDS];
+    Solid         solids[MAX_SOLIDS];
     int           count;
     SceneText     text;
     Product       product;

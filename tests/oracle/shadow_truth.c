@@ -104,7 +104,7 @@ void compute_truths(Truth *truth, const Shot *shot, double lift)
     KrsWindow window = shot->options.crop;
     truths.width     = (int)window.width;
     truths.height    = (int)window.height;
-    assert_in_range(truths.width * truths.height, 1, MOST_PIXELS);
+    assert_in_range(truths.width * truths.height, 1, MAX_PIXELS);
     for (int k = 0; k < truths.width * truths.height; k++) {
         Vec ground       = ground_at(&lens, &window, k % truths.width, k / truths.width);
         truths.low[k]    = truth(shot, ground);

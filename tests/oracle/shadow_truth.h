@@ -11,7 +11,7 @@
 
 /* The most that rays may start above even ground, in pixels: one, and what the permitted error
    makes. */
-#define MOST_LIFT 1.25
+#define MAX_LIFT 1.25
 
 /* The light as it is seen from a point: a disc across the way to its middle. */
 typedef struct Disc {
@@ -36,7 +36,7 @@ double share_above_edge(const Shot *shot, Vec point);
    a pixel, unless said otherwise. */
 typedef struct Truths {
     int    width, height;
-    double low[MOST_PIXELS], lifted[MOST_PIXELS];
+    double low[MAX_PIXELS], lifted[MAX_PIXELS];
 } Truths;
 
 extern Truths truths; /* the last computed */

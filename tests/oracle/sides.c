@@ -22,8 +22,8 @@
 #include "tests/support/renderer.h"
 
 enum { WIDTH = 320, HEIGHT = 240, PIXELS = WIDTH * HEIGHT };
-#define MOST_OFF   1.0  /* degrees */
-#define MOST_WRONG 4e-4 /* of the pixels: an edge may be nearer than single precision shows */
+#define MAX_OFF   1.0  /* degrees */
+#define MAX_WRONG 4e-4 /* of the pixels: an edge may be nearer than single precision shows */
 
 /* ---- Solids, and the sides that they have ---- */
 
@@ -36,13 +36,13 @@ typedef struct Solid {
     Vec       size; /* edges; radius; radius and height */
 } Solid;
 
-enum { MOST_SOLIDS = 40 };
+enum { MAX_SOLIDS = 40 };
 typedef struct Scene {
     const char *name;
     bool        united; /* in one component */
     Vec         eye, target;
     double      fov;
-    Solid       solids[MOST_SOLIDS];
+    Solid       solids[MAX_SOLIDS];
     int         count;
 } Scene;
 
@@ -52,7 +52,7 @@ typedef struct Side {
     Vec    normal;
 } Side;
 
-enum { MOST_SIDES = 6 };
+enum { MAX_SIDES = 6 };
 
 static int sides_of_box(Vec p, Vec size, Side *sides)
 {
@@ -94,7 +94,7 @@ static double find_off(const Scene *scene, Vec point, Vec normal, double near)
     double least = 180;
     for (int i = 0; i < scene->count; i++) {
         const Solid *solid = &scene->solids[i];
-        Side         sides[MOST_SIDES];
+        Side         sides[MAX_SIDES];
         Vec          p     = vec_rotate(vec_sub(point, solid->centre), solid->axis, -solid->angle);
         int          count = sides_of(solid, p, sides);
         double       outside = -HUGE_VAL;
@@ -226,7 +226,7 @@ static size_t count_wrong(const Scene *scene, const KrsPicture *picture)
             continue;
         double pixel = lens_pixel(&lens, vec_dot(vec_sub(point, lens.eye), lens.forward));
         double off   = find_off(scene, point, normal, pixel);
-        wrong += off > MOST_OFF;
+        wrong += off > MAX_OFF;
         worst = fmax(worst, off);
     }
     print_message("# %s: %zu pixels wrong, the worst by %.1f degrees\n", scene->name, wrong, worst);
@@ -241,7 +241,7 @@ static void normals_are_those_of_one_side(void **state)
         for (uint32_t samples = 1; samples <= 4; samples += 3) {
             KrsPicture *picture = picture_of_scene(&scenes[i], samples);
             size_t      here    = count_wrong(&scenes[i], picture);
-            wrong += here > MOST_WRONG * PIXELS;
+            wrong += here > MAX_WRONG * PIXELS;
             krs_picture_free(picture);
         }
     assert_int_equal(wrong, 0);

@@ -17,18 +17,18 @@
 #define BLUR_REACH 8     /* pixels: so far from a penumbra nothing is shared */
 /* Of means of 5x5 pixels, as shares of the light: root of the mean square in and near the penumbra
    for 1 and for 4 rays a pixel, and the worst of all. */
-#define MOST_OFF_1      0.025
-#define MOST_OFF_4      0.015
-#define MOST_OFF_AT_ALL 0.15
+#define MAX_OFF_1      0.025
+#define MAX_OFF_4      0.015
+#define MAX_OFF_AT_ALL 0.15
 /* Of single pixels of a narrow penumbra, one ray each: root of the mean square.  It is 0.13 where
    means reach as far across the edge as along it. */
-#define NARROW      (1.5 * DEGREE)
-#define MOST_FRAYED 0.105
+#define NARROW     (1.5 * DEGREE)
+#define MAX_FRAYED 0.105
 /* Around a lamp in a recess, one ray a pixel: by how many pixels the edge of light is uneven where this
    share is seen; on average over recesses, and the worst of them. */
-#define DARK                0.01
-#define MOST_TOOTHED        0.85
-#define MOST_TOOTHED_AT_ALL 1.1
+#define DARK               0.01
+#define MAX_TOOTHED        0.85
+#define MAX_TOOTHED_AT_ALL 1.1
 
 /* How far the mean of 5x5 pixels is outside of what is true for it; NAN where one of them shows
    no ground in the light. */
@@ -85,12 +85,12 @@ static bool shared_is_right(const char *name, const KrsPicture *picture, const S
                             Truth *truth)
 {
     SharedMatch m    = match_shared(picture, shot, truth);
-    double      most = shot->options.samples > 1 ? MOST_OFF_4 : MOST_OFF_1;
+    double      most = shot->options.samples > 1 ? MAX_OFF_4 : MAX_OFF_1;
     print_message("# soft, %s, %u samples: %d pixels of umbra, %d of penumbra, %d lit, %d wrong; "
                   "off by %.4f, at most %.4f\n",
                   name, shot->options.samples, m.umbra, m.penumbra, m.lit, m.wrong, m.off, m.worst);
     assert_true(m.umbra > 100 && m.penumbra > 200 && m.lit > 200);
-    return m.wrong == 0 && m.off < most && m.worst < MOST_OFF_AT_ALL;
+    return m.wrong == 0 && m.off < most && m.worst < MAX_OFF_AT_ALL;
 }
 
 static void soft_shadows_are_shares_of_the_disc(void **state)
@@ -143,7 +143,7 @@ static void edges_of_narrow_shadows_are_not_frayed(void **state)
     double      frayed  = find_fraying(picture, &ball, &count);
     print_message("# narrow: %d pixels, off by %.4f\n", count, frayed);
     assert_true(count > 300);
-    assert_true(frayed < MOST_FRAYED);
+    assert_true(frayed < MAX_FRAYED);
     krs_picture_free(picture);
 }
 
@@ -293,7 +293,7 @@ static void light_around_lamps_has_no_teeth(void **state)
         krs_picture_free(picture);
     }
     print_message("# teeth of %.3f pixels, at most %.3f\n", mean, worst);
-    assert_true(mean < MOST_TOOTHED && worst < MOST_TOOTHED_AT_ALL);
+    assert_true(mean < MAX_TOOTHED && worst < MAX_TOOTHED_AT_ALL);
 }
 
 int main(void)

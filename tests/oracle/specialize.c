@@ -23,7 +23,7 @@
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
 
-enum { EDITS = 4, MOST_NUMBERS = 2000 };
+enum { EDITS = 4, MAX_NUMBERS = 2000 };
 
 /* ---- Texts ---- */
 
@@ -51,10 +51,10 @@ static const char *skip_words(const char *at)
 }
 
 /* Where the numbers of a text begin, but for those in names, colours, comments and strings. */
-static size_t find_numbers(const char *text, const char *numbers[MOST_NUMBERS])
+static size_t find_numbers(const char *text, const char *numbers[MAX_NUMBERS])
 {
     size_t count = 0;
-    for (const char *at = text; *at && count < MOST_NUMBERS;) {
+    for (const char *at = text; *at && count < MAX_NUMBERS;) {
         const char *behind = skip_words(at);
         if (behind != at) {
             at = behind;
@@ -172,7 +172,7 @@ typedef struct Tally {
 static void edit_example(const char *text, const char *path, const KrsScene *scene,
                          const KrsScene *literal, Tally *tally)
 {
-    const char *numbers[MOST_NUMBERS];
+    const char *numbers[MAX_NUMBERS];
     size_t      count  = find_numbers(text, numbers);
     Random      random = {count};
     Texts       right = texts_of(scene), of_literal = texts_of(literal);

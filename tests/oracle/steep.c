@@ -26,8 +26,8 @@ enum { WIDTH = 96, HEIGHT = 72, PIXELS = WIDTH * HEIGHT, SAMPLES = 600 };
 /* Half of the region's side; the eye is outside of it. */
 #define HALF 2.0
 /* What is asked for: rays that may be unresolved, and where a hit may be, in pixels. */
-#define MOST_UNRESOLVED 0.01
-#define MOST_OFF        0.3
+#define MAX_UNRESOLVED 0.01
+#define MAX_OFF        0.3
 
 typedef double Formula(Vec p);
 
@@ -145,11 +145,11 @@ static int count_wrong(const KrsPicture *picture, const Line *rays, const double
         wrong += seen && !is;
         if (is && seen) {
             double t = vec_distance(vec(at[0], at[1], at[2]), rays[k].origin);
-            wrong += !(fabs(t - roots[k]) <= MOST_OFF * pixel_at(t));
+            wrong += !(fabs(t - roots[k]) <= MAX_OFF * pixel_at(t));
         }
     }
     int unresolved = (int)picture->stats.unresolved;
-    assert_true(unresolved <= MOST_UNRESOLVED * PIXELS);
+    assert_true(unresolved <= MAX_UNRESOLVED * PIXELS);
     return wrong + (missed > unresolved ? missed - unresolved : 0);
 }
 
@@ -210,7 +210,7 @@ static void rays_end_at_roots(void **state)
             fail_msg("%s: the ray of pixel %d ends at %g, its root is at %g", field->name, k, hit.t,
                      roots[k]);
     }
-    if (asked < 300 || unresolved > MOST_UNRESOLVED * asked)
+    if (asked < 300 || unresolved > MAX_UNRESOLVED * asked)
         fail_msg("%s: of %d rays %d are unresolved", field->name, asked, unresolved);
     product_free(&product);
 }

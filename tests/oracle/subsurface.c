@@ -162,7 +162,7 @@ static Seen look(int pictures)
 }
 
 /* The part of light, beside noise, that may be wrong: formulas of albedos, and where light diffuses. */
-#define MOST_WRONG 0.012
+#define MAX_WRONG 0.012
 
 static Estimate times(Estimate estimate, double by)
 {
@@ -196,7 +196,7 @@ static void light_spreads_below_a_shadow(void **state)
             snprintf(name, sizeof name, "color %d at %g mean free paths", color, places[k]);
             const double noise = sqrt(walks.at[k] * (1 - walks.at[k]) / WALKS);
             found.error        = hypot(found.error, noise);
-            wrong += !must_be_near(found, walks.at[k], MOST_WRONG, name);
+            wrong += !must_be_near(found, walks.at[k], MAX_WRONG, name);
             /* The profile is a fit, off by a few hundredths of all light. */
             if (!(fabs(found.mean - form.at[k]) <= 0.04 * form.all + SIGMAS * found.error)) {
                 print_message("# %s: %.4f instead of %.4f by the closed form\n", name, found.mean,
@@ -216,7 +216,7 @@ static void a_shadow_is_told_from_one_that_is_sharper(void **state)
     set_wax();
     path_fixture_set_all(&fixture, "radius", 2, 0.8, 0.5);
     path_fixture_set(&fixture, "hidden", -2);
-    assert_false(is_near(times(look(4).colors[1], M_PI), walks.at[1], MOST_WRONG));
+    assert_false(is_near(times(look(4).colors[1], M_PI), walks.at[1], MAX_WRONG));
     path_fixture_set(&fixture, "hidden", 0);
 }
 
@@ -231,7 +231,7 @@ static void half_spaces_have_their_color(void **state)
     path_fixture_set(&fixture, "hidden", 400);
     const Seen seen = look(8);
     for (int color = 0; color < 3; color++)
-        wrong += !must_be_near(seen.colors[color], albedos[color], MOST_WRONG, "the albedo");
+        wrong += !must_be_near(seen.colors[color], albedos[color], MAX_WRONG, "the albedo");
     path_fixture_set(&fixture, "day", 0);
     path_fixture_set(&fixture, "above", 1);
     path_fixture_set(&fixture, "hidden", 0);

@@ -133,10 +133,10 @@ static void sheets_are_thin(void **state)
 
 /* ---- singular points ---- */
 
-enum { MOST_NODES = 2000 };
+enum { MAX_NODES = 2000 };
 
 typedef struct Nodes {
-    Vec points[MOST_NODES];
+    Vec points[MAX_NODES];
     int count;
 } Nodes;
 
@@ -204,7 +204,7 @@ static void add_node(Nodes *nodes, const Real p[3])
     for (int i = 0; i < nodes->count; i++)
         if (vec_distance(nodes->points[i], point) < 1e-5 * (1 + vec_length(point)))
             return;
-    assert_true(nodes->count < MOST_NODES);
+    assert_true(nodes->count < MAX_NODES);
     nodes->points[nodes->count++] = point;
 }
 
@@ -240,10 +240,10 @@ static const Census censuses[] = {
 };
 enum { CENSUSES = sizeof censuses / sizeof *censuses };
 
-enum { MOST_TWINS = 8 };
+enum { MAX_TWINS = 8 };
 
 /* The images of p under the generators of the surface's symmetries; returns how many. */
-static int twins_of(const Census *census, const Real p[3], Real twins[MOST_TWINS][3])
+static int twins_of(const Census *census, const Real p[3], Real twins[MAX_TWINS][3])
 {
     int count = 0;
     for (int i = 0; census->symmetries & SIGNS && i < 3; i++, count++)
@@ -283,7 +283,7 @@ static void find_nodes(const Census *census, Formula *formula, Nodes *nodes)
     }
     for (int i = 0; i < nodes->count; i++) {
         Vec  point = nodes->points[i];
-        Real p[3]  = {point.x, point.y, point.z}, twins[MOST_TWINS][3];
+        Real p[3]  = {point.x, point.y, point.z}, twins[MAX_TWINS][3];
         int  count = twins_of(census, p, twins);
         for (int k = 0; k < count; k++)
             if (find_node(formula, twins[k]))

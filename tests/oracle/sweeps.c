@@ -10,16 +10,16 @@
 
 static const double PI = 3.14159265358979323846;
 
-enum { MOST_PARTS = 4, STEPS = 600, POINTS = 160 };
+enum { MAX_PARTS = 4, STEPS = 600, POINTS = 160 };
 
 /* Parabolas that continue each other, their figure a rectangle of this half size. */
 typedef struct Path {
-    Vec    parts[MOST_PARTS][3];
+    Vec    parts[MAX_PARTS][3];
     int    count;
     Vec    up; /* where it begins */
     double wide, high, twist, taper;
-    Vec    frames[MOST_PARTS * STEPS + 1]; /* the y axis at each step, before twist */
-    double ways[MOST_PARTS * STEPS + 1];   /* the share of the path's length before it */
+    Vec    frames[MAX_PARTS * STEPS + 1]; /* the y axis at each step, before twist */
+    double ways[MAX_PARTS * STEPS + 1];   /* the share of the path's length before it */
 } Path;
 
 /* `t` counts parts. */

@@ -90,7 +90,7 @@ static double index_of(double head_on) { return (1 + sqrt(head_on)) / (1 - sqrt(
 static const double thicknesses[] = {0, 0.08, 0.3, 0.55, 1.1, 3, 30}, indices[] = {1.33, 2.2},
                     angles[] = {0, 40 * DEGREE, 72 * DEGREE};
 static const double metal[]  = {0.9, 0.5, 0.2};
-#define MOST_WRONG 0.004
+#define MAX_WRONG 0.004
 
 static PathFixture fixture;
 
@@ -164,7 +164,7 @@ static size_t compare_dielectric(Film film, double angle)
     look(KRS_INTEGRATOR_PREVIEW, 1, found);
     for (int i = 0; i < 3; i++)
         right[i] = reflect(film, angle, i);
-    return compare(found, right, MOST_WRONG, "a film on a dielectric", film, angle);
+    return compare(found, right, MAX_WRONG, "a film on a dielectric", film, angle);
 }
 
 static size_t compare_metal(Film film, double angle)
@@ -174,7 +174,7 @@ static size_t compare_metal(Film film, double angle)
     look(KRS_INTEGRATOR_PREVIEW, 1, found);
     for (int i = 0; i < 3; i++)
         right[i] = reflect((Film){film.thickness, film.index, index_of(metal[i])}, angle, i);
-    return compare(found, right, MOST_WRONG, "a film on a metal", film, angle);
+    return compare(found, right, MAX_WRONG, "a film on a metal", film, angle);
 }
 
 /* Both faces have a film, and light goes back and forth between them. */
@@ -248,7 +248,7 @@ static void a_wrong_thickness_is_seen(void **state)
     look(KRS_INTEGRATOR_PREVIEW, 1, found);
     for (int i = 0; i < 3; i++)
         right[i] = reflect(film, 0, i);
-    assert_true(fabs(found[0] - right[0]) + fabs(found[1] - right[1]) > 10 * MOST_WRONG);
+    assert_true(fabs(found[0] - right[0]) + fabs(found[1] - right[1]) > 10 * MAX_WRONG);
 }
 
 int main(void)

@@ -7,10 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_BYTES = 4 << 20, ON_CURVE = 1, REPEATED = 8 };
+enum { MAX_BYTES = 4 << 20, ON_CURVE = 1, REPEATED = 8 };
 
 typedef struct Reader {
-    unsigned char bytes[MOST_BYTES];
+    unsigned char bytes[MAX_BYTES];
     size_t        cmap, loca, glyf, head; /* offsets of tables */
 } Reader;
 
@@ -33,7 +33,7 @@ bool truetype_open(const char *path)
     static const char *const tags[] = {"cmap", "loca", "glyf", "head"};
     size_t *const            at[]   = {&reader.cmap, &reader.loca, &reader.glyf, &reader.head};
     FILE                    *file   = fopen(path, "rb");
-    bool                     whole  = file && fread(reader.bytes, 1, MOST_BYTES, file) > 0;
+    bool                     whole  = file && fread(reader.bytes, 1, MAX_BYTES, file) > 0;
     if (file)
         fclose(file);
     for (size_t i = 0; whole && i < 4; i++) {
@@ -89,7 +89,7 @@ static size_t read_axis(size_t at, const unsigned char *flags, size_t count, uns
 
 bool truetype_read(unsigned number, Glyph *glyph)
 {
-    unsigned char flags[MOST_GLYPH_POINTS];
+    unsigned char flags[MAX_GLYPH_POINTS];
     size_t        at = place_of(number), count = 0;
     if (at == place_of(number + 1) || s16(at) <= 0)
         return false;
@@ -98,7 +98,7 @@ bool truetype_read(unsigned number, Glyph *glyph)
     for (size_t i = 0; i < glyph->contours; i++, at += 2)
         glyph->ends[i] = u16(at) + 1;
     glyph->points = glyph->ends[glyph->contours - 1];
-    if (glyph->points > MOST_GLYPH_POINTS)
+    if (glyph->points > MAX_GLYPH_POINTS)
         return false;
     at += 2 + u16(at); /* without instructions */
     while (count < glyph->points) {

@@ -11,13 +11,13 @@
 extern "C" {
 #endif
 
-enum { MOST_GLYPH_POINTS = 1000 };
+enum { MAX_GLYPH_POINTS = 1000 };
 
 /* Points that are not on the curve are control points; halfway between two of these is a point of the curve. */
 typedef struct Glyph {
-    double x[MOST_GLYPH_POINTS], y[MOST_GLYPH_POINTS]; /* in ems */
-    bool   on[MOST_GLYPH_POINTS];
-    size_t ends[MOST_GLYPH_POINTS], contours, points;
+    double x[MAX_GLYPH_POINTS], y[MAX_GLYPH_POINTS]; /* in ems */
+    bool   on[MAX_GLYPH_POINTS];
+    size_t ends[MAX_GLYPH_POINTS], contours, points;
 } Glyph;
 
 /* The font of the functions below; false: it cannot be read. */

@@ -11,10 +11,10 @@
 struct CMUnitTest;
 
 /* What is asked for, and what a test must be able to see. */
-#define MOST_NET_ERROR 0.01  /* of the coverage */
-#define MOST_NOISE     0.003 /* one standard error, as a share of the coverage */
-#define MOST_OFF       0.001 /* the share of hits whose depth is off by more than is permitted */
-#define PLANTED_ERROR  0.1   /* a fault shows at least this much */
+#define MAX_NET_ERROR 0.01  /* of the coverage */
+#define MAX_NOISE     0.003 /* one standard error, as a share of the coverage */
+#define MAX_OFF       0.001 /* the share of hits whose depth is off by more than is permitted */
+#define PLANTED_ERROR 0.1   /* a fault shows at least this much */
 
 #define DEFAULT_ERROR 0.25 /* krs/vulkan.h */
 #define ROUGH_ERROR   0.5  /* of a scene that asks for it */

@@ -23,9 +23,9 @@
 enum { WIDTH = 192, HEIGHT = 108, SAMPLES = 100 };
 
 /* What is asked for: pixels that are wrong, of those at an edge. */
-#define MOST_WRONG 0.01
-#define LIFT       0.125 /* pixels: where a ray to a light starts, above even ground */
-#define HIGH       4.5   /* of the picture */
+#define MAX_WRONG 0.01
+#define LIFT      0.125 /* pixels: where a ray to a light starts, above even ground */
+#define HIGH      4.5   /* of the picture */
 
 /* ---- Formulas: negative inside ---- */
 
@@ -65,7 +65,7 @@ static const Vec light = {-0.35, 1, 0.25};
 /* ---- Truth ---- */
 
 /* The least of the formula between two places of a line, where it has one low point there. */
-static double least_between(const struct Form *form, Line line, double a, double b)
+static double min_between(const struct Form *form, Line line, double a, double b)
 {
     const double golden = 0.6180339887498949;
     for (int i = 0; i < 40; i++) {
@@ -93,7 +93,7 @@ static bool is_hidden(const struct Form *form, Vec point)
     }
     for (int i = 1; i < SAMPLES; i++)
         if (values[i] <= values[i - 1] && values[i] <= values[i + 1] &&
-            least_between(form, line, chord.enter + (i - 1) * step, chord.enter + (i + 1) * step) <=
+            min_between(form, line, chord.enter + (i - 1) * step, chord.enter + (i + 1) * step) <=
                 0)
             return true;
     return false;
@@ -182,7 +182,7 @@ static bool is_right(const char *name, const char *how, const bool *truth,
     print_message("# %s, %s: %d pixels dark, %d lit, %d at an edge, %d wrong\n", name, how, m.dark,
                   m.lit, m.edge, m.wrong);
     assert_true(m.dark > 250 && m.lit > 2000 && m.edge > 60);
-    return m.wrong <= MOST_WRONG * m.edge;
+    return m.wrong <= MAX_WRONG * m.edge;
 }
 
 static void shadows_end_where_roots_say(void **state)

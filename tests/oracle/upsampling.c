@@ -17,10 +17,10 @@
 #include "runtime/display/display.h"
 #include "tests/oracle/shadow_fixture.h"
 
-#define MOST_OFF_SHARED 0.03 /* of means of 5x5 pixels of colours, root of the mean square */
+#define MAX_OFF_SHARED 0.03 /* of means of 5x5 pixels of colours, root of the mean square */
 /* Shares of the subpixels that may be off by more than 1 and by more than 4 of 255. */
-#define MOST_OVER_1 1e-3
-#define MOST_OVER_4 2e-4
+#define MAX_OVER_1 1e-3
+#define MAX_OVER_4 2e-4
 
 enum { WIDTH = 320, HEIGHT = 180 };
 
@@ -61,7 +61,7 @@ static Difference compare_pictures(const KrsImage *image, const KrsPicture *a, c
 
 static bool is_unseen(Difference difference)
 {
-    return difference.over_1 <= MOST_OVER_1 && difference.over_4 <= MOST_OVER_4;
+    return difference.over_1 <= MAX_OVER_1 && difference.over_4 <= MAX_OVER_4;
 }
 
 /* A picture with upsampling, and one without. */
@@ -138,10 +138,10 @@ static bool sharing_is_unseen(const char *name, KrsRendering *rendering, KrsFram
         for (int i = 0; i < 3; i++)
             picture->color[4 * (k + WIDTH * HEIGHT / 2) + i] *= 0.85F;
     double planted = means_apart(picture, reference);
-    assert_false(planted < MOST_OFF_SHARED);
+    assert_false(planted < MAX_OFF_SHARED);
     krs_picture_free(reference);
     krs_picture_free(picture);
-    return apart < MOST_OFF_SHARED;
+    return apart < MAX_OFF_SHARED;
 }
 
 static bool example_is_unharmed(const char *path)

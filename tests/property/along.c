@@ -111,7 +111,7 @@ static double along_at(KrsFrame *frame, const Tape *tape, Node root, const doubl
 }
 
 /* So far behind a surface, and the longest that a length may be there; bodies are ten times as wide. */
-static const double BEHIND = 1e-5, MOST_BEHIND = 0.2;
+static const double BEHIND = 1e-5, MAX_BEHIND = 0.2;
 
 static void steps_stay_before_the_surface(void **state)
 {
@@ -155,7 +155,7 @@ static void steps_stay_before_the_surface(void **state)
             /* Just behind it lengths are short: chords from before it cross 0 there. */
             context_at(o, v, truth + BEHIND, p);
             double behind = along_at(frame, &tape, root, p, v);
-            if (fabs(behind) > MOST_BEHIND)
+            if (fabs(behind) > MAX_BEHIND)
                 fail_msg("%s: ray %d has %g ahead behind its surface", c->name, ray, behind);
         }
     }

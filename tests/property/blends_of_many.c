@@ -136,7 +136,7 @@ static double stairs(double a, double b, double k)
     return fmin(fmin(a, b), 0.5 * (u + a + fabs(fmod(fmod(u - a + s, 2 * s) + 2 * s, 2 * s) - s)));
 }
 
-static double least_pair(const char *kind, const double *d, int count, double k)
+static double min_pair(const char *kind, const double *d, int count, double k)
 {
     double least = HUGE_VAL;
     for (int i = 0; i < count; i++)
@@ -166,9 +166,9 @@ static double blended(const CsgNode *csg_node, const Part *parts, int count, con
     else if (circular)
         result = fmax(k, d[0]) - sqrt(sum);
     else if (csg_node->kind[0] == 'c' && csg_node->kind[1] == 'h')
-        result = least_pair(csg_node->kind, d, count, k);
+        result = min_pair(csg_node->kind, d, count, k);
     else if (csg_node->kind[0] == 's')
-        result = least_pair(csg_node->kind, d, count, k);
+        result = min_pair(csg_node->kind, d, count, k);
     else
         result = shared(csg_node->kind, d, count < SHARERS ? count : SHARERS, k);
     return inverse ? -result : result;

@@ -15,7 +15,7 @@
 #include "compiler/graph/rewrite/csg_nodes.h"
 #include "tests/support/bench.h"
 
-enum { TREES = 150, POINTS = 3000, MOST_PARTS = 24 };
+enum { TREES = 150, POINTS = 3000, MAX_PARTS = 24 };
 
 /* How near to the surface it is the same, in longest sides of the box. */
 static const double NEAR = 1.0 / 256;
@@ -31,7 +31,7 @@ typedef struct Solid {
 } Solid;
 
 typedef struct Scene {
-    Solid    solids[2 * MOST_PARTS];
+    Solid    solids[2 * MAX_PARTS];
     unsigned count;
 } Scene;
 

@@ -542,7 +542,7 @@ static void order_and_what_is_far_do_not_show(void **state)
 }
 
 /* Of each two of many what they are alone; so also of 100 alike, which become an instance group. */
-static double least_pair(const Part *parts, int count, double r, const double p[3], bool hulls)
+static double min_pair(const Part *parts, int count, double r, const double p[3], bool hulls)
 {
     double d[MOST], least = HUGE_VAL;
     for (int i = 0; i < count; i++)
@@ -578,13 +578,13 @@ static void many_are_all_pairs(void **state)
                 for (int k = 0; k < 3; k++)
                     points[i][k] = parts[i % count].centre[k] + between(-0.5, 0.5);
                 if (i % 4 == 0 || (nearest(parts, count, points[i]) > 0 &&
-                                   least_pair(parts, count, r, points[i], false) < 0))
+                                   min_pair(parts, count, r, points[i], false) < 0))
                     break;
             }
         probe_text(union_text(parts, count, r, "fillet", ""), NULL, 0, points, POINTS, hits);
         for (int i = 0; i < POINTS; i++) {
             const double least = nearest(parts, count, points[i]);
-            const double pair  = least_pair(parts, count, r, points[i], true);
+            const double pair  = min_pair(parts, count, r, points[i], true);
             if (fabs(fmin(least, pair)) < 1e-3)
                 continue;
             assert_true((hits[i].distance < 0) == (fmin(least, pair) < 0));

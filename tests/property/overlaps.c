@@ -64,7 +64,7 @@ static void overlaps(void **state)
             boxes[i] = i % 10 == 9 ? box_empty : random_box(trial % 3 ? 1 : 4);
         if (trial % 5 == 0)
             boxes[0] = box_infinite;
-        uint32_t found = most_overlap(boxes, BOXES, grown, &scratch);
+        uint32_t found = max_overlap(boxes, BOXES, grown, &scratch);
         uint32_t exact = brute_overlap(boxes, grown);
         assert_true(found >= exact && found <= exact);
     }
@@ -78,7 +78,7 @@ static void many_overlaps(void **state)
     (void)state;
     for (int i = 0; i < MANY_BOXES; i++)
         boxes[i] = random_box(0.1);
-    uint32_t found = most_overlap(boxes, MANY_BOXES, 0, &scratch);
+    uint32_t found = max_overlap(boxes, MANY_BOXES, 0, &scratch);
     assert_true(found >= 3 && found <= 25);
 }
 

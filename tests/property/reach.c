@@ -159,8 +159,8 @@ static void compare(const Bench *bench, const ReachStage *stage, Verdict *verdic
 
 static void judge_sequence(Bench *bench, Random *random, Fault fault, Verdict *verdict)
 {
-    ReachStage stages[MOST_STAGES];
-    uint32_t   count     = 3 + random_below(random, MOST_STAGES - 2);
+    ReachStage stages[MAX_STAGES];
+    uint32_t   count     = 3 + random_below(random, MAX_STAGES - 2);
     bool       cut       = random_below(random, 2);
     bench->clipped.count = bench->whole.count = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -234,7 +234,7 @@ static void broken_searches_are_refuted(void **state)
 static void make_boundless(Bench *bench, Random *random, double factor, ReachStage *stages)
 {
     bench->clipped.count = bench->whole.count = 0;
-    for (int i = 0; i < MOST_STAGES; i++) {
+    for (int i = 0; i < MAX_STAGES; i++) {
         ReachStage *stage  = &stages[i];
         Instance    kernel = {0};
         *stage             = (ReachStage){.kind = i == 0 ? REACH_KERNEL : REACH_REFLECT};
@@ -249,9 +249,9 @@ static void make_boundless(Bench *bench, Random *random, double factor, ReachSta
         stage->box  = instance_box(&bench->whole);
         stage->ball = (Ball){.radius = HUGE_VAL};
     }
-    for (int i = 0; i < MOST_STAGES; i++) {
-        bool   last = i == MOST_STAGES - 1;
-        double more = diagonal(stages[i].box) * (last ? 0.3 : 100 * pow(factor, MOST_STAGES - i));
+    for (int i = 0; i < MAX_STAGES; i++) {
+        bool   last = i == MAX_STAGES - 1;
+        double more = diagonal(stages[i].box) * (last ? 0.3 : 100 * pow(factor, MAX_STAGES - i));
         for (int k = 0; k < 3; k++)
             stages[i].box.axis[k] = (Range){stages[i].box.axis[k].low - more,
                                             stages[i].box.axis[k].high + more};
@@ -267,10 +267,10 @@ static void searches_cut_short_are_safe(void **state)
     Random  random  = {28};
     Verdict verdict = {0};
     for (int turn = 0; turn < 20; turn++) {
-        ReachStage stages[MOST_STAGES];
+        ReachStage stages[MAX_STAGES];
         make_boundless(bench, &random, turn % 2 == 0 ? 1 : 4, stages);
-        reach_tighten(stages, MOST_STAGES);
-        compare(bench, &stages[MOST_STAGES - 1], &verdict);
+        reach_tighten(stages, MAX_STAGES);
+        compare(bench, &stages[MAX_STAGES - 1], &verdict);
     }
     assert_int_equal(verdict.outside, 0);
     assert_int_equal(verdict.loose, verdict.calls); /* they were cut short */

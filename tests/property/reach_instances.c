@@ -117,7 +117,7 @@ static void reflect_group(InstanceTable *group, const ReachStage *mirror)
         if (!group->clipped || cut_instance(&instance, mirror))
             group->items[kept++] = instance;
     }
-    assert_true(2 * kept <= MOST_INSTANCES);
+    assert_true(2 * kept <= MAX_INSTANCES);
     for (size_t i = 0; i < kept; i++) {
         Instance *image = &group->items[kept + i];
         *image          = group->items[i];
@@ -132,7 +132,7 @@ void grow_group(InstanceTable *group, const ReachStage *stage, const Instance *k
     if (stage->kind == REACH_REFLECT)
         reflect_group(group, stage);
     if (stage->kind == REACH_KERNEL && !is_empty(stage->kernel)) {
-        assert_true(group->count < MOST_INSTANCES);
+        assert_true(group->count < MAX_INSTANCES);
         group->items[group->count++] = *kernel;
     }
     for (size_t i = 0; i < group->count && stage->kind == REACH_MAP; i++)

@@ -26,7 +26,7 @@ void   reflect(const ReachStage *mirror, double p[3]);
 
 /* ---- every instance by itself ---- */
 
-enum { CORNERS = 8, POINTS = 16, MOST_STAGES = 12, MOST_INSTANCES = 1 << (MOST_STAGES - 1) };
+enum { CORNERS = 8, POINTS = 16, MAX_STAGES = 12, MAX_INSTANCES = 1 << (MAX_STAGES - 1) };
 
 /* Points of the copy of a kernel's box: its corners, and others. */
 typedef struct Instance {
@@ -37,7 +37,7 @@ typedef struct Instance {
 typedef struct InstanceTable {
     bool     clipped;
     size_t   count;
-    Instance items[MOST_INSTANCES];
+    Instance items[MAX_INSTANCES];
 } InstanceTable;
 
 void grow_group(InstanceTable *group, const ReachStage *stage, const Instance *kernel);

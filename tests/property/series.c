@@ -70,7 +70,7 @@ static Node some_polynomial(Bench *b, Series *ball)
         Node        root = polynomial(b, 4);
         if (graph_ball_series(b->graph, root, b->point, ball, &fault, &b->arena))
             return root;
-        assert_true(fault.degree > MOST_DEGREE);
+        assert_true(fault.degree > MAX_DEGREE);
     }
 }
 

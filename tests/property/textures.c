@@ -14,13 +14,13 @@
 #include "compiler/graph/texture.h"
 #include "tests/support/bench.h"
 
-enum { MOST_SIDE = 24, TRIALS = 400 };
+enum { MAX_SIDE = 24, TRIALS = 400 };
 
 /* A picture of random numbers that halves have, too, with rows from the top. */
 typedef struct Drawn {
     uint32_t width, height;
     bool     gray;
-    float    samples[MOST_SIDE * MOST_SIDE * 4];
+    float    samples[MAX_SIDE * MAX_SIDE * 4];
 } Drawn;
 
 static Drawn drawn;
@@ -81,8 +81,8 @@ static void textures_are_bilinear(void **state)
     Bench *bench = *state;
     for (int trial = 0; trial < 30; trial++) {
         TextureWrap wrap = (TextureWrap)(trial % WRAP_COUNT);
-        draw(bench, 1 + random_below(&bench->random, MOST_SIDE),
-             1 + random_below(&bench->random, MOST_SIDE), trial % 2);
+        draw(bench, 1 + random_below(&bench->random, MAX_SIDE),
+             1 + random_below(&bench->random, MAX_SIDE), trial % 2);
         Texture texture = make(bench, wrap);
         for (int i = 0; i < TRIALS; i++) {
             double    uv[2] = {random_between(&bench->random, -2.5, 3.5),
@@ -186,7 +186,7 @@ static void long_pixels_are_means_of_taps(void **state)
     for (int i = 0; i < TRIALS; i++) {
         double uv[2] = {random_between(&bench->random, 0, 1), random_between(&bench->random, 0, 1)};
         double u = random_between(&bench->random, -1, 1), v = random_between(&bench->random, -1, 1);
-        int    taps = 1 + i % MOST_TEXTURE_TAPS, level = i % 4;
+        int    taps = 1 + i % MAX_TEXTURE_TAPS, level = i % 4;
         NodeValue mean   = texture_mean(&texture, uv, (double[4]){u, v, taps, pow(2, level)});
         double    sum[4] = {0};
         for (int tap = 0; tap < taps; tap++) {
@@ -252,8 +252,8 @@ static void slopes_are_bounded_and_nearly_reached(void **state)
 {
     Bench *bench = *state;
     for (int trial = 0; trial < 9; trial++) {
-        draw(bench, 2 + random_below(&bench->random, MOST_SIDE - 1),
-             2 + random_below(&bench->random, MOST_SIDE - 1), trial % 3 != 2);
+        draw(bench, 2 + random_below(&bench->random, MAX_SIDE - 1),
+             2 + random_below(&bench->random, MAX_SIDE - 1), trial % 3 != 2);
         Texture texture = make(bench, (TextureWrap)(trial % WRAP_COUNT));
         double  found = steepest_found(bench, &texture), bound = claimed(bench, &texture, trial);
         assert_true(found <= bound * (1 + 1e-6));

@@ -19,7 +19,7 @@
 #include "compiler/base/embedded.h"
 #include "krs/krs.h"
 
-enum { MOST_FUNCTIONS = 200, MOST_OF_ONE = 16, LONGEST = 8192 };
+enum { MAX_FUNCTIONS = 200, MAX_OF_ONE = 16, LONGEST = 8192 };
 
 typedef struct Parameter {
     char name[40], good[120]; /* `good`: what is given where another argument is tried; or "" */
@@ -28,11 +28,11 @@ typedef struct Parameter {
 typedef struct Called {
     char      name[40], file[40]; /* the file that has to be used, or "" */
     char      before[40];         /* the receiver of a method */
-    Parameter parameters[MOST_OF_ONE];
+    Parameter parameters[MAX_OF_ONE];
     int       count;
 } Called;
 
-static Called functions[MOST_FUNCTIONS];
+static Called functions[MAX_FUNCTIONS];
 static int    function_count;
 
 /* What fits a parameter without a default, by the word of its kind. */
@@ -123,7 +123,7 @@ static const char *read_parameter(const char *text, Called *called)
     size_t      length    = strcspn(text, ":,) \n=");
     const char *rest      = text + length;
     int         depth     = 0;
-    assert_true(called->count < MOST_OF_ONE && length > 0 && length < sizeof parameter->name);
+    assert_true(called->count < MAX_OF_ONE && length > 0 && length < sizeof parameter->name);
     snprintf(parameter->name, sizeof parameter->name, "%.*s", (int)length, text);
     bool given = false;
     if (*rest == ':') {
@@ -151,7 +151,7 @@ static void read_function(const char *text, const char *file)
     size_t  length = strcspn(text, "(");
     if (*text == '_')
         return;
-    assert_true(function_count < MOST_FUNCTIONS && length < sizeof called->name);
+    assert_true(function_count < MAX_FUNCTIONS && length < sizeof called->name);
     snprintf(called->name, sizeof called->name, "%.*s", (int)length, text);
     if (strncmp(file, "std/", 4) == 0)
         snprintf(called->file, sizeof called->file, "use \"%s\";", file);

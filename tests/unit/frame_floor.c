@@ -15,7 +15,7 @@
 #include "compiler/passes/compile.h"
 #include "krs/camera.h"
 
-enum { MOST_TEXT = 1024 };
+enum { MAX_TEXT = 1024 };
 
 typedef struct Opened {
     KrsScene *scene;
@@ -25,7 +25,7 @@ typedef struct Opened {
 static Opened open_scene(const char *head, const char *text, uint32_t specialize)
 {
     KrsOptions options = {.studio = true, .pictures = true, .specialize = specialize};
-    char       whole[MOST_TEXT];
+    char       whole[MAX_TEXT];
     Opened     opened;
     snprintf(whole, sizeof whole, "%s%s", head, text);
     if (krs_compile_text(whole, strlen(whole), "scene.krs", &options, &opened.scene) != KRS_OK)

@@ -16,10 +16,10 @@
 #include "compiler/scene/program.h"
 #include "tests/support/random.h"
 
-enum { SCENES = 6, MOST_TEXT = 1 << 16, PLACES = 2000 };
+enum { SCENES = 6, MAX_TEXT = 1 << 16, PLACES = 2000 };
 
 /* What framing.c may take, and the step that is under way then. */
-static const double MOST_OPERATIONS = 4e7, OF_LAST_STEP = 2e6;
+static const double MAX_OPERATIONS = 4e7, OF_LAST_STEP = 2e6;
 
 /* A solid of `corners` spikes around the y axis, which is twisted: its tips are on helices. */
 typedef struct Screw {
@@ -110,7 +110,7 @@ static double place(const KrsScene *scene, KrsCamera *camera)
 
 static void costly_screws_fill_their_picture(void **state)
 {
-    static char text[MOST_TEXT];
+    static char text[MAX_TEXT];
     Random      random = {7};
     double      most   = 0;
     (void)state;
@@ -125,7 +125,7 @@ static void costly_screws_fill_their_picture(void **state)
         KrsScene *scene = compile(text);
         double    ran   = place(scene, &camera);
         most            = fmax(most, ran);
-        if (ran > MOST_OPERATIONS + OF_LAST_STEP)
+        if (ran > MAX_OPERATIONS + OF_LAST_STEP)
             fail_msg("%d corners: placing the camera takes %g operations", screw.corners, ran);
         reach_of_tips(&screw, &camera, &wide, &tall);
         if (fmax(wide, tall) < 0.55)
@@ -133,7 +133,7 @@ static void costly_screws_fill_their_picture(void **state)
                      tall);
         krs_scene_free(scene);
     }
-    assert_true(most > 0.1 * MOST_OPERATIONS); /* some are costly */
+    assert_true(most > 0.1 * MAX_OPERATIONS); /* some are costly */
 }
 
 /* Exact distances to members of an instance group that blend look at all of them. */
@@ -151,7 +151,7 @@ static void groups_take_no_more(void **state)
         KrsScene *scene = compile(texts[i]);
         KrsCamera camera;
         double    ran = place(scene, &camera);
-        if (ran > MOST_OPERATIONS + OF_LAST_STEP)
+        if (ran > MAX_OPERATIONS + OF_LAST_STEP)
             fail_msg("%s: placing the camera takes %g operations", texts[i], ran);
         krs_scene_free(scene);
     }

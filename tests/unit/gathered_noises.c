@@ -14,7 +14,7 @@
 #include "compiler/passes/compile.h"
 #include "compiler/scene/compiled.h"
 
-enum { MOST_TURNS = 256 }; /* times 64 surfaces of a lane: a quarter of what lavapipe permits */
+enum { MAX_TURNS = 256 }; /* times 64 surfaces of a lane: a quarter of what lavapipe permits */
 
 /* The text of a function of the scene, with noises gathered or not. */
 static char *print(const char *scene_text, KrsFunction wanted, bool gathers)
@@ -111,7 +111,7 @@ static void turns_are_few(void **state)
     for (unsigned turns; (turns = next_loop(&at)) > 0; number++)
         all += turns;
     assert_true(number > 1);
-    assert_in_range(all, MOST_TURNS / 2, MOST_TURNS);
+    assert_in_range(all, MAX_TURNS / 2, MAX_TURNS);
     free(text);
 }
 

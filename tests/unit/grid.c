@@ -26,8 +26,8 @@ typedef struct uvec2 {
 #undef int
 #undef float
 
-#define MOST_ROWS (1u << 20)
-#define WIDEST    16384u /* a picture's side */
+#define MAX_ROWS (1u << 20)
+#define WIDEST   16384u /* a picture's side */
 
 /* As far as a quotient of two numbers, each rounded to a float, may be from the true one. */
 static float worst_quotient(uint number, uint across, int side)
@@ -44,7 +44,7 @@ static size_t count_wrong(uint across, uvec2 (*find)(uint, uint, float))
     Random random = {across};
     size_t wrong  = 0;
     for (int i = 0; i < 4000; i++) {
-        double   rows      = fmin(MOST_ROWS, floor(0x7fffffff / across));
+        double   rows      = fmin(MAX_ROWS, floor(0x7fffffff / across));
         uint     row       = (uint)(rows * (i < 2000 ? i / 2000.0 : random_between(&random, 0, 1)));
         uint64_t first     = (uint64_t)row * across;
         uint64_t numbers[] = {first, first + 1, first + across / 2, first + across - 1};

@@ -19,11 +19,11 @@
 #include "tests/support/bench.h"
 #include "tests/support/folder.h"
 
-enum { WIDTH = 7, HEIGHT = 5, PIXELS = WIDTH * HEIGHT, MOST_BYTES = 1 << 16 };
+enum { WIDTH = 7, HEIGHT = 5, PIXELS = WIDTH * HEIGHT, MAX_BYTES = 1 << 16 };
 
 static Memory        memory;
 static Arena         arena;
-static unsigned char file[MOST_BYTES];
+static unsigned char file[MAX_BYTES];
 static size_t        length;
 static Random        chance;
 
@@ -43,7 +43,7 @@ static int stop(void **state)
 
 static Image blank(ImageSpace space)
 {
-    return (Image){.arena = &arena, .space = space, .most_side = 100, .most_pixels = 1000};
+    return (Image){.arena = &arena, .space = space, .max_side = 100, .max_pixels = 1000};
 }
 
 /* ---- PNG ---- */
@@ -79,7 +79,7 @@ static int samples_of(const Form *form)
 static void put_bytes(png_structp png, png_bytep bytes, size_t count)
 {
     (void)png;
-    assert_true(length + count <= MOST_BYTES);
+    assert_true(length + count <= MAX_BYTES);
     memcpy(file + length, bytes, count);
     length += count;
 }
@@ -317,12 +317,12 @@ static void what_is_no_picture_is_refused(void **state)
         assert_true(is_told(image.fault));
     }
     write_png(&forms[2]);
-    Image image       = blank(SPACE_OF_FILE);
-    image.most_pixels = PIXELS - 1;
+    Image image      = blank(SPACE_OF_FILE);
+    image.max_pixels = PIXELS - 1;
     assert_false(image_read(&image, file, length));
     assert_string_equal(image.fault, "it has too many pixels");
-    image           = blank(SPACE_OF_FILE);
-    image.most_side = WIDTH - 1;
+    image          = blank(SPACE_OF_FILE);
+    image.max_side = WIDTH - 1;
     assert_false(image_read(&image, file, length));
     assert_string_equal(image.fault, "it has too many pixels");
 }

@@ -18,7 +18,7 @@
 #include "tests/support/bench.h"
 #include "tests/support/processors.h"
 
-enum { MOST_BOXES = 4000, POINTS = 1000 };
+enum { MAX_BOXES = 4000, POINTS = 1000 };
 
 static double box_distance(const Box *box, const double point[3])
 {
@@ -182,7 +182,7 @@ static const char *totals_are_wrong(const Grid *grid, const Case *of)
     uint32_t most  = 0;
     for (size_t c = 0; c < cells; c++)
         most = (uint32_t)fmax(most, grid->first[c + 1] - grid->first[c]);
-    if (most != grid->most_listed)
+    if (most != grid->max_listed)
         return "the longest list has another length";
     double few = fmin(18.0 * of->count, 1.1e6);
     if (cells > fmin(fmax(6.0 * of->count, few) + 9000, 70.0 * of->count))
@@ -214,7 +214,7 @@ static void choose_point(Random *random, const Grid *grid, const Case *of, doubl
 static const char *grid_is_wrong(const Grid *grid, const Case *of, Random *random)
 {
     const char *wrong  = totals_are_wrong(grid, of);
-    int         points = of->count < MOST_BOXES ? POINTS : POINTS / 5;
+    int         points = of->count < MAX_BOXES ? POINTS : POINTS / 5;
     for (int i = 0; i < points && !wrong; i++) {
         double point[3];
         choose_point(random, grid, of, point);
@@ -237,8 +237,8 @@ static const char *grid_is_wrong(const Grid *grid, const Case *of, Random *rando
 static void all_kinds(void **state)
 {
     Bench         *bench = *state;
-    static Box     boxes[MOST_BOXES];
-    const uint32_t counts[] = {1, 2, 5, 40, 700, MOST_BOXES};
+    static Box     boxes[MAX_BOXES];
+    const uint32_t counts[] = {1, 2, 5, 40, 700, MAX_BOXES};
     for (Kind kind = 0; kind < KINDS; kind++)
         for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
             for (int way = 0; way < 4; way++) {
@@ -279,9 +279,9 @@ static void shaders_find_cells(void **state)
 {
     Bench     *bench   = *state;
     const Kind kinds[] = {CUBE, TOWN, LINE, AXIS, FAR_AWAY, TINY, HUGE_ONES};
-    static Box boxes[MOST_BOXES];
+    static Box boxes[MAX_BOXES];
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        Case of = {boxes, MOST_BOXES, 0, 0};
+        Case of = {boxes, MAX_BOXES, 0, 0};
         Grid grid;
         make_boxes(&bench->random, kinds[i], boxes, of.count);
         grid_build(&grid, boxes, of.count, 0, 0, 1, &bench->arena, &bench->arena);
@@ -375,7 +375,7 @@ static void infinite_boxes_have_one_cell(void **state)
     const uint32_t *list = grid_find(&grid, point, &count, &clearance);
     assert_int_equal(count, 3);
     assert_true(list[0] == 0 && list[1] == 1 && list[2] == 3);
-    assert_true(clearance >= 0.9 * NOWHERE && grid.size == HUGE_VAL && grid.most_listed == 3);
+    assert_true(clearance >= 0.9 * NOWHERE && grid.size == HUGE_VAL && grid.max_listed == 3);
 
     for (int i = 0; i < 4; i++)
         boxes[i].axis[1] = (Range){1, -1};
@@ -438,15 +438,15 @@ static bool grids_are_equal(const Grid *a, const Grid *b)
 static void processors_share_the_work(void **state)
 {
     Bench     *bench = *state;
-    static Box boxes[MOST_BOXES];
+    static Box boxes[MAX_BOXES];
     cpu_set_t  all;
     for (Kind kind = 0; kind < KINDS; kind++) {
         Grid alone, together;
-        make_boxes(&bench->random, kind, boxes, MOST_BOXES);
+        make_boxes(&bench->random, kind, boxes, MAX_BOXES);
         assert_int_equal(use_one_processor(&all), 0);
-        grid_build(&alone, boxes, MOST_BOXES, 0.1, 0.2, 1, &bench->arena, &bench->arena);
+        grid_build(&alone, boxes, MAX_BOXES, 0.1, 0.2, 1, &bench->arena, &bench->arena);
         assert_int_equal(use_processors(&all), 0);
-        grid_build(&together, boxes, MOST_BOXES, 0.1, 0.2, 1, &bench->arena, &bench->arena);
+        grid_build(&together, boxes, MAX_BOXES, 0.1, 0.2, 1, &bench->arena, &bench->arena);
         assert_true(grids_are_equal(&alone, &together));
         together.clearance[0] *= 2;
         assert_false(grids_are_equal(&alone, &together));
@@ -477,8 +477,8 @@ static void lists_of_many(void **state)
         size_t cells = (size_t)grid.cells[0] * grid.cells[1] * grid.cells[2];
         printf("# %s: %u x %u x %u cells, %.1f entries each, %u longest\n", many[i].name,
                grid.cells[0], grid.cells[1], grid.cells[2], (double)grid.first[cells] / count,
-               grid.most_listed);
-        assert_true(grid.most_listed <= many[i].longest);
+               grid.max_listed);
+        assert_true(grid.max_listed <= many[i].longest);
     }
 }
 

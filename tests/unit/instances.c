@@ -141,9 +141,9 @@ static void costs_count_instances(void **state)
     Many     many    = make_many(b);
     Tape     sharp   = tape_new(b->graph, &many.roots[SHARP], 1, &b->arena);
     Tape     nested  = tape_new(b->graph, &many.roots[NESTED], 1, &b->arena);
-    uint32_t longest = table_of(b->graph, many.sharp)->grid.most_listed;
-    uint32_t outer   = table_of(b->graph, many.nested)->grid.most_listed;
-    uint32_t inner   = table_of(b->graph, many.inner)->grid.most_listed;
+    uint32_t longest = table_of(b->graph, many.sharp)->grid.max_listed;
+    uint32_t outer   = table_of(b->graph, many.nested)->grid.max_listed;
+    uint32_t inner   = table_of(b->graph, many.inner)->grid.max_listed;
     assert_int_equal(tape_loops(&sharp), longest);
     assert_int_equal(tape_loops(&nested), outer * (1 + inner));
     assert_true(tape_flops(&nested) > tape_flops(&sharp));

@@ -166,8 +166,8 @@ static void vertices_are_near(void **state)
 }
 
 /* How far points of some triangles are from others, at most. */
-static double most_apart(const double (*vertices)[3], const uint32_t (*from)[3], size_t from_count,
-                         const uint32_t (*to)[3], size_t to_count)
+static double max_apart(const double (*vertices)[3], const uint32_t (*from)[3], size_t from_count,
+                        const uint32_t (*to)[3], size_t to_count)
 {
     enum { STEPS = 12 };
     double most = 0;
@@ -223,10 +223,10 @@ static void distances_of_fans_are_enough(void **state)
                                     count, (uint32_t)count, 0);
         if (isinf(found))
             continue;
-        double least = fmax(most_apart((const double(*)[3])vertices, (const uint32_t(*)[3])old,
-                                       count, (const uint32_t(*)[3]) new, left),
-                            most_apart((const double(*)[3])vertices, (const uint32_t(*)[3]) new,
-                                       left, (const uint32_t(*)[3])old, count));
+        double least = fmax(max_apart((const double(*)[3])vertices, (const uint32_t(*)[3])old,
+                                      count, (const uint32_t(*)[3]) new, left),
+                            max_apart((const double(*)[3])vertices, (const uint32_t(*)[3]) new,
+                                      left, (const uint32_t(*)[3])old, count));
         known++;
         if (found < least || found > 2 * least + 0.01)
             fail_msg("fan %d: points are %g apart, and %g was found", turn, least, found);
@@ -248,8 +248,8 @@ static void small_moves_need_no_questions(void **state)
         const uint32_t(*now)[3]    = (const uint32_t(*)[3])ring->triangles,
               (*before)[3]         = (const uint32_t(*)[3])ring->whole;
         assert_true(left < TRIANGLES * 2 / 3);
-        assert_true(most_apart(vertices, now, left, before, TRIANGLES) <= error);
-        assert_true(most_apart(vertices, before, TRIANGLES, now, left) <= error);
+        assert_true(max_apart(vertices, now, left, before, TRIANGLES) <= error);
+        assert_true(max_apart(vertices, before, TRIANGLES, now, left) <= error);
         print_message("# %zu of %d triangles within %g\n", left, TRIANGLES, error);
         ring_free(ring);
     }

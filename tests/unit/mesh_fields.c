@@ -106,7 +106,7 @@ static void ranges_of_outlines_hold(void **context)
 
 static double value_of(const FieldPieces *pieces, const double *values)
 {
-    double stack[MOST_PIECE_STEPS];
+    double stack[MAX_PIECE_STEPS];
     int    depth = 0;
     for (size_t i = 0; i < pieces->step_count; i++) {
         int step = pieces->steps[i];
@@ -127,7 +127,7 @@ static size_t try_pieces(const char *text)
     Opened *o       = open_field(text);
     size_t  crossed = 0;
     for (int i = 0; i < BOXES; i++) {
-        double      points[POINTS][3], distances[POINTS], values[POINTS * MOST_PIECES];
+        double      points[POINTS][3], distances[POINTS], values[POINTS * MAX_PIECES];
         FieldPieces pieces;
         Box         box = random_box(1.2, 0.7);
         if (!field_enter(&o->field, box))
@@ -306,7 +306,7 @@ static double growth_at(const MeshField *field, const double p[3], const double 
 }
 
 /* The least growth on ways along a normal that begin in a box, where the value is at most the error, and are as long. */
-static double least_growth(const MeshField *field, Box box, double error, const double normal[3])
+static double min_growth(const MeshField *field, Box box, double error, const double normal[3])
 {
     double points[POINTS][3], values[POINTS], least = INFINITY;
     points_in(box, points);
@@ -341,7 +341,7 @@ static double slope_share(MeshField *field, Box inner, double error)
         return 0;
     cell.slope = 0; /* it is that along another normal */
     smooth_look_closer(field, error, &cell);
-    least = least_growth(field, inner, error, normal);
+    least = min_growth(field, inner, error, normal);
     return cell.slope > 0 && least < INFINITY ? cell.slope / least : 0;
 }
 

@@ -26,7 +26,7 @@ static double uniform(double low, double high) { return random_between(&chance, 
 
 typedef struct Trial {
     FlatPieces pieces;
-    double     moved[MOST_FLATS]; /* what is added to a number for that which it stands for */
+    double     moved[MAX_FLATS]; /* what is added to a number for that which it stands for */
 } Trial;
 
 static void random_normal(double normal[3])

@@ -34,7 +34,7 @@ typedef struct Trial {
     Arena          arena;
     Node          *roots;
     MeshSolid      solid;
-    MeshField      fields[MOST_PARTS];
+    MeshField      fields[MAX_PARTS];
     Tets           tets;
     Contour        contour;
     double         error;
@@ -385,7 +385,7 @@ static void try_smooth(const Trial *t, SmoothCell *cell, Box own, Tet *tet, Boun
 static void check_steep(const Trial *t, const PieceCell *cell, Box wide, Shares *shares)
 {
     enum { POINTS = 12 };
-    double points[POINTS][3], values[POINTS * MOST_PIECES];
+    double points[POINTS][3], values[POINTS * MAX_PIECES];
     size_t count = cell->pieces.count;
     for (int i = 0; i < POINTS; i++)
         random_point(wide, points[i]);

@@ -59,12 +59,12 @@ static double two_balls(const double at[3])
 
 /* ---- by simplices ---- */
 
-enum { MOST_SIMPLICES = 400000 };
+enum { MAX_SIMPLICES = 400000 };
 typedef struct Simplex {
     uint32_t points[3];
 } Simplex;
 
-static Simplex simplices[MOST_SIMPLICES];
+static Simplex simplices[MAX_SIMPLICES];
 
 static int compare(const void *a, const void *b) { return memcmp(a, b, sizeof(Simplex)); }
 
@@ -106,7 +106,7 @@ static long count_simplices(const Tets *tets, int size)
             if (size == 4)
                 continue;
             qsort(simplex.points, (size_t)size, sizeof *simplex.points, ascending);
-            assert_true(count < MOST_SIMPLICES);
+            assert_true(count < MAX_SIMPLICES);
             simplices[count++] = simplex;
         }
     return size == 4 ? whole : count_different(count);

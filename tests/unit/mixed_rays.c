@@ -104,24 +104,24 @@ static int count_different(const KrsPicture *a, const KrsPicture *b)
     return count;
 }
 
-enum { MOST_SHADERS = 64 };
+enum { MAX_SHADERS = 64 };
 
 static int count_shaders(const Fixture *fixture, const char *name)
 {
-    KrsKernelStats shaders[MOST_SHADERS];
-    const size_t   count = krs_rendering_kernels(fixture->rendering, shaders, MOST_SHADERS);
+    KrsKernelStats shaders[MAX_SHADERS];
+    const size_t   count = krs_rendering_kernels(fixture->rendering, shaders, MAX_SHADERS);
     int            found = 0;
-    for (size_t i = 0; i < count && i < MOST_SHADERS; i++)
+    for (size_t i = 0; i < count && i < MAX_SHADERS; i++)
         found += strncmp(shaders[i].name, name, strlen(name)) == 0;
     return found;
 }
 
 static size_t count_bytes(const Fixture *fixture, const char *name)
 {
-    KrsKernelStats shaders[MOST_SHADERS];
-    const size_t   count = krs_rendering_kernels(fixture->rendering, shaders, MOST_SHADERS);
+    KrsKernelStats shaders[MAX_SHADERS];
+    const size_t   count = krs_rendering_kernels(fixture->rendering, shaders, MAX_SHADERS);
     size_t         bytes = 0;
-    for (size_t i = 0; i < count && i < MOST_SHADERS; i++)
+    for (size_t i = 0; i < count && i < MAX_SHADERS; i++)
         bytes += strcmp(shaders[i].name, name) == 0 ? shaders[i].glsl_bytes : 0;
     return bytes;
 }

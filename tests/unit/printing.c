@@ -152,8 +152,8 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_ARCS]                = "krs_atan2(p.x, p.y)",
 };
 
-enum { MOST_SHADERS = 8192 };
-static uint64_t compiled_shaders[MOST_SHADERS];
+enum { MAX_SHADERS = 8192 };
+static uint64_t compiled_shaders[MAX_SHADERS];
 static size_t   compiled_count;
 
 /* Whether this very shader was compiled before: most functions say the same in many variants. */
@@ -163,7 +163,7 @@ static bool was_compiled(const char *shader, size_t length)
     for (size_t i = 0; i < compiled_count; i++)
         if (compiled_shaders[i] == hash)
             return true;
-    assert_true(compiled_count < MOST_SHADERS);
+    assert_true(compiled_count < MAX_SHADERS);
     compiled_shaders[compiled_count++] = hash;
     return false;
 }

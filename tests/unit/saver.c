@@ -151,7 +151,7 @@ static void light_is_saved_as_numbers(void **state)
     order(SAVE_PICTURE, 1, true, "one");
     assert_int_equal(wait_for_it().status, KRS_OK);
     assert_true(text_file_read("one.exr", &bytes));
-    Image image = {.arena = &arena, .most_side = 100, .most_pixels = 10000};
+    Image image = {.arena = &arena, .max_side = 100, .max_pixels = 10000};
     assert_true(image_read(&image, (const unsigned char *)bytes.text, bytes.length));
     for (size_t i = 0; i < 4 * (size_t)WIDTH * HEIGHT; i++)
         assert_true(fabsf(image.samples[i] - picture->color[i]) <=

@@ -18,12 +18,12 @@
 
 /* ---- scenes, and the files that they read ---- */
 
-enum { MOST_SAID = 120, LONGEST = 400 };
+enum { MAX_SAID = 120, LONGEST = 400 };
 
 typedef struct Heard {
     const char *csv, *json; /* what the files a/table.csv and a/data.json have */
     size_t      count;
-    char        said[MOST_SAID][LONGEST];
+    char        said[MAX_SAID][LONGEST];
 } Heard;
 
 static const char *supply(void *user, const char *path, size_t *length)
@@ -39,7 +39,7 @@ static const char *supply(void *user, const char *path, size_t *length)
 static void listen(void *user, const KrsDiagnostic *diagnostic)
 {
     Heard *heard = user;
-    assert_true(heard->count < MOST_SAID);
+    assert_true(heard->count < MAX_SAID);
     snprintf(heard->said[heard->count++], LONGEST, "%s %s", diagnostic->code, diagnostic->message);
 }
 

@@ -209,7 +209,7 @@ enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
 const BuiltinName *builtin_find(Elaboration *e, const char *name)
 {
     uintptr_t    address = (uintptr_t)name;
-    BuiltinName *known   = &e->builtins[(address >> 3 ^ address >> 11) % MOST_BUILTIN_NAMES];
+    BuiltinName *known   = &e->builtins[(address >> 3 ^ address >> 11) % MAX_BUILTIN_NAMES];
     if (known->name == name)
         return known;
     *known = (BuiltinName){.name = name};

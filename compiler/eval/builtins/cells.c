@@ -113,7 +113,7 @@ static Value union_of_cells(Elaboration *e, Cells *cells)
     double total = 1;
     for (int i = 0; i < 3; i++)
         total *= cells->counts[i];
-    if (total > MOST_ELEMENTS) {
+    if (total > MAX_ELEMENTS) {
         Diag *diag  = diag_add(e->diags, DIAG_LIMIT, cells->call->syntax->span,
                                "%.0f cells, each with a shape of its own", total);
         diag->label = "4 million are possible";
@@ -160,8 +160,8 @@ static Node cell_leaf(Elaboration *e, const uint32_t counts[3])
 {
     GraphParameter range = {{0}, {0}};
     for (int i = 0; i < 3; i++) {
-        range.low[i]  = counts[i] ? 0 : -MOST_CELL_NUMBER;
-        range.high[i] = counts[i] ? counts[i] - 1 : MOST_CELL_NUMBER;
+        range.low[i]  = counts[i] ? 0 : -MAX_CELL_NUMBER;
+        range.high[i] = counts[i] ? counts[i] - 1 : MAX_CELL_NUMBER;
     }
     uint32_t slot = (uint32_t)e->graph->parameters.count;
     array_push(e->arena, &e->graph->parameters, range);

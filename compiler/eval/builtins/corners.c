@@ -7,16 +7,16 @@
 #include "compiler/shape/map.h"
 
 /* Of more corners a figure is as good as round. */
-enum { MOST_CORNERS = 128 };
+enum { MAX_CORNERS = 128 };
 
 typedef struct Corners {
-    Node   at[MOST_CORNERS]; /* [x, y, 0] */
+    Node   at[MAX_CORNERS]; /* [x, y, 0] */
     size_t count;
 } Corners;
 
 static bool add_corner(Corners *corners, Node at)
 {
-    if (corners->count == MOST_CORNERS)
+    if (corners->count == MAX_CORNERS)
         return false;
     corners->at[corners->count++] = at;
     return true;
@@ -68,7 +68,7 @@ static bool add_pieces(Elaboration *e, const Outline *outline, Corners *corners)
 /* Tells whether the corners are known now, and the polygon turns to the left all the way around, once. */
 static bool turns_left_once(const Elaboration *e, const Corners *corners)
 {
-    double at[MOST_CORNERS][2], size = 0, around = 0;
+    double at[MAX_CORNERS][2], size = 0, around = 0;
     for (size_t i = 0; i < corners->count; i++)
         for (uint32_t k = 0; k < 2; k++) {
             if (!graph_known_component(e->graph, corners->at[i], k, &at[i][k]))

@@ -11,7 +11,7 @@
 #include "compiler/eval/builtins/builtins.h"
 #include "compiler/graph/bounds/facts.h"
 
-enum { MOST_CELLS = 4000, MOST_CUTS = 24 };
+enum { MAX_CELLS = 4000, MAX_CUTS = 24 };
 
 typedef struct Cell {
     Box      box;
@@ -91,7 +91,7 @@ static bool cut_all(Extremes *x)
         const Cell *cell    = &cells[i];
         bool        matters = cell->range.low < x->found.low - slack ||
                        cell->range.high > x->found.high + slack;
-        if (matters && cell->cuts < MOST_CUTS && x->count < MOST_CELLS)
+        if (matters && cell->cuts < MAX_CUTS && x->count < MAX_CELLS)
             cut_cell(x, cell);
         else
             x->sure = range_hull(x->sure, cell->range);

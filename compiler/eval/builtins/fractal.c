@@ -16,11 +16,11 @@ static bool want_iterations(Elaboration *e, const Call *call, uint32_t index, do
         return false;
     Range range  = node_range(e->builder, node, 0);
     bool  broken = range.low == range.high && range.low != floor(range.low);
-    if (!(range.low >= 1 && range.high < MOST_ITERATIONS + 1) || broken) {
+    if (!(range.low >= 1 && range.high < MAX_ITERATIONS + 1) || broken) {
         const Syntax *syntax = call->arguments[index].syntax;
         Diag         *diag   = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
                                         "the iterations of `%s` must be whole numbers from 1 to %d",
-                                        call->name, MOST_ITERATIONS);
+                                        call->name, MAX_ITERATIONS);
         diag->label = diag_text(e->diags, range.low == range.high ? "this is %g" : "from %g to %g",
                                 range.low, range.high);
         if (range.low != range.high)
@@ -60,7 +60,7 @@ Value builtin_julia(Elaboration *e, Call *call)
     uint32_t power;
     double   most;
     Node     iterations, c = want_quaternion(e, call, 0);
-    if (c == NODE_NONE || !want_count(e, call, 1, 2, MOST_POWER, 2, &power) ||
+    if (c == NODE_NONE || !want_count(e, call, 1, 2, MAX_POWER, 2, &power) ||
         !want_iterations(e, call, 2, usual_iterations(power), &iterations, &most))
         return value_error();
     return value_shape(make_julia(e->builder, c, power, iterations, most, call->syntax->span));
@@ -71,7 +71,7 @@ Value builtin_mandelbulb(Elaboration *e, Call *call)
     uint32_t power;
     double   most;
     Node     iterations;
-    if (!want_count(e, call, 0, 2, MOST_POWER, 8, &power) ||
+    if (!want_count(e, call, 0, 2, MAX_POWER, 8, &power) ||
         !want_iterations(e, call, 1, usual_iterations(power), &iterations, &most))
         return value_error();
     return value_shape(make_mandelbulb(e->builder, power, iterations, most, call->syntax->span));

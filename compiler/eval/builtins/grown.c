@@ -6,7 +6,7 @@
 /* In sizes of the figure: how far parabolas may be from arcs. */
 static const double TOLERANCE = 1e-6;
 /* How far a part of an arc may turn. */
-static const double MOST_TURN = 0.8;
+static const double MAX_TURN = 0.8;
 
 static void point_of_arc(const Curve *arc, double angle, double away, double point[2])
 {
@@ -20,7 +20,7 @@ static void add_arc(Arena *arena, Curves *curves, const Curve *arc, double off)
     double begin = atan2(arc->from[1] - arc->centre[1], arc->from[0] - arc->centre[0]);
     double end   = atan2(arc->to[1] - arc->centre[1], arc->to[0] - arc->centre[0]);
     double turn  = remainder(end - begin, 2 * acos(-1));
-    double most  = fmin(pow(128 * off / arc->radius, 0.25), MOST_TURN);
+    double most  = fmin(pow(128 * off / arc->radius, 0.25), MAX_TURN);
     int    count = (int)fmax(ceil(fabs(turn) / most), 1);
     double part = turn / count, far = arc->radius / cos(0.5 * part);
     Curve  curve = {.to = {arc->from[0], arc->from[1]}};

@@ -120,7 +120,7 @@ Value builtin_range(Elaboration *e, Call *call)
         from = 0;
     }
     double count = ceil((to - from) / by);
-    if (!(by != 0) || !(count <= MOST_ELEMENTS)) {
+    if (!(by != 0) || !(count <= MAX_ELEMENTS)) {
         bool  ends  = by != 0;
         Diag *diag  = diag_add(e->diags, ends ? DIAG_LIMIT : DIAG_BAD_VALUE, call->syntax->span,
                               ends ? "a range of more than 4 million elements"

@@ -42,7 +42,7 @@ Value method_distance(Elaboration *e, const Shape *shape, Call *call)
     Lowering l   = {.graph   = e->graph,
                     .scratch = e->scratch,
                     .far     = reach > 0,
-                    .most    = e->graph->count + MOST_LOWERED};
+                    .most    = e->graph->count + MAX_LOWERED};
     Lowered  all = lower_shape(&l, shape, context_new(point, true));
     if (l.overflow || all.distance == NODE_NONE) {
         Diag *diag  = diag_add(e->diags, DIAG_LIMIT, call->syntax->span, "%s",

@@ -145,7 +145,7 @@ Value builtin_read_csv(Elaboration *e, Call *call)
 {
     DataText data;
     uint32_t skip;
-    if (!want_count(e, call, 1, 0, MOST_ELEMENTS, 0, &skip))
+    if (!want_count(e, call, 1, 0, MAX_ELEMENTS, 0, &skip))
         return value_error();
     char separator = separator_argument(e, call);
     if (!separator || !data_open(e, call, &data))

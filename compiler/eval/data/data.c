@@ -20,7 +20,7 @@ Diag *data_error(DataText *data, uint32_t start, uint32_t end, const char *messa
 
 bool data_push(DataText *data, Values *values, Value value)
 {
-    if (++data->values > MOST_ELEMENTS) {
+    if (++data->values > MAX_ELEMENTS) {
         Diag *diag  = diag_add(data->e->diags, DIAG_LIMIT, data->call->span,
                                "a file of more than 4 million values");
         diag->label = "read here";

@@ -124,7 +124,7 @@ Value builtin_svg(Elaboration *e, Call *call)
     }
     if (!want_constant(e, call, 1, &size) || !read_beside(e, file, file->value.string, &bytes))
         return value_error();
-    if (!(size > 0 && size < MOST_EXTENT)) {
+    if (!(size > 0 && size < MAX_EXTENT)) {
         diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[1].syntax->span,
                  "the size of a drawing must be greater than 0, and below 1e12");
         return value_error();

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { MOST_LEVELS = 200, MOST_MEMBERS = 1000 };
+enum { MAX_LEVELS = 200, MAX_MEMBERS = 1000 };
 
 static char here(const DataText *data) { return data->text[data->at]; }
 
@@ -162,7 +162,7 @@ static bool read_member(DataText *data, Values *names, Values *values, uint32_t 
             data_error(data, start, data->at, "a name that the record has already");
             return false;
         }
-    if (names->count >= MOST_MEMBERS) {
+    if (names->count >= MAX_MEMBERS) {
         data_error(data, start, data->at, "a record of more than 1,000 members");
         return false;
     }
@@ -211,7 +211,7 @@ static Value read_word(DataText *data)
 static Value read_value(DataText *data, uint32_t level)
 {
     skip_blanks(data);
-    if (level > MOST_LEVELS) {
+    if (level > MAX_LEVELS) {
         data_error(data, data->at, data->at + 1, "nested more than 200 levels deep");
         return value_error();
     }

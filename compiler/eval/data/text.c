@@ -107,7 +107,7 @@ static bool want_positive_constant(Elaboration *e, const Call *call, uint32_t in
 {
     if (!want_constant(e, call, index, number))
         return false;
-    if (!is_given(call, index) || (*number > 0 && *number < MOST_EXTENT))
+    if (!is_given(call, index) || (*number > 0 && *number < MAX_EXTENT))
         return true;
     Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[index].syntax->span,
                            "a size of letters must be greater than 0, and below 1e12");

@@ -54,10 +54,10 @@ static bool fail_texture(Elaboration *e, const Argument *file, const char *path,
 static bool make_texture(Elaboration *e, const Argument *file, const FileBytes *bytes,
                          const TextureKey *key)
 {
-    Image image = {.arena       = e->scratch,
-                   .space       = (ImageSpace)key->space,
-                   .most_side   = MOST_TEXTURE_SIDE,
-                   .most_pixels = MOST_TEXELS};
+    Image image = {.arena      = e->scratch,
+                   .space      = (ImageSpace)key->space,
+                   .max_side   = MAX_TEXTURE_SIDE,
+                   .max_pixels = MAX_TEXELS};
     bool  read  = image_read(&image, bytes->bytes, bytes->length);
     if (read) {
         Textures *all     = e->graph->textures;
@@ -133,7 +133,7 @@ static Node pixel_on_texture(Graph *g, const Texture *texture, Node uv)
     Node         along  = graph_op2(g, OP_vec2, across, up);
     Node         length = graph_op1(g, OP_length, along), width = graph_component(g, axes, 2);
     Node         wanted = graph_op1(g, OP_ceil, over(g, length, at_least(g, width, 1)));
-    Node         most   = graph_number(g, MOST_TEXTURE_TAPS);
+    Node         most   = graph_number(g, MAX_TEXTURE_TAPS);
     Node         taps   = at_least(g, graph_op2(g, OP_min, wanted, most), 1);
     Node         wide   = graph_op2(g, OP_max, width, over(g, length, taps));
     Node         place  = over(g, along, size);

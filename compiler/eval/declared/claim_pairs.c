@@ -79,7 +79,7 @@ static void claim_ball(Graph *g, ShapeClaims *claims, const Shape *shape)
 /* The distance of a shape where an offset is above it. */
 static Node offset_distance(Graph *g, const Shape *shape, Arena *scratch)
 {
-    Lowering l   = {.graph = g, .scratch = scratch, .most = g->count + MOST_LOWERED};
+    Lowering l   = {.graph = g, .scratch = scratch, .most = g->count + MAX_LOWERED};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(g, OP_POINT), true));
     return l.overflow || all.distance == NODE_NONE ? NODE_NONE
                                                    : divide_by_slope(g, all.distance, shape->slope);

@@ -17,10 +17,10 @@ typedef struct ShapeClaim {
     Span         span;  /* of the property's value */
 } ShapeClaim;
 
-enum { MOST_SHAPE_CLAIMS = 8 };
+enum { MAX_SHAPE_CLAIMS = 8 };
 
 typedef struct ShapeClaims {
-    ShapeClaim items[MOST_SHAPE_CLAIMS];
+    ShapeClaim items[MAX_SHAPE_CLAIMS];
     uint32_t   count;
 } ShapeClaims;
 

@@ -18,7 +18,7 @@
 /* ---- samples ---- */
 
 /* Samples, and the least of them where many operations make each one slow. */
-enum { SAMPLES = 400, LEAST_SAMPLES = 40, MANY_OPERATIONS = 5000 };
+enum { SAMPLES = 400, MIN_SAMPLES = 40, MANY_OPERATIONS = 5000 };
 
 /* What is sampled: numbers at points of a box, at the default values of the parameters. */
 typedef struct Sampling {
@@ -63,7 +63,7 @@ static bool start_sampling(Elaboration *e, Sampling *s, const Node *roots, size_
     s->rounding = 1e-9 * (1 + s->size);
     s->count    = (uint32_t)fmax(
            fmin(SAMPLES, SAMPLES * (double)MANY_OPERATIONS / (double)(tape_operations(&s->tape) + 1)),
-           LEAST_SAMPLES);
+           MIN_SAMPLES);
     return s->size < 1e100;
 }
 
@@ -241,7 +241,7 @@ static bool refutes_between(const Sampling *s, const ShapeClaim *claim, const do
 /* `shape`: whose points they are. */
 static bool check_pairs(Elaboration *e, const Shape *shape, const ShapeClaims *claims)
 {
-    Node     roots[2 * MOST_SHAPE_CLAIMS];
+    Node     roots[2 * MAX_SHAPE_CLAIMS];
     Sampling s;
     for (uint32_t i = 0; i < claims->count; i++) {
         roots[2 * i]     = claims->items[i].a;

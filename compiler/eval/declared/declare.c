@@ -247,7 +247,7 @@ static bool uv_property(Elaboration *e, const Environment *env, const Syntax *de
 /* ---- outlines ---- */
 
 /* Fewer corners are a formula, unless all outlines are wanted: a loop over a list costs as much as some. */
-enum { LEAST_CORNERS = 64 };
+enum { MIN_CORNERS = 64 };
 
 /* A corner that is known now, where no arc begins. */
 static bool known_corner(Value value, double corner[4])
@@ -273,7 +273,7 @@ static bool outline_property(Elaboration *e, const Environment *env, const Synta
 {
     const Syntax *syntax = outline_syntax(e, declaration);
     Value         points = syntax ? evaluate(e, env, syntax) : value_error();
-    if (points.type != VALUE_LIST || points.list->count < (e->outlines ? 3 : LEAST_CORNERS))
+    if (points.type != VALUE_LIST || points.list->count < (e->outlines ? 3 : MIN_CORNERS))
         return false;
     for (size_t i = 0; i < points.list->count; i++) {
         double corner[4];

@@ -16,7 +16,7 @@
 #include "compiler/family/family.h"
 #include "compiler/lower/instance_groups.h"
 
-enum { MOST_PARTS = 20000, MOST_PAIRS = 20000 };
+enum { MAX_PARTS = 20000, MAX_PAIRS = 20000 };
 
 /* At how many points it is looked for what a fillet adds: of a pair of few, and of many. */
 enum { POINTS_OF_FEW = 2000, POINTS_OF_MANY = 200 };
@@ -83,7 +83,7 @@ static bool add_parts(Elaboration *e, const Shape *shape, Shapes *parts)
     const bool   wrapper = shape->kind == SHAPE_PAINT || shape->kind == SHAPE_SMOOTH ||
                          shape->kind == SHAPE_TRANSFORM;
     const bool sharp = shape->kind == SHAPE_UNION && shape->blend.width == NODE_NONE;
-    if (parts->count > MOST_PARTS)
+    if (parts->count > MAX_PARTS)
         return true; /* reported below */
     if (sharp || wrapper) {
         for (uint32_t i = 0; i < shape->child_count; i++)
@@ -121,7 +121,7 @@ static bool add_shape_parts(Filleting *f, const Shape *shape, uint32_t owner)
         return false;
     for (size_t i = 0; i < parts.count; i++) {
         FilletPart part = {.shape = parts.items[i], .owner = owner};
-        if (f->parts.count == MOST_PARTS)
+        if (f->parts.count == MAX_PARTS)
             return refuse_many(f, "fillets between more than 20,000 parts");
         extents_add(e, part.shape, &part.extents);
         if (part.extents.wants_iterations) {
@@ -141,7 +141,7 @@ static const Shape *make_pair(Filleting *f, const FilletPair *pair)
     Elaboration     *e       = f->e;
     const Span       span    = f->call->syntax->span;
     const Shape     *parts[] = {pair->a->shape, pair->b->shape};
-    const bool       many    = f->pairs.count >= LEAST_INSTANCES;
+    const bool       many    = f->pairs.count >= MIN_INSTANCES;
     const FilletZone zone    = fillet_zone(e, parts[0], parts[1], f->widest, pair->box,
                                         many ? POINTS_OF_MANY : POINTS_OF_FEW);
     if (zone.known && zone.cells.count == 0)
@@ -179,7 +179,7 @@ static bool add_pair(Filleting *f, FilletPart *a, FilletPart *b)
         return true;
     if (a->extents.endless || b->extents.endless)
         return refuse_endless(f, a->extents.endless ? a : b);
-    if (f->pairs.count == MOST_PAIRS)
+    if (f->pairs.count == MAX_PAIRS)
         return refuse_many(f, "fillets between more than 20,000 pairs of near parts");
     array_push(f->e->values, &f->pairs, ((FilletPair){a, b, box}));
     return true;

@@ -11,7 +11,7 @@
 #include "compiler/lower/context.h"
 
 /* Of larger trees distances cost too much. */
-enum { MOST_TREE = 64 };
+enum { MAX_TREE = 64 };
 
 /* Cells are halved until they are so small, in widths. */
 static const double FINE = 0.1;
@@ -36,9 +36,9 @@ static bool depends_on_frame(const Tape *tape)
 static bool find_distances(Elaboration *e, const Shape *const parts[2], Distances *distances)
 {
     Graph   *g = e->graph;
-    Lowering l = {.graph = g, .scratch = e->scratch, .most = g->count + MOST_LOWERED};
+    Lowering l = {.graph = g, .scratch = e->scratch, .most = g->count + MAX_LOWERED};
     for (int k = 0; k < 2; k++) {
-        if (parts[k]->tree_shapes > MOST_TREE || parts[k]->open_surfaces || parts[k]->per_frame)
+        if (parts[k]->tree_shapes > MAX_TREE || parts[k]->open_surfaces || parts[k]->per_frame)
             return false;
         distances->roots[k] =
             lower_shape(&l, parts[k], context_new(graph_leaf(g, OP_POINT), true)).distance;

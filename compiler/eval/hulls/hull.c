@@ -14,7 +14,7 @@
 #include "compiler/shape/map.h"
 
 /* Of one size; of others, whose number counts by its third power. */
-enum { MOST_POINTS = 4096, MOST_BALLS = 200 };
+enum { MAX_POINTS = 4096, MAX_BALLS = 200 };
 
 static const double NEAR = 1e-9;
 
@@ -166,7 +166,7 @@ static Value hull_of_balls(const Hulling *h, const HullBall *balls, size_t count
                       "give points around the solid, or a `radius`");
     bool points = !plane && !flat && one_size(balls, count) &&
                   (balls[0].radius == 0 || h->grown.type == VALUE_NUMBER);
-    if (count > (points ? MOST_POINTS : MOST_BALLS))
+    if (count > (points ? MAX_POINTS : MAX_BALLS))
         return refuse(h,
                       points ? "a hull has at most 4096 points"
                              : "a hull has at most 200 balls of different sizes, or in a plane",
@@ -430,7 +430,7 @@ const Shape *round_hull(Elaboration *e, const Call *call, const HullParts *parts
         rims     = rims || length3(parts->items[i].rim) > 0;
         round    = round || balls[i].radius > 0;
     }
-    if (parts->count > MOST_BALLS)
+    if (parts->count > MAX_BALLS)
         return NULL;
     if (rims)
         return rims_hull(&h, &common, &result) && result.type == VALUE_SHAPE ? result.shape : NULL;

@@ -20,7 +20,7 @@ typedef struct Sampling {
     size_t most;
 } Sampling;
 static const Sampling samplings[] = {{64, 200, 64}, {32, 100, SIZE_MAX}};
-enum { MOST_SAMPLED_BALLS = 4 };
+enum { MAX_SAMPLED_BALLS = 4 };
 
 /* Of many regions the numbers of planes are multiples of this. */
 enum { ALIKE = 4 };
@@ -112,7 +112,7 @@ static void add_hull_faces(Elaboration *e, const HullParts *parts, const Samplin
         const HullPart *part = &parts->items[i];
         if (length3(part->rim) > 0)
             add_rim(e, &points, part, sampling->rim);
-        else if (part->ball.radius > 0 && balls <= MOST_SAMPLED_BALLS)
+        else if (part->ball.radius > 0 && balls <= MAX_SAMPLED_BALLS)
             add_ball(e, &points, part->ball.centre, part->ball.radius, sampling->ball);
         else
             add_point(e, &points, part->ball.centre, 0, part->rim);

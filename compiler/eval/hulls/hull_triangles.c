@@ -12,7 +12,7 @@
 #include "compiler/eval/hulls/hull.h"
 #include "compiler/eval/hulls/hull_normals.h"
 
-enum { MOST_POINTS = 4096 };
+enum { MAX_POINTS = 4096 };
 
 static Value refuse(Elaboration *e, const Call *call, const char *what)
 {
@@ -107,7 +107,7 @@ Value builtin_hull_triangles(Elaboration *e, Call *call)
     const List *points = want_list(e, call, 0);
     if (!points)
         return value_error();
-    if (points->count < 4 || points->count > MOST_POINTS)
+    if (points->count < 4 || points->count > MAX_POINTS)
         return refuse(e, call, "a hull has from 4 to 4096 points");
     coordT *numbers = arena_new_array(e->scratch, coordT, 3 * points->count);
     for (size_t i = 0; i < points->count; i++)

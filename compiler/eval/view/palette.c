@@ -7,7 +7,7 @@
 
 #include "compiler/front/token.h"
 
-enum { STOPS = 6, MOST_STOPS = 64 };
+enum { STOPS = 6, MAX_STOPS = 64 };
 
 /* sRGB */
 static const uint32_t palettes[][STOPS] = {
@@ -54,7 +54,7 @@ static const Syntax *stop_syntax(const Syntax *written, const List *list, size_t
 static uint32_t listed_colors(Elaboration *e, const Argument *argument, Node *colors)
 {
     const List *list  = argument->value.type == VALUE_LIST ? argument->value.list : NULL;
-    bool        right = list && list->count >= 2 && list->count <= MOST_STOPS;
+    bool        right = list && list->count >= 2 && list->count <= MAX_STOPS;
     for (size_t i = 0; right && i < list->count; i++) {
         right     = value_size(e, list->items[i]) == 3;
         colors[i] = right ? value_node(e, list->items[i]) : NODE_NONE;
@@ -84,7 +84,7 @@ static Node color_at(Graph *g, Node field, const Node *colors, uint32_t count)
 
 Value method_color_by(Elaboration *e, const Shape *shape, Call *call)
 {
-    Node            colors[MOST_STOPS];
+    Node            colors[MAX_STOPS];
     const Argument *field = &call->arguments[0], *palette = &call->arguments[1];
     if (value_size(e, field->value) != 1) {
         type_error(e, field->syntax, field->value, "a number");

@@ -9,7 +9,7 @@
 #include "compiler/image/image.h"
 
 /* The largest picture: 128 MiB on the device, and a third more to choose directions by. */
-enum { MOST_SKY_SIDE = 1 << 13, MOST_SKY_TEXELS = 1 << 23 };
+enum { MAX_SKY_SIDE = 1 << 13, MAX_SKY_TEXELS = 1 << 23 };
 
 /* Red, green and blue; what is negative is 0. */
 static const KrsSkyMap *make_map(Elaboration *e, const Image *image)
@@ -30,7 +30,7 @@ static const KrsSkyMap *read_map(Elaboration *e, const Syntax *syntax, const cha
 {
     const Argument file = {.syntax = syntax};
     FileBytes      bytes;
-    Image image = {.arena = e->scratch, .most_side = MOST_SKY_SIDE, .most_pixels = MOST_SKY_TEXELS};
+    Image image = {.arena = e->scratch, .max_side = MAX_SKY_SIDE, .max_pixels = MAX_SKY_TEXELS};
     const KrsSkyMap *map = NULL;
     if (!read_beside(e, &file, name, &bytes))
         return NULL;

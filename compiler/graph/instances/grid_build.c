@@ -27,13 +27,13 @@ enum {
     CELLS_OF_FEW         = 16, /* for each of few instances */
     MANY_CELLS           = 1 << 20,
     SPARE_CELLS          = 8192,
-    MOST_OF_AN_INSTANCE  = 64, /* cells, even so */
+    MAX_OF_AN_INSTANCE   = 64, /* cells, even so */
     ENTRIES_PER_INSTANCE = 8,
     SPARE_ENTRIES        = 4096,
     MANY_TEXELS          = 1 << 23, /* of all entries of few instances: 128 MB */
     ENTRIES_OF_FEW       = 1024,    /* for each of few instances */
     MANY_REFINED         = 1 << 17, /* cells of a refined grid */
-    LEAST_REFINED        = 8,       /* of these for each instance */
+    MIN_REFINED          = 8,       /* of these for each instance */
     MANY_TO_REFINE       = 1 << 20, /* entries of a coarse one, whose instances are evaluated */
     OF_FRAME       = 8, /* cells and entries of each instance, if a grid is built each frame */
     SPARE_OF_FRAME = 4096
@@ -137,13 +137,13 @@ static bool all_are_bounded(const Builder *b)
 static void one_cell(Builder *b, Arena *arena)
 {
     Grid *grid = b->grid;
-    *grid      = (Grid){.inner       = {{ANYTHING, ANYTHING, ANYTHING}},
-                        .size        = HUGE_VAL,
-                        .cells       = {1, 1, 1},
-                        .first       = arena_new_array(arena, uint32_t, 2),
-                        .clearance   = arena_new(arena, float),
-                        .instances   = arena_new_array(arena, uint32_t, b->count),
-                        .most_listed = b->present};
+    *grid      = (Grid){.inner      = {{ANYTHING, ANYTHING, ANYTHING}},
+                        .size       = HUGE_VAL,
+                        .cells      = {1, 1, 1},
+                        .first      = arena_new_array(arena, uint32_t, 2),
+                        .clearance  = arena_new(arena, float),
+                        .instances  = arena_new_array(arena, uint32_t, b->count),
+                        .max_listed = b->present};
 
     for (uint32_t i = 0; i < b->count; i++)
         if (!grid_box_is_empty(&b->boxes[i]))
@@ -206,20 +206,20 @@ static double placed_cells(const Grid *grid)
     return (double)grid->cells[0] * grid->cells[1] * grid->cells[2];
 }
 
-static double most_cells(const Builder *b)
+static double max_cells(const Builder *b)
 {
     if (b->most.cells > 0)
         return b->most.cells;
     if (b->coarse)
-        return fmin((double)MOST_OF_AN_INSTANCE * b->present,
+        return fmin((double)MAX_OF_AN_INSTANCE * b->present,
                     b->few ? MANY_REFINED / 2 : MANY_REFINED) /
                GRID_REFINED;
     double few = fmin((double)CELLS_OF_FEW * b->present, MANY_CELLS);
     return fmin(fmax((double)CELLS_PER_INSTANCE * b->present, few) + SPARE_CELLS,
-                (double)MOST_OF_AN_INSTANCE * b->present);
+                (double)MAX_OF_AN_INSTANCE * b->present);
 }
 
-static double most_entries(const Builder *b)
+static double max_entries(const Builder *b)
 {
     if (b->most.entries > 0)
         return b->most.entries;
@@ -228,9 +228,9 @@ static double most_entries(const Builder *b)
 }
 
 /* The least side with few enough cells. */
-static double least_side(Builder *b)
+static double min_side(Builder *b)
 {
-    double most    = most_cells(b);
+    double most    = max_cells(b);
     double longest = 0;
     for (int k = 0; k < 3; k++) {
         Range axis = b->grid->inner.axis[k];
@@ -267,8 +267,8 @@ static double count_entries(const Builder *b)
 /* In the end there is one cell, which has as many entries as there are boxes. */
 static void choose_cells(Builder *b)
 {
-    double side = least_side(b);
-    for (place_cells(b, side); count_entries(b) > most_entries(b); place_cells(b, side))
+    double side = min_side(b);
+    for (place_cells(b, side); count_entries(b) > max_entries(b); place_cells(b, side))
         side *= GROWTH;
 }
 
@@ -296,13 +296,13 @@ static void put_in_list(Grid *grid, size_t cell, uint32_t instance)
 /* From lengths to where lists begin. */
 void grid_begin_lists(Grid *grid, Arena *arena)
 {
-    size_t   cells    = grid_cell_count(grid);
-    uint32_t entries  = 0;
-    grid->most_listed = 0;
+    size_t   cells   = grid_cell_count(grid);
+    uint32_t entries = 0;
+    grid->max_listed = 0;
     for (size_t c = 0; c < cells; c++) {
         uint32_t length = grid->first[c];
-        if (length > grid->most_listed)
-            grid->most_listed = length;
+        if (length > grid->max_listed)
+            grid->max_listed = length;
         grid->first[c] = entries;
         entries += length;
     }
@@ -562,9 +562,9 @@ void grid_build_within(Grid *grid, const Box *boxes, uint32_t count, double reac
 static bool place_coarse(Builder *b)
 {
     b->coarse = true;
-    if (!begin(b) || (double)LEAST_REFINED * b->present > MANY_REFINED)
+    if (!begin(b) || (double)MIN_REFINED * b->present > MANY_REFINED)
         return false;
-    place_cells(b, least_side(b));
+    place_cells(b, min_side(b));
     return true;
 }
 

@@ -19,7 +19,7 @@
 #include "compiler/graph/op_values.h"
 
 /* How much of the sum of a blend that fades may be left out: so many widths a result is wrong. */
-#define MOST_LEFT_OUT 1e-4
+#define MAX_LEFT_OUT 1e-4
 
 /* e^-37 is 2^-53. */
 #define WIDTHS_OF_DOUBLES 37
@@ -59,17 +59,17 @@ void halving_distances(const Halver *halver, const HalvingDesk *desk, size_t ins
 
 /* The nearest instances in the middle of a part, in ascending order. */
 typedef struct Nearest {
-    double   distances[MOST_SHARERS];
+    double   distances[MAX_SHARERS];
     uint32_t count;
 } Nearest;
 
 static void add_distance(Nearest *nearest, double distance)
 {
-    uint32_t at = nearest->count < MOST_SHARERS ? nearest->count++ : MOST_SHARERS;
+    uint32_t at = nearest->count < MAX_SHARERS ? nearest->count++ : MAX_SHARERS;
     for (; at > 0 && nearest->distances[at - 1] > distance; at--)
-        if (at < MOST_SHARERS)
+        if (at < MAX_SHARERS)
             nearest->distances[at] = nearest->distances[at - 1];
-    if (at < MOST_SHARERS)
+    if (at < MAX_SHARERS)
         nearest->distances[at] = distance;
 }
 
@@ -79,10 +79,10 @@ static double join_nearest(const GridBlend *blend, const Nearest *nearest)
     static const GraphType types[][MAX_OPERANDS] = {
         {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT}, {TYPE_VEC4, TYPE_VEC4, TYPE_FLOAT}};
     NodeValue operands[MAX_OPERANDS] = {{{0}}};
-    double    all[MOST_SHARERS];
+    double    all[MAX_SHARERS];
     if (nearest->count == 0)
         return NOWHERE;
-    for (uint32_t i = 0; i < MOST_SHARERS; i++)
+    for (uint32_t i = 0; i < MAX_SHARERS; i++)
         all[i] = i < nearest->count ? nearest->distances[i] : NOWHERE;
     if (blend->shares) {
         memcpy(operands[0].v, all, sizeof operands[0].v);
@@ -178,7 +178,7 @@ static void leave_out(const Halver *halver, const HalvingDesk *desk, uint8_t *ne
     }
     while (step > 0) {
         sum += counts[step - 1] * exp(-(step - 1) / (double)PER_WIDTH);
-        if (sum > MOST_LEFT_OUT * h->share)
+        if (sum > MAX_LEFT_OUT * h->share)
             break;
         step--;
     }

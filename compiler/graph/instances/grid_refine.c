@@ -36,7 +36,7 @@ typedef struct Refiner {
     double      empty; /* from which results on */
     uint64_t   *masks; /* of each entry of a coarse list, the refined cells that need it */
     size_t      offsets[GRID_REFINED]; /* of refined cells from the first in a coarse one */
-    Desk        desks[MOST_PARTS];
+    Desk        desks[MAX_PARTS];
 } Refiner;
 
 static size_t coarse_cell(const Refiner *r, const uint32_t *cell)
@@ -181,9 +181,9 @@ static void find_offsets(Refiner *r)
 
 static Desk desk_for(const Refiner *r, Arena *scratch)
 {
-    size_t most = r->from->most_listed + (size_t)1;
+    size_t most = r->from->max_listed + (size_t)1;
     return (Desk){
-        .halving = halving_desk_new(r->halver.blend, r->from->most_listed, scratch),
+        .halving = halving_desk_new(r->halver.blend, r->from->max_listed, scratch),
         .needs = {arena_new_array(scratch, uint8_t, most), arena_new_array(scratch, uint8_t, most)},
         .places = arena_new_array(scratch, uint32_t, most)};
 }
@@ -198,12 +198,12 @@ void grid_refine(Grid *refined, const Grid *coarse, const GridBlend *blend, Aren
 {
     Refiner   r     = {.to = refined, .from = coarse, .halver = {blend, halving_pad(coarse)}};
     size_t    cells = grid_cell_count(coarse) * GRID_REFINED;
-    uint32_t *all   = arena_new_array(scratch, uint32_t, coarse->most_listed + (size_t)1);
+    uint32_t *all   = arena_new_array(scratch, uint32_t, coarse->max_listed + (size_t)1);
     *refined        = *coarse;
     refined->size   = coarse->size / GRID_REFINED_ALONG;
     for (int k = 0; k < 3; k++)
         refined->cells[k] = GRID_REFINED_ALONG * coarse->cells[k];
-    for (uint32_t i = 0; i < coarse->most_listed; i++)
+    for (uint32_t i = 0; i < coarse->max_listed; i++)
         all[i] = i;
     find_offsets(&r);
     r.empty            = grid_empty_from(blend, coarse);
@@ -219,7 +219,7 @@ void grid_refine(Grid *refined, const Grid *coarse, const GridBlend *blend, Aren
     grid_begin_lists(refined, arena);
     if (blend->sifted && blend->fades && grid_may_have_tails(blend, refined->size))
         refined->tails = arena_new_array(
-            arena, float, refined->first[cells - 1] + (size_t)refined->most_listed + 1);
+            arena, float, refined->first[cells - 1] + (size_t)refined->max_listed + 1);
     visit.fill = true;
     run_in_parallel(visit_rows, &visit);
     grid_end_lists(refined);

@@ -17,7 +17,7 @@
 #include "compiler/graph/instances/grid_refine.h"
 
 /* Levels of cubes; the entries of lists, and the distances of instances in eight points, of a processor. */
-enum { MOST_LEVELS = 16, MOST_ENTRIES = 1 << 21, MOST_EVALUATED = 1 << 22 };
+enum { MAX_LEVELS = 16, MAX_ENTRIES = 1 << 21, MAX_EVALUATED = 1 << 22 };
 
 /* Of the first levels all processors find all, so that they can share the cubes below. */
 enum { SHARED_LEVELS = 2 };
@@ -29,9 +29,9 @@ enum { SHARED_LEVELS = 2 };
 typedef struct Sieve {
     HalvingDesk desk;
     uint8_t
-        *needs[MOST_LEVELS]; /* of the cube of each level that is at hand, which parts need it, */
-    uint32_t *lists[MOST_LEVELS]; /* and its list */
-    uint32_t *entries;            /* of cells, one after the other */
+        *needs[MAX_LEVELS]; /* of the cube of each level that is at hand, which parts need it, */
+    uint32_t *lists[MAX_LEVELS]; /* and its list */
+    uint32_t *entries;           /* of cells, one after the other */
     size_t    count, evaluated;
     uint32_t  dealt; /* cubes below the shared levels, so far */
     bool      full;  /* it would take too long */
@@ -46,7 +46,7 @@ typedef struct Sifter {
     const uint32_t  *instances;      /* whose boxes are not empty */
     uint32_t         present;
     const uint32_t **lists; /* of each cell */
-    Sieve            sieves[MOST_PARTS];
+    Sieve            sieves[MAX_PARTS];
 } Sifter;
 
 /* The sieve that a processor uses. */
@@ -78,7 +78,7 @@ static bool is_outside(const Grid *grid, const Cube *cube)
 static void set_list(const Sifter *s, Sieve *sieve, const Cube *cube)
 {
     size_t cell = cell_number(s->grid, cube->cell);
-    if (sieve->count + cube->count > MOST_ENTRIES) {
+    if (sieve->count + cube->count > MAX_ENTRIES) {
         sieve->full = true;
         return;
     }
@@ -145,7 +145,7 @@ static void sift_cube(Hand hand, Cube cube)
         h.low[k] = s->grid->low[k] + cube.cell[k] * s->grid->size;
     grid_halve(&s->halver, &sieve->desk, sieve->needs[cube.level], &h);
     sieve->evaluated += cube.count;
-    sieve->full = sieve->full || sieve->evaluated > MOST_EVALUATED;
+    sieve->full = sieve->full || sieve->evaluated > MAX_EVALUATED;
     for (int part = 0; part < GRID_PARTS; part++) {
         Cube half = part_of(sieve, &cube, part);
         if (h.least[part] < s->empty)
@@ -169,7 +169,7 @@ static void sift_part(void *task, size_t part, size_t parts)
 static Sieve sieve_new(const Sifter *s, uint32_t count, Arena *scratch)
 {
     Sieve sieve = {.desk    = halving_desk_new(s->halver.blend, count, scratch),
-                   .entries = arena_new_array(scratch, uint32_t, MOST_ENTRIES)};
+                   .entries = arena_new_array(scratch, uint32_t, MAX_ENTRIES)};
     for (int level = 0; level <= s->levels; level++) {
         sieve.needs[level] = arena_new_array(scratch, uint8_t, count);
         sieve.lists[level] = arena_new_array(scratch, uint32_t, count);
@@ -217,7 +217,7 @@ bool grid_sift(Grid *coarse, const Box *boxes, uint32_t count, const GridBlend *
                            .lists  = arena_new_array(scratch, const uint32_t *, cells)};
     uint32_t *all       = arena_new_array(scratch, uint32_t, count);
     uint32_t *instances = arena_new_array(scratch, uint32_t, count);
-    if (s.levels >= MOST_LEVELS)
+    if (s.levels >= MAX_LEVELS)
         return false;
     for (uint32_t i = 0; i < count; i++) {
         all[i] = i;

@@ -13,14 +13,14 @@
 enum { STEPS_OF_WIDTH = 8, STEPS = 256 };
 
 /* Widths from the middle of a cell to a corner; e^60 is a number of single precision. */
-#define MOST_WIDTHS 20.0
+#define MAX_WIDTHS 20.0
 
 /* Sums of single precision, each with some hundred roundings, and shaders' powers. */
 #define ROUNDED_UP (1 + 1e-4)
 
 bool grid_may_have_tails(const GridBlend *blend, double size)
 {
-    return blend->slope * 0.5 * sqrt(3) * size <= MOST_WIDTHS * blend->width;
+    return blend->slope * 0.5 * sqrt(3) * size <= MAX_WIDTHS * blend->width;
 }
 
 /* What one processor works with: the list of a cell. */
@@ -32,7 +32,7 @@ typedef struct Sorting {
 typedef struct Tails {
     Grid   *grid;
     double  width, factor;
-    Sorting sortings[MOST_PARTS];
+    Sorting sortings[MAX_PARTS];
 } Tails;
 
 static uint32_t step_of(const Tails *t, double distance, double least)
@@ -90,7 +90,7 @@ void grid_find_tails(Grid *refined, const GridBlend *blend, double pad, Arena *a
     Tails  t         = {.grid   = refined,
                         .width  = blend->width,
                         .factor = ROUNDED_UP * exp(2 * blend->slope * pad / blend->width)};
-    size_t most      = refined->most_listed + (size_t)1;
+    size_t most      = refined->max_listed + (size_t)1;
     refined->middles = arena_new_array(arena, float, grid_cell_count(refined));
     for (size_t i = 0; i < parallel_parts(); i++)
         t.sortings[i] = (Sorting){arena_new_array(scratch, uint32_t, most),

@@ -91,7 +91,7 @@ void squares_transform(const uint32_t cells[3], double *values, Arena *scratch)
 {
     size_t longest = cells[0] > cells[1] ? cells[0] : cells[1];
     longest        = longest > cells[2] ? longest : cells[2];
-    size_t    room = longest * MOST_PARTS;
+    size_t    room = longest * MAX_PARTS;
     Transform t    = {.cells   = cells,
                       .values  = values,
                       .lowest  = {arena_new_array(scratch, double, room),

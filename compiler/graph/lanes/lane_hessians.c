@@ -269,7 +269,7 @@ static LaneHessian hessian_of_blend(const Run *run)
 static LaneHessian hessian_of_shares(const Run *run, const LaneCall *call, const Expr *e)
 {
     const uint32_t vectors = e->operand_count - 1u, width = call->operands[vectors][0];
-    uint32_t       sharers[MOST_SHARERS], count           = 0;
+    uint32_t       sharers[MAX_SHARERS], count            = 0;
     double         least = HUGE_VAL;
     if (!(width & LANE_SCALAR))
         return UNKNOWN_BEND;

@@ -16,7 +16,7 @@
 #include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/op_values.h"
 
-enum { STATE_NUMBERS = 4 * MOST_INSTANCE_STATES };
+enum { STATE_NUMBERS = 4 * MAX_INSTANCE_STATES };
 
 typedef struct LaneLoop {
     const Graph            *graph;
@@ -96,7 +96,7 @@ static bool next_instance(LaneLoop *loop, size_t lane)
 
 static void put_result(const LaneLoop *loop, const LaneCall *call, double *rows, size_t lane)
 {
-    NodeValue states[MOST_INSTANCE_STATES], result;
+    NodeValue states[MAX_INSTANCE_STATES], result;
     for (uint32_t k = 0; k < loop->function->state_count; k++)
         for (uint32_t c = 0; c < 4; c++)
             states[k].v[c] = loop->states[4 * k + c][lane];

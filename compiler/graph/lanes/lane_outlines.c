@@ -62,7 +62,7 @@ static double distance_to_point(const double a[2], const double b[2])
 }
 
 /* A curve is not farther from its chord than a quarter of its bend. */
-static double least_distance(const InstanceArc *arc, const double point[2])
+static double min_distance(const InstanceArc *arc, const double point[2])
 {
     double chord[2], from[2], square = 0, along = 0;
     for (int k = 0; k < 2; k++) {
@@ -78,7 +78,7 @@ static double least_distance(const InstanceArc *arc, const double point[2])
 
 static bool may_be_nearest(const View *view, uint32_t instance)
 {
-    return least_distance(&view->table->arcs[instance], view->middle) <=
+    return min_distance(&view->table->arcs[instance], view->middle) <=
            view->farthest + view->radius;
 }
 
@@ -91,7 +91,7 @@ static bool find_instances(const View *view, uint32_t *instances, uint32_t *coun
         uint32_t instance = known ? known[i] : i;
         if (!may_be_nearest(view, instance))
             continue;
-        if (*count == MOST_LANE_INSTANCES)
+        if (*count == MAX_LANE_INSTANCES)
             return false;
         instances[(*count)++] = instance;
     }
@@ -99,7 +99,7 @@ static bool find_instances(const View *view, uint32_t *instances, uint32_t *coun
 }
 
 bool lane_outline_instances(const LaneTape *tape, const LaneRanges *ranges, size_t step,
-                            uint32_t instances[MOST_LANE_INSTANCES], uint32_t *count)
+                            uint32_t instances[MAX_LANE_INSTANCES], uint32_t *count)
 {
     View view;
     return look(tape, ranges, step, &view) && find_instances(&view, instances, count);
@@ -150,7 +150,7 @@ bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t s
     lines->count = 0;
     for (uint32_t i = 0; i < view.call->instance_count; i++) {
         const InstanceArc *arc = &view.table->arcs[view.call->instances[i]];
-        if (least_distance(arc, view.middle) > reach)
+        if (min_distance(arc, view.middle) > reach)
             continue;
         if (lines->count == 2)
             return false;
@@ -223,7 +223,7 @@ static Range about(double middle, double radius)
 OutlinePartials lane_outline_partials(const LaneTape *tape, const LaneRanges *ranges, size_t step)
 {
     View            view;
-    uint32_t        instances[MOST_LANE_INSTANCES], count;
+    uint32_t        instances[MAX_LANE_INSTANCES], count;
     double          tangent[2];
     OutlinePartials p = {.known = false};
     if (!look(tape, ranges, step, &view) || !view.call->instances ||

@@ -10,7 +10,7 @@
 /* After a run over a box: those that may be the nearest in it, of the call that is step `step`.  False: it is no
    outline, or there are more of them. */
 bool lane_outline_instances(const LaneTape *tape, const LaneRanges *ranges, size_t step,
-                            uint32_t instances[MOST_LANE_INSTANCES], uint32_t *count);
+                            uint32_t instances[MAX_LANE_INSTANCES], uint32_t *count);
 /* The straight instances that come near a box, if there is one, or two that meet.  A line is by x, by y and what is added; it
    is a distance, below 0 inside. */
 typedef struct OutlineLines {

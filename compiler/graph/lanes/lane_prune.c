@@ -266,7 +266,7 @@ static bool prune_rotation(Pruning *p, size_t i)
 
 /* The numbers that may have a share somewhere in the box; their count, or 0: that is not known. */
 static uint32_t find_sharers(const Pruning *p, const LaneCall *call, uint32_t vectors, double width,
-                             uint32_t sharers[MOST_SHARERS])
+                             uint32_t sharers[MAX_SHARERS])
 {
     double   least = HUGE_VAL;
     uint32_t count = 0;
@@ -289,7 +289,7 @@ static uint32_t find_sharers(const Pruning *p, const LaneCall *call, uint32_t ve
 static bool prune_shares(Pruning *p, size_t i)
 {
     LaneStep step = p->from->steps[i];
-    uint32_t sharers[MOST_SHARERS];
+    uint32_t sharers[MAX_SHARERS];
     if (step.op != LANE_CALL)
         return false;
     const LaneCall *call    = &p->from->calls[step.operands[0]];
@@ -345,8 +345,8 @@ static bool find_least_instances(const Pruning *p, const LaneCall *call, const I
     for (uint32_t i = 0; i < table->rows; i++) {
         if (distance_of_boxes(&table->bounds[i], at) > farthest * table->stretch)
             continue;
-        if (*count == MOST_LANE_INSTANCES ||
-            (*count + 1) * call->body->tape.count > MOST_STEPS_OF_INSTANCES)
+        if (*count == MAX_LANE_INSTANCES ||
+            (*count + 1) * call->body->tape.count > MAX_STEPS_OF_INSTANCES)
             return false;
         instances[(*count)++] = i;
     }
@@ -418,7 +418,7 @@ static bool prune_group(Pruning *p, size_t i)
         return false;
     const LaneCall  *call   = &p->from->calls[step->operands[0]];
     const Instances *groups = p->from->tape->graph->instances;
-    uint32_t         instances[MOST_LANE_INSTANCES], count;
+    uint32_t         instances[MAX_LANE_INSTANCES], count;
     if (!call->body || p->from->tape->graph->items[call->node].op != OP_instance_distance ||
         call->body->tape.call_count > 0)
         return false;
@@ -438,10 +438,10 @@ static bool prune_group(Pruning *p, size_t i)
 /* Outlines keep the instances that may be the nearest. */
 static void prune_instances(Pruning *p, LaneCall *call, size_t step)
 {
-    uint32_t instances[MOST_LANE_INSTANCES], count;
+    uint32_t instances[MAX_LANE_INSTANCES], count;
     if (!lane_outline_instances(p->from, p->ranges, step, instances, &count))
         return;
-    uint32_t *kept = arena_new_array(p->to.arena, uint32_t, MOST_LANE_INSTANCES);
+    uint32_t *kept = arena_new_array(p->to.arena, uint32_t, MAX_LANE_INSTANCES);
     memcpy(kept, instances, count * sizeof *kept);
     call->instances      = kept;
     call->instance_count = count;

@@ -58,7 +58,7 @@ static bool add_component(Segment *s, uint32_t operand)
 /* Adds factor times an operand to the weights; false: it is no weighted sum of the components. */
 static bool add_weights(Segment *s, uint32_t operand, double factor, int depth)
 {
-    enum { MOST_DEPTH = 12 };
+    enum { MAX_DEPTH = 12 };
     const LaneStep *step = lane_step_of(s->tape, operand);
     for (uint32_t k = 0; k < s->size; k++)
         if (operand == s->from[k]) {
@@ -69,7 +69,7 @@ static bool add_weights(Segment *s, uint32_t operand, double factor, int depth)
         s->at += factor * number_of(s->tape, operand);
         return true;
     }
-    if (!step || depth == MOST_DEPTH)
+    if (!step || depth == MAX_DEPTH)
         return false;
     const uint32_t *a = step->operands;
     switch (step->op) {

@@ -414,7 +414,7 @@ static bool is_boundless(Boundless *b, uint32_t operand)
 
 bool lane_is_boundless(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
 {
-    enum { MOST_VISITS = 64 };
-    Boundless b = {{.tape = tape, .ranges = ranges}, MOST_VISITS};
+    enum { MAX_VISITS = 64 };
+    Boundless b = {{.tape = tape, .ranges = ranges}, MAX_VISITS};
     return is_boundless(&b, operand);
 }

@@ -138,16 +138,16 @@ typedef struct LaneWork {
    steps of its body for some instances; or it keeps a list of instances, which takes that many bytes. */
 enum {
     LANE_STEPS_OF_CALL      = 6,
-    MOST_LANE_INSTANCES     = 32,
-    MOST_STEPS_OF_INSTANCES = 640,
-    LANE_BYTES_OF_INSTANCES = 4 * MOST_LANE_INSTANCES + 16
+    MAX_LANE_INSTANCES      = 32,
+    MAX_STEPS_OF_INSTANCES  = 640,
+    LANE_BYTES_OF_INSTANCES = 4 * MAX_LANE_INSTANCES + 16
 };
 static inline size_t lane_steps_of_calls(const LaneTape *tape)
 {
     size_t steps = LANE_STEPS_OF_CALL * tape->call_count;
     for (size_t i = 0; i < tape->call_count; i++)
         if (tape->calls[i].body)
-            steps += MOST_STEPS_OF_INSTANCES;
+            steps += MAX_STEPS_OF_INSTANCES;
     return steps;
 }
 /* The most steps of a lane tape and of all that it is pruned to, and the most rows. */

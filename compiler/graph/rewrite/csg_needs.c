@@ -20,11 +20,11 @@
 
 /* Relative to the longest side of all: the smallest boxes; those where only edges of tools are in
    question; what counts as the surface on both of its sides. */
-static const double LEAST_SIDE = 1.0 / 96, LEAST_AT_EDGES = 1.0 / 192, MARGIN = 1.0 / 256;
+static const double MIN_SIDE = 1.0 / 96, MIN_AT_EDGES = 1.0 / 192, MARGIN = 1.0 / 256;
 
 /* Steps of lane tapes that are run over boxes, about ten milliseconds of them, before all others are taken
    for smallest ones. */
-enum { MOST_STEPS = 1000000 };
+enum { MAX_STEPS = 1000000 };
 
 typedef struct Search {
     CsgTree   *tree;
@@ -78,7 +78,7 @@ static double corner_at(const double *sides, uint32_t count)
 /* With fewer sides it is no larger.  Those remain that are needed. */
 static Range range_of_corner(const Search *s, const CsgPart *part)
 {
-    double   low[MOST_SIDES], high[MOST_SIDES];
+    double   low[MAX_SIDES], high[MAX_SIDES];
     uint32_t lows = 0, highs = 0;
     for (uint32_t k = 0; k < part->side_count; k++) {
         Range side    = s->range[part->sides[k]];
@@ -103,7 +103,7 @@ static Range range_of_blend(const Search *s, const CsgPart *part)
 static Range range_of_shares(const Search *s, const Cell *cell, const CsgPart *part)
 {
     FindShares *find = sharing_op((Op)s->tree->graph->items[part->node].op).find;
-    double      low[MOST_SHARERS], high[MOST_SHARERS], least = HUGE_VAL;
+    double      low[MAX_SHARERS], high[MAX_SHARERS], least = HUGE_VAL;
     uint32_t    count = 0;
     for (uint32_t k = 0; k < part->sharer_count; k++)
         if (cell->matters[part->sharers[k]]) {
@@ -249,7 +249,7 @@ static void mark_operands(const Search *s, const CsgPart *part, const bool *matt
 }
 
 /* The most that the whole may be where a corner is not below 0. */
-static double most_beside(Search *s, const Cell *cell, uint32_t corner)
+static double max_beside(Search *s, const Cell *cell, uint32_t corner)
 {
     const CsgTree *tree = s->tree;
     Range         *kept = s->range;
@@ -270,12 +270,12 @@ static bool may_be_round(Search *s, const Cell *cell, uint32_t corner)
     uint32_t       outside = 0;
     for (uint32_t k = 0; k < part->side_count; k++)
         outside += s->range[part->sides[k]].high > 0;
-    return !part->is_round && outside > 1 && !(most_beside(s, cell, corner) <= 0);
+    return !part->is_round && outside > 1 && !(max_beside(s, cell, corner) <= 0);
 }
 
 /* How small the box is: what is in question there is needed. */
 typedef struct Size {
-    bool least, least_at_edges;
+    bool least, min_at_edges;
 } Size;
 
 /* Tells whether there is more to be found out about a part that matters. */
@@ -288,8 +288,8 @@ static bool is_in_question(Search *s, const Cell *cell, uint32_t i, const bool *
         const uint32_t more    = sides_that_count(s, part) & ~part->needed;
         const bool     rounder = may_be_round(s, cell, i);
         part->needed |= size.least ? more : 0;
-        part->is_round |= size.least_at_edges && rounder;
-        return (more && !size.least) || (rounder && !size.least_at_edges);
+        part->is_round |= size.min_at_edges && rounder;
+        return (more && !size.least) || (rounder && !size.min_at_edges);
     }
     if (part->kind == CSG_SHARES)
         return finds_shares(s, part, matters, size.least) && !size.least;
@@ -357,9 +357,9 @@ static void visit(Search *s, const Cell *cell)
     const int    axis   = box_longest_axis(&cell->box);
     const double side   = cell->box.axis[axis].high - cell->box.axis[axis].low;
     const double margin = MARGIN * s->longest;
-    const bool   late   = s->steps > MOST_STEPS;
-    const Size   size   = {late || side <= LEAST_SIDE * s->longest,
-                           late || side <= LEAST_AT_EDGES * s->longest};
+    const bool   late   = s->steps > MAX_STEPS;
+    const Size   size   = {late || side <= MIN_SIDE * s->longest,
+                           late || side <= MIN_AT_EDGES * s->longest};
     s->steps += cell->tape.count;
     if (whole.low > margin || whole.high < -margin)
         return;

@@ -19,24 +19,24 @@ typedef enum CsgKind {
     CSG_CORNER  /* the distance to what is inside of all its sides, which are perpendicular */
 } CsgKind;
 
-enum { MOST_SIDES = 3 };
+enum { MAX_SIDES = 3 };
 
 /* A node of the tree. */
 typedef struct CsgPart {
     CsgKind  kind;
     Node     node;
-    uint32_t a, b;              /* parts before it */
-    uint32_t sides[MOST_SIDES]; /* of a corner: leaves, from a side's middle plane outwards */
+    uint32_t a, b;             /* parts before it */
+    uint32_t sides[MAX_SIDES]; /* of a corner: leaves, from a side's middle plane outwards */
     uint32_t side_count;
-    uint32_t sharers[MOST_SHARERS];
+    uint32_t sharers[MAX_SHARERS];
     uint32_t sharer_count;
-    uint8_t shares[MOST_SHARERS]; /* with which others it is needed that one has a share, as bits */
-    double  number;
-    bool    upwards;   /* the whole may grow with it */
-    bool    downwards; /* the whole may get less as it grows */
-    bool    blends;    /* the blend is needed */
-    uint32_t needed;   /* the sides that are, as bits */
-    bool     is_round; /* also what is nearest to an edge between two sides */
+    uint8_t  shares[MAX_SHARERS]; /* with which others it is needed that one has a share, as bits */
+    double   number;
+    bool     upwards;   /* the whole may grow with it */
+    bool     downwards; /* the whole may get less as it grows */
+    bool     blends;    /* the blend is needed */
+    uint32_t needed;    /* the sides that are, as bits */
+    bool     is_round;  /* also what is nearest to an edge between two sides */
 } CsgPart;
 
 typedef struct CsgTree {

@@ -8,7 +8,7 @@
 #include "compiler/graph/rewrite/csg_needs.h"
 
 /* A larger tree would take longer to look at than what is saved. */
-enum { MOST_NODES = 4000 };
+enum { MAX_NODES = 4000 };
 
 typedef struct Making {
     CsgTree  *tree;
@@ -49,7 +49,7 @@ static Node beside_zero(const Making *m, Node node, Op op)
 /* Tells whether a node is a maximum of exactly these nodes. */
 static bool is_greatest(const Making *m, Node node, const Node *sides, uint32_t count)
 {
-    Node     open[2 * MOST_SIDES] = {node};
+    Node     open[2 * MAX_SIDES] = {node};
     uint32_t waiting = 1, found = 0, leaves = 0;
     while (waiting > 0 && leaves <= count) {
         const Node  next  = open[--waiting];
@@ -59,7 +59,7 @@ static bool is_greatest(const Making *m, Node node, const Node *sides, uint32_t 
             which++;
         if (which < count)
             found |= 1u << which;
-        else if (e->op != OP_max || waiting + 2 > 2 * MOST_SIDES)
+        else if (e->op != OP_max || waiting + 2 > 2 * MAX_SIDES)
             return false;
         else
             for (int k = 0; k < 2; k++)
@@ -70,7 +70,7 @@ static bool is_greatest(const Making *m, Node node, const Node *sides, uint32_t 
 }
 
 /* The sides of length(max(sides, 0)), which may be one vector; 0: it is something else. */
-static uint32_t sides_of_length(const Making *m, Node node, Node sides[MOST_SIDES])
+static uint32_t sides_of_length(const Making *m, Node node, Node sides[MAX_SIDES])
 {
     const Expr *e = expr_of(m, node);
     if (e->op != OP_length)
@@ -80,9 +80,9 @@ static uint32_t sides_of_length(const Making *m, Node node, Node sides[MOST_SIDE
     Node        whole   = beside_zero(m, e->operands[0], OP_max);
     if (whole != NODE_NONE) {
         count = expr_of(m, whole)->type;
-        for (uint32_t k = 0; k < count && k < MOST_SIDES; k++)
+        for (uint32_t k = 0; k < count && k < MAX_SIDES; k++)
             sides[k] = graph_component(m->tree->graph, whole, k);
-        return count <= MOST_SIDES ? count : 0;
+        return count <= MAX_SIDES ? count : 0;
     }
     if (outside->op != OP_vec2 && outside->op != OP_vec3)
         return 0;
@@ -95,7 +95,7 @@ static uint32_t sides_of_length(const Making *m, Node node, Node sides[MOST_SIDE
 }
 
 /* length(max(sides, 0)) + min(greatest of sides, 0) */
-static uint32_t sides_of_corner(const Making *m, Node node, Node sides[MOST_SIDES])
+static uint32_t sides_of_corner(const Making *m, Node node, Node sides[MAX_SIDES])
 {
     const Expr e = *expr_of(m, node);
     for (int k = 0; e.op == OP_add && k < 2; k++) {
@@ -157,7 +157,7 @@ static CsgPart part_of_corner(const Making *m, Node node, const Node *sides, uin
 
 /* The numbers that a blend of several is of, without those that are nowhere; 0: it is none of known width, or of
    other vectors than of numbers. */
-static uint32_t operands_of_shares(const Making *m, const Expr *e, Node operands[MOST_SHARERS])
+static uint32_t operands_of_shares(const Making *m, const Expr *e, Node operands[MAX_SHARERS])
 {
     uint32_t count = 0, vectors = e->operand_count - 1u;
     if (!sharing_op((Op)e->op).find || !is_number(m, e->operands[vectors]) ||
@@ -190,7 +190,7 @@ static CsgPart part_of_shares(const Making *m, Node node, const Node *operands, 
 static CsgPart make_part(const Making *m, Node node)
 {
     const Expr e = *expr_of(m, node);
-    Node       sides[MOST_SIDES];
+    Node       sides[MAX_SIDES];
     uint32_t   count = sides_of_corner(m, node, sides);
     if (count)
         return part_of_corner(m, node, sides, count);
@@ -213,7 +213,7 @@ static CsgPart make_part(const Making *m, Node node)
         part.number  = expr_of(m, e.operands[2])->number[0];
         return part;
     }
-    Node operands[MOST_SHARERS];
+    Node operands[MAX_SHARERS];
     count = operands_of_shares(m, &e, operands);
     return count ? part_of_shares(m, node, operands, count)
                  : (CsgPart){.kind = CSG_LEAF, .node = node};
@@ -270,8 +270,8 @@ static Node corner_of(Graph *g, const Node *sides)
 
 static Node rest_of_corner(Graph *g, const CsgPart *part, const Node *rests)
 {
-    Node     sides[MOST_SIDES] = {0};
-    uint32_t count             = 0;
+    Node     sides[MAX_SIDES] = {0};
+    uint32_t count            = 0;
     for (uint32_t k = 0; k < part->side_count; k++)
         if (part->needed >> k & 1)
             sides[count++] = rests[part->sides[k]];
@@ -315,7 +315,7 @@ static Node rest_of_shares(Graph *g, const CsgPart *part, const Node *rests)
     Node       least = NODE_NONE;
     uint32_t   done  = 0;
     for (uint32_t k = 0; k < part->sharer_count; k++) {
-        Node     operands[MOST_SHARERS];
+        Node     operands[MAX_SHARERS];
         uint32_t count = 0, together = who_share_with(part, k);
         if (done >> k & 1)
             continue;
@@ -381,10 +381,10 @@ Node csg_nodes_prune(Graph *graph, Node root, Box box, Arena *scratch)
 {
     CsgTree tree = {.graph = graph};
     Making  m    = {.tree = &tree, .tape = tape_new(graph, &root, 1, scratch)};
-    if (m.tape.count > MOST_NODES || depends_on_frame(graph, &m.tape))
+    if (m.tape.count > MAX_NODES || depends_on_frame(graph, &m.tape))
         return root;
     m.part_of  = arena_new_array(scratch, uint32_t, m.tape.count);
-    tree.parts = arena_new_array(scratch, CsgPart, (1 + MOST_SIDES) * m.tape.count);
+    tree.parts = arena_new_array(scratch, CsgPart, (1 + MAX_SIDES) * m.tape.count);
     add_part(&m, root);
     find_signs(&tree);
     if (!has_candidates(&tree) || !csg_nodes_find_needs(&tree, box, scratch))

@@ -336,13 +336,13 @@ Node derive_select(Derivation *d, const Expr *e, Node node, const Node *inner)
 Node derive_guard(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     (void)node;
-    Graph *g         = d->graph;
-    Node   limit     = graph_op2(g, OP_min, e->operands[1], e->operands[3]);
-    Node   out       = graph_op2(g, OP_less_equal, limit, e->operands[0]);
-    Node   least_far = graph_op2(g, OP_min, e->operands[3], graph_number(g, 0));
-    least_far        = graph_op2(g, OP_less, least_far, e->operands[0]);
-    out              = graph_op2(g, OP_and, out, least_far);
-    Node least       = graph_op2(g, OP_less, e->operands[0], e->operands[1]);
-    least            = graph_op3(g, OP_select, least, inner[0], inner[1]);
+    Graph *g       = d->graph;
+    Node   limit   = graph_op2(g, OP_min, e->operands[1], e->operands[3]);
+    Node   out     = graph_op2(g, OP_less_equal, limit, e->operands[0]);
+    Node   min_far = graph_op2(g, OP_min, e->operands[3], graph_number(g, 0));
+    min_far        = graph_op2(g, OP_less, min_far, e->operands[0]);
+    out            = graph_op2(g, OP_and, out, min_far);
+    Node least     = graph_op2(g, OP_less, e->operands[0], e->operands[1]);
+    least          = graph_op3(g, OP_select, least, inner[0], inner[1]);
     return between_jumps(d, graph_op3(g, OP_select, out, least, inner[2]));
 }

@@ -169,7 +169,7 @@ static SeriesElement multiply_elements(const Expansion *x, SeriesElement a, Seri
 {
     Graph        *g       = x->graph;
     SeriesElement product = {.series = {.degree = a.series.degree + b.series.degree}};
-    assert(product.series.degree <= MOST_DEGREE);
+    assert(product.series.degree <= MAX_DEGREE);
     product.series.c[0] = times(g, a.series.c[0], b.series.c[0]);
     for (uint32_t k = 1; k <= product.series.degree; k++) {
         Node sum = graph_number(g, 0);
@@ -210,7 +210,7 @@ static bool multiply(Expansion *x, Node node, SeriesElement a, SeriesElement b,
                      SeriesElement *product)
 {
     uint32_t degree = a.series.degree + b.series.degree;
-    if (degree > MOST_DEGREE) {
+    if (degree > MAX_DEGREE) {
         *x->fault = (SeriesFault){node, degree};
         return false;
     }

@@ -9,18 +9,18 @@
 
 #include "compiler/graph/graph.h"
 
-enum { MOST_DEGREE = 24 };
+enum { MAX_DEGREE = 24 };
 
 /* c[0] + c[1] t + ... + c[degree] t^degree; FLOAT nodes. */
 typedef struct Series {
     uint32_t degree;
-    Node     c[MOST_DEGREE + 1];
+    Node     c[MAX_DEGREE + 1];
 } Series;
 
 /* What graph_series could not make, and why. */
 typedef struct SeriesFault {
     Node     blame;  /* an operation that no polynomial has, or */
-    uint32_t degree; /* one whose degree is more than MOST_DEGREE; else 0 */
+    uint32_t degree; /* one whose degree is more than MAX_DEGREE; else 0 */
 } SeriesFault;
 
 /* `root` (FLOAT) along the line origin + t direction (VEC3 nodes).  False when it is not a

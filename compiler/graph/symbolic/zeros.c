@@ -18,9 +18,9 @@
 #include "compiler/graph/range.h"
 
 /* How much is tried, in operations over boxes. */
-static const double MOST_WORK = 1e5;
+static const double MAX_WORK = 1e5;
 
-enum { MOST_DEPTH = 6, LEAST_DEPTH = 2, SLAB_DEPTH = 5, MOST_ROUNDS = 40 };
+enum { MAX_DEPTH = 6, MIN_DEPTH = 2, SLAB_DEPTH = 5, MAX_ROUNDS = 40 };
 
 typedef struct ZeroSearch {
     RangeTask task; /* of the forms; later of the polynomial */
@@ -47,7 +47,7 @@ static int sign_of(Range a) { return a.low > 0 ? 1 : a.high < 0 ? -1 : 0; }
 static double outweighed_until(const ZeroSearch *search)
 {
     uint32_t n = search->forms.degree;
-    double   falls[MOST_DEGREE + 1],
+    double   falls[MAX_DEGREE + 1],
         lead   = range_least(range_task_value(&search->task, search->forms.c[n]));
     double low = 0, high = 0;
     for (uint32_t k = 0; k < n; k++) {
@@ -87,7 +87,7 @@ static bool bound_cell(ZeroSearch *search, Box cell, int depth, Box *zeros)
     if (!run(search, cell))
         return false;
     int sign = sign_of(range_task_value(&search->task, search->forms.c[search->forms.degree]));
-    if (sign != 0 && sign == search->sign && depth >= LEAST_DEPTH) {
+    if (sign != 0 && sign == search->sign && depth >= MIN_DEPTH) {
         double reach = outweighed_until(search);
         for (int i = 0; i < 3; i++)
             zeros->axis[i] = range_hull(
@@ -95,7 +95,7 @@ static bool bound_cell(ZeroSearch *search, Box cell, int depth, Box *zeros)
                 (Range){fmin(reach * cell.axis[i].low, 0), fmax(reach * cell.axis[i].high, 0)});
         return isfinite(reach);
     }
-    if (depth == MOST_DEPTH || !may_be_definite(search, cell))
+    if (depth == MAX_DEPTH || !may_be_definite(search, cell))
         return false;
     Box quarters[4] = {cell, cell, cell, cell};
     for (int i = 0, bit = 1; i < 3; i++) {
@@ -209,7 +209,7 @@ static bool cut_finite_side(ZeroSearch *search, Box *box, int side, int sign)
 static void cut_sides(ZeroSearch *search, Box *box, int sign)
 {
     bool any = true;
-    for (int round = 0; any && round < MOST_ROUNDS; round++) {
+    for (int round = 0; any && round < MAX_ROUNDS; round++) {
         any = false;
         for (int side = 0; side < 6; side++) {
             Range axis = box->axis[side / 2];
@@ -253,14 +253,14 @@ ZeroBox graph_zero_box(Graph *graph, Node polynomial, Arena *scratch)
                            graph_leaf(graph, OP_POINT), &search.forms, &fault, scratch))
         return found;
     search.task = range_task(graph, search.forms.c, search.forms.degree + 1, scratch);
-    search.work = MOST_WORK;
+    search.work = MAX_WORK;
     if (bound_by_leading_form(&search, &found.box))
         found.sign = search.sign;
     else
         found.box = endless;
     search.task = range_task(graph, &search.root, 1, scratch);
     for (int sign = 1; sign >= -1; sign -= 2) {
-        search.work = MOST_WORK;
+        search.work = MAX_WORK;
         if (found.sign == 0 || found.sign == sign)
             cut_sides(&search, &found.box, sign);
         if (found.sign == 0 && !is_endless(found.box))

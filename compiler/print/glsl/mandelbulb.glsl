@@ -61,7 +61,7 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
     float radius = settings.y, norm = dot(c, c), start = sqrt(norm), steep = 1.0;
     float far = min(256.0, exp2(64.0 / range.x)), sum = 0.0, lateral;
     float root = -1.0 / (range.x - 1.0), core = pow(range.x, root) * (1.0 - 1.0 / range.x);
-    float least = pow(4.0 * range.x, root), least_even = 1.0 / (16.0 * range.x * range.x);
+    float least = pow(4.0 * range.x, root), min_even = 1.0 / (16.0 * range.x * range.x);
     float last = norm, stretch = 1.0;
     bool going = true;
     vec3 w = c;
@@ -69,7 +69,7 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
         going = going && float(i) < settings.x && norm <= far;
         if (most > 8 && !going)
             break;
-        float even = max(krs_whole_power(norm, power - 1), least_even);
+        float even = max(krs_whole_power(norm, power - 1), min_even);
         w = krs_triplex_step(w, c, norm, power, lateral);
         norm = dot(w, w);
         sum = going ? sum + steep : sum;
