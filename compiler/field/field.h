@@ -85,6 +85,7 @@ enum { MAX_PIECES = 8, MAX_PIECE_STEPS = 32, PIECE_VALUES = 4 };
 enum { PIECE_MIN = -1, PIECE_MAX = -2 };
 typedef struct FieldPieces {
     uint32_t origin; /* if it is one piece: of its step, as of LaneStep; else 0 */
+    int      side; /* -1 or 1: there are no pieces, since it is nowhere above or below 0; else 0 */
     size_t   count, step_count;
     int      steps[MAX_PIECE_STEPS];
     /* a piece is sign times a sum of values times weights, and the offset; derivatives are those of the sum */

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "compiler/field/field.h"
+#include "compiler/field/field_touching.h"
 #include "compiler/graph/lanes/lane_outlines.h"
 #include "compiler/graph/lanes/lane_waves.h"
 
@@ -665,14 +666,17 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
         return false;
     lane_slopes_run(f.tape, &field->ranges, field->slopes, &slope);
     lane_hessians_run(f.tape, &field->ranges, field->slopes, field->hessians, &hessian);
+    pieces->side  = 0;
     pieces->count = pieces->step_count = 0;
     Sum whole                          = sum_of(f.tape->outputs[0], 1, 0);
     if ((whole.operands[0] & LANE_SCALAR) || !find_pieces(&f, &whole))
         return false;
+    if (pieces->count > 1)
+        field_drop_touching(f.tape, &field->ranges, pieces, f.operands);
     bool one = pieces->count == 1 && pieces->values[0] == 1 &&
                pieces->signs[0] * pieces->weights[0][0] == 1 && pieces->offsets[0] == 0;
     pieces->origin = one ? origin_of(f.tape, f.operands[0][0]) : 0;
-    return keep_values(field, &f);
+    return pieces->side != 0 || keep_values(field, &f);
 }
 
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,

@@ -151,9 +151,12 @@ static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed 
         Tet *tet = &m->tets.list.items[placed[i].tet];
         if (tet->state == TET_EMPTY)
             continue;
-        if (pieces_measure(&m->contour, verifier->field, &cell, proven_error(m), tet))
+        if (cell.pieces.side != 0 && tet->triangle_count == 0)
             tet->state = TET_EMPTY;
-        else if (tet->deviation <= tet->slope * proven_error(m))
+        else if (cell.pieces.side == 0 &&
+                 pieces_measure(&m->contour, verifier->field, &cell, proven_error(m), tet))
+            tet->state = TET_EMPTY;
+        else if (cell.pieces.side == 0 && tet->deviation <= tet->slope * proven_error(m))
             tet->state = TET_FITS;
         else {
             tet->deviation = INFINITY;

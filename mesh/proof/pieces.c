@@ -53,7 +53,7 @@ static double find_slope(const FieldPieces *pieces)
 void pieces_look(MeshField *field, Box box, PieceCell *cell)
 {
     cell->known = field_pieces(field, box, &cell->pieces);
-    if (!cell->known)
+    if (!cell->known || cell->pieces.side != 0)
         return;
     cell->slope = find_slope(&cell->pieces);
     cell->known = cell->slope > 0;

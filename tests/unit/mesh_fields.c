@@ -182,6 +182,57 @@ static void sums_and_choices_have_pieces(void **context)
                                    "else length([max(x, 0), max(y, 0)])")) > 20);
 }
 
+/* In how many boxes around the face of touching solids there are no pieces, since all is inside, or outside of it. */
+static size_t try_touching(const char *text, int side)
+{
+    Opened *o     = open_field(text);
+    size_t  found = 0;
+    for (int i = 0; i < BOXES; i++) {
+        double      points[POINTS][3], distances[POINTS];
+        FieldPieces pieces;
+        Box         box = random_box(0.6, 0.2);
+        if (!field_enter(&o->field, box))
+            continue;
+        if (field_pieces(&o->field, box, &pieces) && pieces.side != 0) {
+            assert_int_equal(pieces.side, side);
+            points_in(box, points);
+            field_distances(&o->field, (const double(*)[3])points, POINTS, distances);
+            for (int k = 0; k < POINTS; k++)
+                assert_true(side * distances[k] >= -1e-12);
+            found++;
+        }
+        field_leave(&o->field);
+    }
+    close_field(o);
+    return found;
+}
+
+/* Turned, and with a gap or a skin that is thin, they do not touch. */
+static void touching_faces_are_no_surface(void **context)
+{
+    (void)context;
+    assert_true(
+        try_touching("show box([2, 1, 2]).move([0, 0.5, 0]) | box([2, 1, 2]).move([0, -0.5, 0]);",
+                     -1) > 20);
+    assert_true(
+        try_touching(
+            "show (box([2, 1, 2]).move([0.3, 0.6, 0]) | cylinder(0.9, 1).move([0.3, -0.4, 0]))"
+            ".rotate([1, 2, 3], 40deg);",
+            -1) > 20);
+    assert_true(
+        try_touching("show box([2, 1, 2]).move([0, 0.5, 0]) - box([1.4, 2, 1.4]).move([0, 1, 0]);",
+                     1) > 10);
+    assert_int_equal(try_touching("show box([2, 1, 2]).move([0, 0.5, 0]) | "
+                                  "box([2, 1, 2]).move([0, -0.5000001, 0]);",
+                                  -1),
+                     0);
+    assert_int_equal(
+        try_touching(
+            "show box([2, 1, 2]).move([0, 0.5, 0]) - box([1.4, 2, 1.4]).move([0, 1.0000001, 0]);",
+            1),
+        0);
+}
+
 /* A box that is not entered has no surface, and in one that is distances are as before. */
 static void boxes_that_are_left_out_are_empty(void **context)
 {
@@ -380,6 +431,7 @@ int main(void)
         cmocka_unit_test(slopes_of_ways_hold),
         cmocka_unit_test(boxes_that_are_left_out_are_empty),
         cmocka_unit_test(sums_and_choices_have_pieces),
+        cmocka_unit_test(touching_faces_are_no_surface),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
