@@ -146,7 +146,7 @@ static void rules_leave_what_they_do_not_mean(void **state)
     Node   still  = graph_op4(g, OP_rotate, point, ex, ey, ez);
     Node   turned = graph_op4(g, OP_rotate, point, ey, ez, ex);
     assert_string_equal(simplified(b, still), "%0 vec3 point = point\nroot %0\n");
-    assert_non_null(strstr(simplified(b, turned), "turn"));
+    assert_non_null(strstr(simplified(b, turned), "rotate"));
 
     Node   less = graph_op2(g, OP_less, x, y), opposite = graph_op1(g, OP_not, less);
     Node   choice = graph_op3(g, OP_select, opposite, y, z), simple_choice = choice;
