@@ -13,11 +13,11 @@
 
 /* ---- what pieces are sums of ---- */
 
-enum { MOST_TERMS = 8 };
+enum { MAX_TERMS = 8 };
 
 typedef struct Form {
-    uint32_t operands[MOST_TERMS];
-    double   weights[MOST_TERMS], offset, size; /* `size`: of all that was added to the offset */
+    uint32_t operands[MAX_TERMS];
+    double   weights[MAX_TERMS], offset, size; /* `size`: of all that was added to the offset */
     uint32_t count;
     bool     known;
 } Form;
@@ -33,7 +33,7 @@ static void add_operand(Form *form, uint32_t operand, double weight)
     uint32_t k = 0;
     while (k < form->count && form->operands[k] != operand)
         k++;
-    form->known = form->known && k < MOST_TERMS;
+    form->known = form->known && k < MAX_TERMS;
     if (!form->known)
         return;
     if (k == form->count) {
@@ -103,11 +103,11 @@ static double length_of(const Form *form)
 static Form form_of(const Forms *forms, const FieldPieces *pieces, const uint32_t *operands,
                     size_t piece)
 {
-    enum { MOST_DEPTH = 8 };
+    enum { MAX_DEPTH = 8 };
     Form   form = {.known = true};
     double sign = pieces->signs[piece];
     for (uint32_t k = 0; k < pieces->values[piece]; k++)
-        add_form(forms, &form, operands[k], sign * pieces->weights[piece][k], MOST_DEPTH);
+        add_form(forms, &form, operands[k], sign * pieces->weights[piece][k], MAX_DEPTH);
     add_offset(&form, pieces->offsets[piece]);
     double length = length_of(&form);
     form.known    = form.known && length > 0 && isfinite(length);
@@ -136,16 +136,16 @@ static bool are_opposite(const Form *a, const Form *b, double sign)
 
 typedef struct Tree {
     const FieldPieces *pieces;
-    Form               forms[MOST_PIECES];
-    int                children[MOST_PIECE_STEPS][2]; /* of steps that choose */
+    Form               forms[MAX_PIECES];
+    int                children[MAX_PIECE_STEPS][2]; /* of steps that choose */
     int                sides
-        [MOST_PIECE_STEPS]; /* of pieces that are left out: -1, as if below all others, or 1, above them; else 0 */
+        [MAX_PIECE_STEPS]; /* of pieces that are left out: -1, as if below all others, or 1, above them; else 0 */
     int root;
 } Tree;
 
 static void find_children(Tree *tree)
 {
-    int stack[MOST_PIECE_STEPS], depth = 0;
+    int stack[MAX_PIECE_STEPS], depth = 0;
     for (int i = 0; i < (int)tree->pieces->step_count; i++) {
         if (tree->pieces->steps[i] < 0) {
             tree->children[i][1] = stack[--depth];
@@ -178,7 +178,7 @@ static void drop_opposite(Tree *tree, int at)
 {
     int    choice = tree->pieces->steps[at], other = choice == PIECE_MIN ? PIECE_MAX : PIECE_MIN;
     double sign = choice == PIECE_MIN ? 1 : -1;
-    int    leaves[2][MOST_PIECE_STEPS], counts[2] = {0, 0};
+    int    leaves[2][MAX_PIECE_STEPS], counts[2] = {0, 0};
     for (int k = 0; k < 2; k++)
         find_leaves(tree, tree->children[at][k], other, leaves[k], &counts[k]);
     for (int k = 0; k < 2; k++)
@@ -207,8 +207,8 @@ static int side_of(const Tree *tree, int at)
 typedef struct Left {
     const Tree *tree;
     FieldPieces pieces;
-    uint32_t    operands[MOST_PIECES][PIECE_VALUES];
-    int         numbers[MOST_PIECES]; /* of the pieces before; -1: not yet */
+    uint32_t    operands[MAX_PIECES][PIECE_VALUES];
+    int         numbers[MAX_PIECES]; /* of the pieces before; -1: not yet */
 } Left;
 
 static void leave_piece(Left *left, int piece, const uint32_t operands[PIECE_VALUES])
@@ -229,7 +229,7 @@ static void leave_piece(Left *left, int piece, const uint32_t operands[PIECE_VAL
     to->steps[to->step_count++] = left->numbers[piece];
 }
 
-static void leave(Left *left, int at, uint32_t operands[MOST_PIECES][PIECE_VALUES])
+static void leave(Left *left, int at, uint32_t operands[MAX_PIECES][PIECE_VALUES])
 {
     int step = left->tree->pieces->steps[at], kept = 0;
     if (step >= 0) {
@@ -248,7 +248,7 @@ static void leave(Left *left, int at, uint32_t operands[MOST_PIECES][PIECE_VALUE
 }
 
 void field_drop_touching(const LaneTape *tape, const LaneRanges *ranges, FieldPieces *pieces,
-                         uint32_t operands[MOST_PIECES][PIECE_VALUES])
+                         uint32_t operands[MAX_PIECES][PIECE_VALUES])
 {
     const Forms forms = {tape, ranges};
     Tree        tree  = {.pieces = pieces};

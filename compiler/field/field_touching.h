@@ -12,6 +12,6 @@
 /* Leaves out pieces of which the sign never depends, since they are opposite to all that they are compared with.  `operands`:
    of the values of each piece, on the tape, of which a run of ranges was over the box. */
 void field_drop_touching(const LaneTape *tape, const LaneRanges *ranges, FieldPieces *pieces,
-                         uint32_t operands[MOST_PIECES][PIECE_VALUES]);
+                         uint32_t operands[MAX_PIECES][PIECE_VALUES]);
 
 #endif
