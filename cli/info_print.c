@@ -239,10 +239,9 @@ static void warn(const Printing *printing)
     if (m->estimate)
         say("warning: the distance is an estimate, so the errors are some as well");
     if (m->unresolved > 0)
-        say("warning: %zu cells may hold what is thinner than %.3g, or solids that touch; the "
-            "first "
-            "is at [%g, %g, %g]; a smaller --error tells",
-            m->unresolved, m->error, at[0], at[1], at[2]);
+        say("warning: %zu place%s may hold what is thinner than %.3g, or solids that touch; the "
+            "first is at [%g, %g, %g]; a smaller --error tells",
+            m->unresolved, m->unresolved == 1 ? "" : "s", m->error, at[0], at[1], at[2]);
     if (m->thin_area > 0 || m->wall.thickness < (1 - 1e-6) * printing->options->nozzle)
         say("warning: a wall of %.4g %s at [%g, %g, %g] is thinner than the nozzle, %g %s; "
             "walls of %.4g %s2 in all are",

@@ -402,9 +402,10 @@ static void report(const Meshing *meshing, const Bodies *bodies)
     if (all.estimate && !meshing->options->mesh_draft)
         say("warning: the distance is an estimate, so the error is one as well");
     if (all.unresolved > 0)
-        say("warning: %zu cells may hold what is thinner than the error, or solids that touch; "
+        say("warning: %zu place%s may hold what is thinner than the error, or solids that touch; "
             "the first is at [%g, %g, %g] of the %s; a smaller --error tells",
-            all.unresolved, at[0], at[1], at[2], kernels ? "kernel" : "scene");
+            all.unresolved, all.unresolved == 1 ? "" : "s", at[0], at[1], at[2],
+            kernels ? "kernel" : "scene");
     if (meshing->moving > 0)
         report_motion(meshing, all.error);
     if (all.beams > 0)

@@ -129,8 +129,29 @@ static const Shape *where_it_vanishes(const Shape *shape)
     return shape;
 }
 
+/* Rounding is an offset of a smaller part, whose box tells it; the box of what shrinks is that of its part. */
+static bool is_taken_off(Elaboration *e, const Shape *shape)
+{
+    if (shape->kind != SHAPE_OFFSET || shape->estimate)
+        return false;
+    return box_is_empty(shape->box) || (node_range(e->builder, shape->values[0], 0).high < 0 &&
+                                        box_is_finite(shape->box) && is_nowhere(e, shape));
+}
+
+/* Warns of parts of a sharp union that an offset leaves nothing of. */
+static void warn_of_offsets(Elaboration *e, const Shape *shape)
+{
+    if (is_taken_off(e, shape)) {
+        Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, shape->span, "nothing is left of this");
+        diag->label = "rounding or an offset takes off more than half of its smallest size";
+    } else if (shape->kind == SHAPE_UNION || shape_info[shape->kind].leaves == LEAVES_ALL)
+        for (uint32_t i = 0; i < shape->child_count; i++)
+            warn_of_offsets(e, shape->children[i]);
+}
+
 void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span)
 {
+    warn_of_offsets(e, shape);
     const Shape *inner = inside_wrappers(shape);
     bool         gone  = box_is_empty(shape->box);
     if (gone)
