@@ -74,6 +74,10 @@ static void try_values(const Parameters *parameters, Graph *plain, int trial, bo
     }
 }
 
+#define CHOICE                                                                                    \
+    "a choice may jump from one value to the other; `min`, `max`, `abs` and `clamp` do not, nor " \
+    "does `mix(a, b, smoothstep(-0.1, 0.1, x))`"
+
 /* What an operation is steep by, and what has a bound instead. */
 static const struct {
     Op          op;
@@ -97,14 +101,15 @@ static const struct {
     {OP_tan, "`tan` has poles; `sin` has none"},
     {OP_floor, "this jumps at whole numbers; `smoothstep` goes from one value to another"},
     {OP_ceil, "this jumps at whole numbers; `smoothstep` goes from one value to another"},
-    {OP_round, "this jumps between whole numbers; `smoothstep` goes from one value to another"},
+    {OP_round, "this jumps between whole numbers; `smoothstep` goes from one value to another, and "
+               "`asin(0.99 * sin(a))` is a zigzag"},
     {OP_fract, "this jumps at whole numbers; `.repeat` makes copies of a shape"},
     {OP_mod, "a remainder jumps; `.repeat` makes copies of a shape"},
     {OP_step, "a step jumps; `smoothstep` goes from 0 to 1 within a width"},
     {OP_sign, "a sign jumps at 0; `clamp(10 * a, -1, 1)` does not"},
-    {OP_select,
-     "a choice jumps from one value to the other; `mix(a, b, smoothstep(-0.1, 0.1, x))` does "
-     "not"},
+    {OP_less, CHOICE},
+    {OP_less_equal, CHOICE},
+    {OP_select, CHOICE},
 };
 
 void explain_steep(ShapeBuilder *builder, Diag *diag, Blame blame)
