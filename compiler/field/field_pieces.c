@@ -412,7 +412,12 @@ static bool add_linear(Finding *f, const Sum *sum, uint32_t k, const LaneStep *s
                         step->op == OP_sub ? -weight : weight) &&
                find_pieces(f, &parts);
     double factor = step->op == OP_neg ? -1 : 1;
-    scaled        = step->op == OP_neg ? step->operands[0] : scaled_operand(f, step, &factor);
+    if (step->op == OP_neg)
+        scaled = step->operands[0];
+    else if (step->op == OP_mul || step->op == OP_div)
+        scaled = scaled_operand(f, step, &factor);
+    else
+        return false;
     return scaled != NODE_NONE && replace_term(f, sum, k, scaled, factor, &parts) &&
            find_pieces(f, &parts);
 }
@@ -473,17 +478,13 @@ static bool add_condition(Finding *f, uint32_t operand, double sign)
 {
     const LaneStep *step  = lane_step_of(f->tape, operand);
     Sum             apart = {.count = 0};
-    switch (step ? step->op : OP_COUNT) {
-    case OP_less:
-    case OP_less_equal:
+    if (step && (step->op == OP_less || step->op == OP_less_equal))
         return add_term(f->tape, &apart, step->operands[0], sign) &&
                add_term(f->tape, &apart, step->operands[1], -sign) && apart.count > 0 &&
                find_pieces(f, &apart);
-    case OP_not: return add_condition(f, step->operands[0], -sign);
-    case OP_and:
-    case OP_or: return add_conditions(f, step, sign);
-    default: return false;
-    }
+    if (step && step->op == OP_not)
+        return add_condition(f, step->operands[0], -sign);
+    return step && (step->op == OP_and || step->op == OP_or) && add_conditions(f, step, sign);
 }
 
 /* Of a choice whose condition tells the sign. */
@@ -528,32 +529,20 @@ static bool add_alone(Finding *f, const LaneStep *step, double factor, double of
         return add_box(f, &faces, factor, offset);
     if (offset != 0)
         return false;
-    switch (step->op) {
-    case OP_mul:
-    case OP_div: return add_signed(f, step, factor);
-    case OP_clamp: return add_clamped(f, step, factor);
-    case OP_select: return add_chosen(f, step, factor);
-    default: return false;
-    }
+    if (step->op == OP_mul || step->op == OP_div)
+        return add_signed(f, step, factor);
+    if (step->op == OP_clamp)
+        return add_clamped(f, step, factor);
+    return step->op == OP_select && add_chosen(f, step, factor);
 }
 
 /* A sum whose term has no second derivatives. */
 static bool add_apart(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
 {
     static const double both[2] = {1, 1};
-    switch (step->op) {
-    case OP_min:
-    case OP_max:
-    case LANE_LESSER:
-    case LANE_GREATER: return add_choice(f, sum, k, step->operands, both, is_greater(step));
-    case OP_abs: return add_size(f, sum, k, step);
-    case OP_neg:
-    case OP_add:
-    case OP_sub:
-    case OP_mul:
-    case OP_div: return add_linear(f, sum, k, step);
-    default: return false;
-    }
+    if (is_lesser(step) || is_greater(step))
+        return add_choice(f, sum, k, step->operands, both, is_greater(step));
+    return step->op == OP_abs ? add_size(f, sum, k, step) : add_linear(f, sum, k, step);
 }
 
 static bool find_pieces(Finding *f, const Sum *sum)
