@@ -121,4 +121,8 @@ bool field_inside(const LaneTape *tape, const LaneRanges *ranges, uint32_t opera
                   FieldFaces *faces, double *part);
 bool field_has_face(const FieldFaces *faces, uint32_t operand);
 
+/* Whether a step takes the greater or the lesser of two numbers. */
+bool field_is_greater(const LaneStep *step);
+bool field_is_lesser(const LaneStep *step);
+
 #endif

@@ -161,100 +161,7 @@ static bool add_piece(Finding *f, const Sum *sum)
     return add_step(f, (int)i);
 }
 
-static bool is_greater(const LaneStep *step)
-{
-    return step->op == OP_max || step->op == LANE_GREATER;
-}
-static bool is_lesser(const LaneStep *step)
-{
-    return step->op == OP_min || step->op == LANE_LESSER;
-}
-
 /* ---- distances to boxes ---- */
-
-static bool is_zero_in(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
-{
-    return range_is_zero(operand & LANE_SCALAR ? range_of(tape->scalars[operand & ~LANE_SCALAR])
-                                               : ranges->ranges[operand]);
-}
-
-bool field_has_face(const FieldFaces *faces, uint32_t operand)
-{
-    for (size_t i = 0; i < faces->count; i++)
-        if (faces->operands[i] == operand)
-            return true;
-    return false;
-}
-
-static bool add_face(FieldFaces *faces, uint32_t operand)
-{
-    if (field_has_face(faces, operand))
-        return true;
-    if (faces->count == MAX_FACES || (operand & LANE_SCALAR))
-        return false;
-    faces->operands[faces->count++] = operand;
-    return true;
-}
-
-static bool find_greatest(const LaneTape *tape, uint32_t operand, FieldFaces *faces)
-{
-    const LaneStep *step = lane_step_of(tape, operand);
-    if (step && is_greater(step))
-        return find_greatest(tape, step->operands[0], faces) &&
-               find_greatest(tape, step->operands[1], faces);
-    return add_face(faces, operand);
-}
-
-/* What is the greatest of some numbers, of which one is 0. */
-static bool find_above_zero(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
-                            FieldFaces *faces, bool *zero)
-{
-    const LaneStep *step = lane_step_of(tape, operand);
-    if (is_zero_in(tape, ranges, operand))
-        return *zero = true;
-    if (step && is_greater(step))
-        return find_above_zero(tape, ranges, step->operands[0], faces, zero) &&
-               find_above_zero(tape, ranges, step->operands[1], faces, zero);
-    return add_face(faces, operand);
-}
-
-bool field_outside(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
-                   FieldFaces *faces)
-{
-    const LaneStep *step = lane_step_of(tape, operand);
-    bool            zero = false;
-    if (step && step->op == OP_length) {
-        for (uint32_t k = 0; k < step->operand_count; k++)
-            if (!is_zero_in(tape, ranges, step->operands[k]) &&
-                !field_outside(tape, ranges, step->operands[k], faces))
-                return false;
-        return true;
-    }
-    for (int k = 0; step && is_lesser(step) && k < 2; k++)
-        if (!(step->operands[k] & LANE_SCALAR) && ranges->ranges[step->operands[k]].low >= 0)
-            return field_outside(tape, ranges, step->operands[1 - k], faces);
-    return step && is_greater(step) && find_above_zero(tape, ranges, operand, faces, &zero) && zero;
-}
-
-bool field_inside(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
-                  FieldFaces *faces, double *part)
-{
-    const LaneStep *step   = lane_step_of(tape, operand);
-    bool            scaled = step && (step->op == OP_mul || step->op == OP_div);
-    for (int k = scaled && step->op == OP_div; scaled && k < 2; k++) {
-        double number = step->operands[k] & LANE_SCALAR
-                            ? tape->scalars[step->operands[k] & ~LANE_SCALAR]
-                            : 0;
-        if (!(number > 0))
-            continue;
-        *part *= step->op == OP_mul ? number : 1 / number;
-        return field_inside(tape, ranges, step->operands[1 - k], faces, part);
-    }
-    for (int k = 0; step && is_lesser(step) && k < 2; k++)
-        if (is_zero_in(tape, ranges, step->operands[1 - k]))
-            return find_greatest(tape, step->operands[k], faces);
-    return false;
-}
 
 /* length(max(q, 0)) + min(greatest q, 0) is above 0 where some q is, and else the greatest, if all that are not in the
    length are nowhere above 0.  So its sum with an offset has the sign of that of the greatest, unless the offset is below 0
@@ -352,12 +259,11 @@ static bool add_distance(Finding *f, const Sum *sum, uint32_t k, uint32_t number
 }
 
 /* How far a number is from the nearer one of two multiples of a period. */
-static bool add_wave(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
+static bool add_wave(Finding *f, const Sum *sum, uint32_t k, const LaneWave *wave)
 {
-    LaneWave wave = lane_wave(f->tape, &f->field->ranges, step);
-    return wave.last - wave.first == 1 &&
-           add_distance(f, sum, k, wave.number, wave.first * wave.period) &&
-           add_distance(f, sum, k, wave.number, wave.last * wave.period) &&
+    return wave->last - wave->first == 1 &&
+           add_distance(f, sum, k, wave->number, wave->first * wave->period) &&
+           add_distance(f, sum, k, wave->number, wave->last * wave->period) &&
            add_step(f, sum->weights[k] > 0 ? PIECE_MIN : PIECE_MAX);
 }
 
@@ -365,7 +271,7 @@ static bool add_size(Finding *f, const Sum *sum, uint32_t k, const LaneStep *ste
 {
     LaneWave wave = lane_wave(f->tape, &f->field->ranges, step);
     return wave.number != NODE_NONE && wave.last > wave.first
-               ? add_wave(f, sum, k, step)
+               ? add_wave(f, sum, k, &wave)
                : add_distance(f, sum, k, step->operands[0], 0);
 }
 
@@ -459,8 +365,9 @@ static double sign_of_choice(const Finding *f, const LaneStep *step)
     return chosen.low >= 0 && other.high <= 0 ? -1 : 0;
 }
 
-/* One of two that holds all over the box, or nowhere in it, is left out where the other one decides. */
 static bool add_condition(Finding *f, uint32_t operand, double sign);
+
+/* Leaves out one of two that holds all over the box, or nowhere in it, where the other one decides. */
 static bool add_conditions(Finding *f, const LaneStep *step, double sign)
 {
     bool both = step->op == OP_and;
@@ -540,8 +447,8 @@ static bool add_alone(Finding *f, const LaneStep *step, double factor, double of
 static bool add_apart(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
 {
     static const double both[2] = {1, 1};
-    if (is_lesser(step) || is_greater(step))
-        return add_choice(f, sum, k, step->operands, both, is_greater(step));
+    if (field_is_lesser(step) || field_is_greater(step))
+        return add_choice(f, sum, k, step->operands, both, field_is_greater(step));
     return step->op == OP_abs ? add_size(f, sum, k, step) : add_linear(f, sum, k, step);
 }
 
@@ -571,8 +478,8 @@ static bool find_pieces(Finding *f, const Sum *sum)
 /* Whether it is never taken apart: it is a piece, or there are none. */
 static bool is_whole(const LaneStep *step)
 {
-    return !is_greater(step) && !is_lesser(step) && step->op != OP_abs && step->op != OP_add &&
-           step->op != OP_sub;
+    return !field_is_greater(step) && !field_is_lesser(step) && step->op != OP_abs &&
+           step->op != OP_add && step->op != OP_sub;
 }
 
 /* Of what is not chosen all over the box each number is a piece, or several are, and has derivatives.  Ranges tell
@@ -580,10 +487,10 @@ static bool is_whole(const LaneStep *step)
 static bool count_pieces(Finding *f, uint32_t operand, double sign, double offset)
 {
     const LaneStep *step = lane_step_of(f->tape, operand);
-    if (step && (is_greater(step) || is_lesser(step))) {
+    if (step && (field_is_greater(step) || field_is_lesser(step))) {
         Range a    = range_of_operand(f, step->operands[0]),
               b    = range_of_operand(f, step->operands[1]);
-        int choice = is_greater(step) == (sign > 0) ? PIECE_MAX : PIECE_MIN;
+        int choice = field_is_greater(step) == (sign > 0) ? PIECE_MAX : PIECE_MIN;
         if (a.low < b.high && b.low < a.high) {
             for (int k = 0; k < 2; k++) {
                 Sum sum = sum_of(step->operands[k], sign, offset);
