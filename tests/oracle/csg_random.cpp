@@ -33,9 +33,9 @@ struct Random {
     }
     Turn turn()
     {
-        Turn turn   = {unit(), between(0, 2 * M_PI)};
-        iteration.c = std::cos(turn.angle);
-        turn.s      = std::sin(turn.angle);
+        Turn turn = {unit(), between(0, 2 * M_PI)};
+        turn.c    = std::cos(turn.angle);
+        turn.s    = std::sin(turn.angle);
         return turn;
     }
     Turn quarter_turn()
@@ -47,7 +47,7 @@ struct Random {
         turn.axis[below(3)]   = 1;
         turn.angle            = n * M_PI / 2;
         turn.s                = sines[n];
-        iteration.c           = sines[(n + 1) % 4];
+        turn.c                = sines[(n + 1) % 4];
         return turn;
     }
 };
