@@ -66,9 +66,9 @@ KrsStatus krs_scene_reload_sized(const KrsScene *scene, KrsScene **updated, KrsC
     }
 ASKED_BY_INDEX(krs_parameter, const KrsScene, KrsParameter)
 ASKED_BY_INDEX(krs_texture, const KrsScene, KrsTexture)
-ASKED_BY_INDEX(krs_frame_slope, const KrsScene, KrsFrameSlope)
+ASKED_BY_INDEX(krs_state_slope, const KrsScene, KrsStateSlope)
 ASKED_BY_INDEX(krs_camera_place, const KrsScene, KrsPlace)
-ASKED_BY_INDEX(krs_frame_camera, KrsFrame, KrsCamera)
+ASKED_BY_INDEX(krs_state_camera, KrsState, KrsCamera)
 ASKED_BY_INDEX(krs_component, const KrsScene, KrsComponent)
 
 void krs_scene_image_sized(const KrsScene *scene, KrsImage *image, size_t size)
@@ -87,7 +87,7 @@ KrsStatus krs_bound_sized(const KrsScene *scene, size_t component, size_t index,
     return status;
 }
 
-KrsStatus krs_probe_sized(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits,
+KrsStatus krs_probe_sized(KrsState *frame, const double (*points)[3], size_t count, KrsHit *hits,
                           size_t size)
 {
     SizedArray array;
@@ -98,7 +98,7 @@ KrsStatus krs_probe_sized(KrsFrame *frame, const double (*points)[3], size_t cou
     return status;
 }
 
-KrsStatus krs_raycast_sized(KrsFrame *frame, const double (*origins)[3],
+KrsStatus krs_raycast_sized(KrsState *frame, const double (*origins)[3],
                             const double (*directions)[3], size_t count, double farthest,
                             double tolerance, KrsHit *hits, size_t size)
 {
@@ -111,7 +111,7 @@ KrsStatus krs_raycast_sized(KrsFrame *frame, const double (*origins)[3],
     return status;
 }
 
-KrsStatus krs_mesh_sized(KrsFrame *frame, const KrsMeshOptions *options, size_t size,
+KrsStatus krs_mesh_sized(KrsState *frame, const KrsMeshOptions *options, size_t size,
                          KrsMesh **mesh)
 {
     KrsMeshOptions own;
@@ -131,7 +131,7 @@ KrsStatus krs_mesh_simplify_sized(const KrsMesh *mesh, const KrsMeshOptions *opt
     return krs_mesh_simplify(mesh, options ? &own : NULL, simplified);
 }
 
-KrsStatus krs_assemble_sized(KrsFrame *frame, const KrsMeshOptions *options, size_t size,
+KrsStatus krs_assemble_sized(KrsState *frame, const KrsMeshOptions *options, size_t size,
                              KrsAssembly **assembly)
 {
     KrsMeshOptions own;
@@ -151,7 +151,7 @@ KrsStatus krs_component_motion_sized(const KrsScene *scene, size_t index, KrsMot
     return status;
 }
 
-KrsStatus krs_grid_new_sized(KrsFrame *frame, const KrsGridOptions *options, size_t size,
+KrsStatus krs_grid_new_sized(KrsState *frame, const KrsGridOptions *options, size_t size,
                              KrsGrid **grid)
 {
     KrsGridOptions own;
@@ -167,7 +167,7 @@ void krs_grid_shape_sized(const KrsGrid *grid, KrsGridShape *shape, size_t size)
     sized_give(shape, size, &own, sizeof own);
 }
 
-KrsStatus krs_slicer_new_sized(KrsFrame *frame, const KrsSliceOptions *options, size_t size,
+KrsStatus krs_slicer_new_sized(KrsState *frame, const KrsSliceOptions *options, size_t size,
                                KrsSlicer **slicer)
 {
     KrsSliceOptions own;
@@ -177,7 +177,7 @@ KrsStatus krs_slicer_new_sized(KrsFrame *frame, const KrsSliceOptions *options, 
     return krs_slicer_new(frame, options ? &own : NULL, slicer);
 }
 
-KrsStatus krs_measure_sized(KrsFrame *frame, const KrsMeasureOptions *options, size_t size,
+KrsStatus krs_measure_sized(KrsState *frame, const KrsMeasureOptions *options, size_t size,
                             KrsMeasures **measures)
 {
     KrsMeasureOptions own;

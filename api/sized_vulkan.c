@@ -43,7 +43,7 @@ size_t krs_rendering_kernels_sized(const KrsRendering *rendering, KrsKernelStats
     return found;
 }
 
-KrsStatus krs_render_sized(KrsRendering *rendering, KrsFrame *frame,
+KrsStatus krs_render_sized(KrsRendering *rendering, KrsState *frame,
                            const KrsRenderOptions *options, size_t size, KrsPicture **picture)
 {
     KrsRenderOptions own;
@@ -63,7 +63,7 @@ KrsStatus krs_film_new_sized(KrsRendering *rendering, const KrsRenderOptions *op
     return krs_film_new(rendering, options ? &own : NULL, film);
 }
 
-KrsStatus krs_film_add_sized(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, size_t size,
+KrsStatus krs_film_add_sized(KrsFilm *film, KrsState *frame, const KrsCamera *camera, size_t size,
                              uint32_t samples)
 {
     KrsCamera own;
@@ -72,7 +72,7 @@ KrsStatus krs_film_add_sized(KrsFilm *film, KrsFrame *frame, const KrsCamera *ca
     return krs_film_add(film, frame, camera ? &own : NULL, samples);
 }
 
-KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsFrame *frame, const KrsRays *rays, size_t size)
+KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsState *frame, const KrsRays *rays, size_t size)
 {
     KrsRays own;
     if (!sized_take(&own, sizeof own, rays, size))
@@ -80,7 +80,7 @@ KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsFrame *frame, const KrsRays 
     return krs_film_add_rays(film, frame, rays ? &own : NULL);
 }
 
-KrsStatus krs_sample_sized(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+KrsStatus krs_sample_sized(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
                            size_t count, float *distances, KrsSurfacePoint *surfaces, size_t size)
 {
     SizedArray array;
@@ -91,7 +91,7 @@ KrsStatus krs_sample_sized(KrsRendering *rendering, KrsFrame *frame, const float
     return status;
 }
 
-KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsFrame *frame,
+KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsState *frame,
                                  const double (*points)[3], size_t count, KrsHit *hits, size_t size)
 {
     SizedArray array;
@@ -102,7 +102,7 @@ KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsFrame *frame,
     return status;
 }
 
-KrsStatus krs_device_raycast_sized(KrsRendering *rendering, KrsFrame *frame,
+KrsStatus krs_device_raycast_sized(KrsRendering *rendering, KrsState *frame,
                                    const double (*origins)[3], const double (*directions)[3],
                                    size_t count, double farthest, double tolerance, KrsHit *hits,
                                    size_t size)

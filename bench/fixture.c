@@ -35,7 +35,7 @@ Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text, 
     KrsOptions options = {.diagnostic = complain, .gradients = gradients};
     KrsStatus  status  = text ? krs_compile_text(text, strlen(text), name, &options, &fixture.scene)
                               : krs_compile_file(name, &options, &fixture.scene);
-    if (status != KRS_OK || krs_frame_new(fixture.scene, &fixture.frame) != KRS_OK)
+    if (status != KRS_OK || krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
         give_up(name, "it does not compile");
     if (krs_rendering_new(renderer, fixture.scene, &fixture.rendering) != KRS_OK)
         give_up(name, krs_renderer_message(renderer));
@@ -45,7 +45,7 @@ Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text, 
 void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_frame_free(fixture->frame);
+    krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
 }
 

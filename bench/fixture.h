@@ -12,7 +12,7 @@ typedef struct Fixture {
     const char   *name;
     KrsRenderer  *renderer;
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
 } Fixture;
 

@@ -15,7 +15,7 @@ const char *const answerer_names[ANSWERER_COUNT] = {"host", "device"};
 
 typedef struct Inquiry {
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     size_t        count; /* of questions that there are */
     double (*points)[3], (*aims)[3];
@@ -27,7 +27,7 @@ static void inquiry_open(Bench *bench, Inquiry *in, size_t count)
     const char *path = "bench/scenes/tree28.krs";
     *in              = (Inquiry){.count = count};
     if (krs_compile_file(path, NULL, &in->scene) != KRS_OK ||
-        krs_frame_new(in->scene, &in->frame) != KRS_OK)
+        krs_state_new(in->scene, &in->frame) != KRS_OK)
         fail("cannot compile %s", path);
     if (krs_rendering_new_for(bench->renderer, in->scene, KRS_FOR_QUESTIONS, &in->rendering) !=
         KRS_OK)
@@ -41,7 +41,7 @@ static void inquiry_open(Bench *bench, Inquiry *in, size_t count)
 static void inquiry_close(Inquiry *in)
 {
     krs_rendering_free(in->rendering);
-    krs_frame_free(in->frame);
+    krs_state_free(in->frame);
     krs_scene_free(in->scene);
 }
 

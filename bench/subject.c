@@ -41,8 +41,8 @@ void subject_open(Bench *bench, Subject *subject, const char *path, uint32_t lev
     KrsOptions options = {.diagnostic = complain};
     if (krs_compile_text(text, strlen(text), path, &options, &subject->scene) != KRS_OK)
         fail("%s does not compile", path);
-    if (krs_frame_new(subject->scene, &subject->frame) != KRS_OK ||
-        krs_frame_view(subject->frame, 0, &subject->view) != KRS_OK)
+    if (krs_state_new(subject->scene, &subject->frame) != KRS_OK ||
+        krs_state_view(subject->frame, 0, &subject->view) != KRS_OK)
         fail("%s: out of memory", path);
     if (krs_rendering_new(bench->renderer, subject->scene, &subject->rendering) != KRS_OK)
         fail("%s: %s", path, krs_renderer_message(bench->renderer));
@@ -53,7 +53,7 @@ void subject_open(Bench *bench, Subject *subject, const char *path, uint32_t lev
 void subject_close(Subject *subject)
 {
     krs_rendering_free(subject->rendering);
-    krs_frame_free(subject->frame);
+    krs_state_free(subject->frame);
     krs_scene_free(subject->scene);
     *subject = (Subject){0};
 }

@@ -11,7 +11,7 @@
 
 typedef struct Subject {
     KrsScene         *scene;
-    KrsFrame         *frame;
+    KrsState         *frame;
     KrsRendering     *rendering;
     const KrsProgram *program;
     KrsView           view;

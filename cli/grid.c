@@ -34,7 +34,7 @@ enum { GROUPS = 2 };
 typedef struct Gridding {
     const Options  *options;
     const KrsScene *scene;
-    KrsFrame       *frame;
+    KrsState       *frame;
     Meshing         meshing;        /* what they share with meshes */
     KrsGridOptions  how;            /* but for what a format has */
     GridGroup       groups[GROUPS]; /* all, near */
@@ -454,7 +454,7 @@ KrsStatus command_grid(Options *options)
     if (status == KRS_OK)
         report_all(&gridding);
     krs_grid_free(gridding.grid);
-    krs_frame_free(gridding.frame);
+    krs_state_free(gridding.frame);
     krs_scene_free(scene);
     return status;
 }

@@ -162,9 +162,9 @@ static void print_text(const KrsScene *scene)
         krs_parameter(scene, i, &parameter);
         print_parameter(&parameter);
     }
-    for (size_t i = 0; i < krs_frame_slope_count(scene); i++) {
-        KrsFrameSlope slope;
-        krs_frame_slope(scene, i, &slope);
+    for (size_t i = 0; i < krs_state_slope_count(scene); i++) {
+        KrsStateSlope slope;
+        krs_state_slope(scene, i, &slope);
         printf("slope of each frame: slot %u, of %s\n", slope.slot, slope.place);
     }
     for (size_t i = 0; i < krs_camera_count(scene); i++)
@@ -269,9 +269,9 @@ static void add_parameters(Text *json, const KrsScene *scene)
 static void add_slopes(Text *json, const KrsScene *scene)
 {
     text_add(json, "\"frame_slopes\": [");
-    for (size_t i = 0; i < krs_frame_slope_count(scene); i++) {
-        KrsFrameSlope slope;
-        krs_frame_slope(scene, i, &slope);
+    for (size_t i = 0; i < krs_state_slope_count(scene); i++) {
+        KrsStateSlope slope;
+        krs_state_slope(scene, i, &slope);
         text_format(json, "%s{\"slot\": %u, \"place\": ", i == 0 ? "" : ", ", slope.slot);
         text_json(json, slope.place);
         text_add(json, ", \"low\": ");

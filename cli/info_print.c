@@ -270,7 +270,7 @@ static KrsMeasureOptions measure_options(Printing *printing, const KrsMeshOption
     return how;
 }
 
-static KrsStatus measure(Printing *printing, KrsFrame *frame)
+static KrsStatus measure(Printing *printing, KrsState *frame)
 {
     const Options *options = printing->options;
     const char    *path    = options->files.items[0];
@@ -299,7 +299,7 @@ KrsStatus info_print(const Options *options, const KrsScene *scene)
 {
     Printing printing = {.options = options, .scene = scene};
     int      unit = options->mesh_units < 0 ? find_choice("mm", unit_choices) : options->mesh_units;
-    KrsFrame *frame;
+    KrsState *frame;
     printing.unit    = unit_choices[unit].name;
     printing.cm      = 100 * metres_of_units[unit];
     KrsStatus status = scene_frame(options, scene, &frame);
@@ -314,7 +314,7 @@ KrsStatus info_print(const Options *options, const KrsScene *scene)
         warn(&printing);
     }
     krs_measures_free(printing.measures);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     return status;
 }
 

@@ -457,7 +457,7 @@ KrsStatus write_meshes(Meshing *meshing)
         report(meshing, &meshing->merged);
     drop_bodies(&meshing->assembled);
     drop_bodies(&meshing->merged);
-    krs_frame_free(meshing->frame);
+    krs_state_free(meshing->frame);
     return status;
 }
 

@@ -26,7 +26,7 @@ enum {
 
 typedef struct Query {
     const Options *options;
-    KrsFrame      *frame;
+    KrsState      *frame;
     KrsRenderer   *renderer;
     KrsRendering  *rendering; /* NULL: the host answers */
     KrsStatus      status;    /* of the answers so far */
@@ -285,7 +285,7 @@ KrsStatus command_query(Options *options)
     }
     krs_rendering_free(query->rendering);
     krs_renderer_free(query->renderer);
-    krs_frame_free(query->frame);
+    krs_state_free(query->frame);
     krs_scene_free(scene);
     return status;
 }

@@ -150,7 +150,7 @@ static KrsStatus choose_how(Render *render)
     size_t            camera;
     KrsStatus         status = find_camera(options, render->scene, &camera);
     if (status == KRS_OK)
-        status = krs_frame_view(render->frame, camera, &view);
+        status = krs_state_view(render->frame, camera, &view);
     if (status != KRS_OK)
         return status;
     *how          = options->how;
@@ -194,7 +194,7 @@ static KrsStatus write_outputs(Render *render, const KrsPicture *picture, double
 {
     const Options *options = render->options;
     KrsView        view;
-    KrsStatus      status  = krs_frame_view(render->frame, render->how.camera, &view);
+    KrsStatus      status  = krs_state_view(render->frame, render->how.camera, &view);
     PictureNotes   notes   = {.scene = render->scene, .time = time};
     notes.display.exposure = isnan(options->exposure) ? view.image.exposure : options->exposure;
     notes.display.white_balance = options->white_balance;
@@ -326,7 +326,7 @@ static KrsStatus specialize(Render *render)
                                    count_samples(render, pixels_of_window(&render->how)));
     if (!edited)
         return KRS_OK;
-    krs_frame_free(render->frame);
+    krs_state_free(render->frame);
     krs_scene_free(render->scene);
     render->frame = NULL;
     render->scene = edited;
@@ -426,7 +426,7 @@ void render_free(Render *render)
 {
     krs_rendering_free(render->rendering);
     krs_renderer_free(render->renderer);
-    krs_frame_free(render->frame);
+    krs_state_free(render->frame);
     krs_scene_free(render->scene);
 }
 

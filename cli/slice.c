@@ -23,7 +23,7 @@ typedef struct SliceOutput {
 typedef struct Slicing {
     const Options  *options;
     const KrsScene *scene;
-    KrsFrame       *frame;
+    KrsState       *frame;
     KrsSlicer      *slicer;
     SliceSheet      sheet;
     Meshing         meshing; /* what they share with meshes */
@@ -531,7 +531,7 @@ KrsStatus command_slice(Options *options)
     if (status == KRS_OK)
         status = write_sections(&slicing);
     krs_slicer_free(slicing.slicer);
-    krs_frame_free(slicing.frame);
+    krs_state_free(slicing.frame);
     krs_scene_free(scene);
     return status;
 }

@@ -40,7 +40,7 @@ typedef struct Validation {
     const Options *options;
     const char    *path, *name; /* the latter is printed */
     KrsScene      *scene;
-    KrsFrame      *frame;
+    KrsState      *frame;
     uint64_t       random;                /* state of the generator */
     double         low[3], high[3], size; /* the box that is tried, and its diagonal */
     uint64_t       balls;                 /* probes inside of balls so far */
@@ -428,7 +428,7 @@ static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
     if (status == KRS_OK)
         status = try_points(v, renderer, rendering);
     krs_rendering_free(rendering);
-    krs_frame_free(v->frame);
+    krs_state_free(v->frame);
     krs_scene_free(v->scene);
     return status;
 }

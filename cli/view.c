@@ -37,12 +37,12 @@ static bool is_stopped(void *user)
 static KrsStatus check_settings(const Options *options)
 {
     KrsScene *scene;
-    KrsFrame *frame  = NULL;
+    KrsState *frame  = NULL;
     KrsStatus status = scene_open(options, options->files.items[0], &scene);
     if (status != KRS_OK)
         return status;
     status = scene_frame(options, scene, &frame);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
     return status;
 }

@@ -95,7 +95,7 @@ static KrsStatus make_shaders(Watch *watch)
 
 static KrsStatus make_picture(Watch *watch, double start)
 {
-    krs_frame_free(watch->render.frame);
+    krs_state_free(watch->render.frame);
     watch->render.frame = NULL;
     KrsStatus status    = adopt(watch);
     if (status == KRS_OK)

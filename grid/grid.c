@@ -74,7 +74,7 @@ static bool find_samples(KrsGrid *grid)
 }
 
 /* The least of distances that are exact outside is so, too. */
-static bool is_exact_outside(const KrsGrid *grid, const KrsFrame *frame)
+static bool is_exact_outside(const KrsGrid *grid, const KrsState *frame)
 {
     bool exact = !grid->options.within && frame->zone_count == 0 && !grid->solid.zoned;
     for (size_t i = 0; i < frame->scene->shown_count && exact; i++)
@@ -83,7 +83,7 @@ static bool is_exact_outside(const KrsGrid *grid, const KrsFrame *frame)
     return exact;
 }
 
-static KrsStatus find_mesh(KrsGrid *grid, KrsFrame *frame)
+static KrsStatus find_mesh(KrsGrid *grid, KrsState *frame)
 {
     const KrsGridOptions *options = &grid->options;
     KrsMeshOptions        how     = {.component    = options->component,
@@ -111,7 +111,7 @@ static KrsStatus find_mesh(KrsGrid *grid, KrsFrame *frame)
     return KRS_OK;
 }
 
-static KrsStatus open_fields(KrsGrid *grid, KrsFrame *frame)
+static KrsStatus open_fields(KrsGrid *grid, KrsState *frame)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < grid->parts && status == KRS_OK; i++) {
@@ -130,7 +130,7 @@ static KrsStatus open_fields(KrsGrid *grid, KrsFrame *frame)
     return status;
 }
 
-static KrsStatus prepare(KrsGrid *grid, KrsFrame *frame)
+static KrsStatus prepare(KrsGrid *grid, KrsState *frame)
 {
     jmp_buf            exhausted;
     bool               empty;
@@ -195,7 +195,7 @@ static void take_band(KrsGrid *grid)
     grid->shape.band              = options->fog ? 0 : options->band * options->cell;
 }
 
-KrsStatus krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid **result)
+KrsStatus krs_grid_new(KrsState *frame, const KrsGridOptions *options, KrsGrid **result)
 {
     const KrsScene *scene = frame->scene;
     *result               = NULL;

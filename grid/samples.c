@@ -78,7 +78,7 @@ static void find_normals(const MeshField *field, const double (*points)[3], doub
         field_normal(field, points[i], 1e-6 * (1 + largest3(points[i])), normals[i]);
 }
 
-static void take_material(const KrsGrid *grid, KrsFrame *frame, size_t point, uint32_t nearest,
+static void take_material(const KrsGrid *grid, KrsState *frame, size_t point, uint32_t nearest,
                           float color[3], uint32_t *material)
 {
     const Node *roots = surface_roots(&frame->scene->roots,

@@ -52,7 +52,7 @@ static void act_frame(Viewing *viewing)
     const double aspect = viewing->view.height > 0
                               ? (double)viewing->view.width / viewing->view.height
                               : 1;
-    if (!krs_frame_box(viewing_frame(viewing), low, high))
+    if (!krs_state_box(viewing_frame(viewing), low, high))
         return;
     krs_camera_fit(&viewing->view.camera, low, high, aspect);
     changed(viewing);
@@ -67,7 +67,7 @@ static void act_frame_part(Viewing *viewing)
     double       low[3], high[3];
     if (!found.hit)
         return;
-    if (!krs_frame_component_box(viewing_frame(viewing), found.component - 1, low, high))
+    if (!krs_state_component_box(viewing_frame(viewing), found.component - 1, low, high))
         for (int i = 0; i < 3; i++) {
             low[i]  = found.position[i] - NEAR_PART * found.depth;
             high[i] = found.position[i] + NEAR_PART * found.depth;
@@ -78,7 +78,7 @@ static void act_frame_part(Viewing *viewing)
 
 static void act_home(Viewing *viewing)
 {
-    krs_frame_place_camera(viewing_frame(viewing));
+    krs_state_place_camera(viewing_frame(viewing));
     viewing_take_camera(viewing, viewing->camera);
 }
 
@@ -224,7 +224,7 @@ static void act_write_camera(Viewing *viewing)
     KrsStatus       status = KRS_BAD_ARGUMENT;
     KrsCamera       before;
     if (viewing->diagnostics.errors == 0 &&
-        krs_frame_camera(viewing->frame, viewing->camera, &before) == KRS_OK)
+        krs_state_camera(viewing->frame, viewing->camera, &before) == KRS_OK)
         status = camera_text_write(scene, viewing->camera, &before, &viewing->view.camera,
                                    viewing->options->path);
     if (!is_written(viewing, status))
@@ -275,7 +275,7 @@ static void measure_scene(Viewing *viewing)
 {
     const KrsCamera *camera = &viewing->view.camera;
     double           low[3], high[3], sum = 0;
-    const bool       bounded = krs_frame_box(viewing_frame(viewing), low, high);
+    const bool       bounded = krs_state_box(viewing_frame(viewing), low, high);
     for (int i = 0; i < 3; i++)
         sum += bounded ? pow(high[i] - low[i], 2) : pow(camera->target[i] - camera->eye[i], 2);
     viewing->cut.size = fmax(sqrt(sum), 1e-9);

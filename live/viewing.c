@@ -25,7 +25,7 @@ void viewing_show(Viewing *viewing) { viewing->view_changed = true; }
 void viewing_set_time(Viewing *viewing, double time)
 {
     viewing->view.time = fmax(time, 0);
-    krs_frame_set_time(viewing->frame, viewing->view.time);
+    krs_state_set_time(viewing->frame, viewing->view.time);
     if (!viewing->moved)
         viewing_take_camera(viewing, viewing->camera); /* it may move with the time */
     viewing_show(viewing);
@@ -113,17 +113,17 @@ static void set_frame(Viewing *viewing)
     for (size_t i = 0; i < krs_parameter_count(scene); i++) {
         KrsParameter parameter;
         krs_parameter(scene, i, &parameter);
-        krs_frame_set(viewing->frame, parameter.name, viewing->view.values[i],
+        krs_state_set(viewing->frame, parameter.name, viewing->view.values[i],
                       parameter.components);
     }
-    krs_frame_set_time(viewing->frame, viewing->view.time);
+    krs_state_set_time(viewing->frame, viewing->view.time);
 }
 
 void viewing_take_camera(Viewing *viewing, size_t camera)
 {
     KrsCamera found;
     set_frame(viewing);
-    if (krs_frame_camera(viewing->frame, camera, &found) != KRS_OK)
+    if (krs_state_camera(viewing->frame, camera, &found) != KRS_OK)
         return;
     viewing->camera      = camera;
     viewing->view.camera = found;
@@ -131,7 +131,7 @@ void viewing_take_camera(Viewing *viewing, size_t camera)
     viewing_show(viewing);
 }
 
-KrsFrame *viewing_frame(Viewing *viewing)
+KrsState *viewing_frame(Viewing *viewing)
 {
     set_frame(viewing);
     return viewing->frame;
@@ -265,13 +265,13 @@ void viewing_adopt(Viewing *viewing, Version *version)
 {
     const KrsScene *scene  = version_scene(version);
     View            before = viewing->view;
-    KrsFrame       *frame  = NULL;
+    KrsState       *frame  = NULL;
     double(*values)[4]     = calloc(krs_parameter_count(scene) + 1, sizeof *values);
-    if (!values || krs_frame_new(scene, &frame) != KRS_OK) {
+    if (!values || krs_state_new(scene, &frame) != KRS_OK) {
         free(values);
         return;
     }
-    krs_frame_free(viewing->frame);
+    krs_state_free(viewing->frame);
     viewing->frame        = frame;
     viewing->view.version = version_hold(version);
     viewing->view.values  = values;
@@ -280,7 +280,7 @@ void viewing_adopt(Viewing *viewing, Version *version)
         keep_values(viewing, &before);
     else {
         begin_view(viewing);
-        krs_frame_place_camera(viewing_frame(viewing));
+        krs_state_place_camera(viewing_frame(viewing));
     }
     version_release(before.version);
     free(before.values);

@@ -31,7 +31,7 @@ typedef struct Viewing {
                reading_since; /* viewing_now, when a saved text began to be compiled; 0: none is */
     atomic_int read_status;   /* of the document, where no edit will mend it */
 
-    KrsFrame    *frame; /* of the view's version: cameras, and whether values fit */
+    KrsState    *frame; /* of the view's version: cameras, and whether values fit */
     View         view;
     bool         view_changed;
     size_t       camera;         /* of the scene's */
@@ -93,7 +93,7 @@ double viewing_now(void);
 void viewing_show(Viewing *viewing);
 void viewing_set_time(Viewing *viewing, double time);
 /* The frame, set to the values of the view as far as the scene permits them. */
-KrsFrame *viewing_frame(Viewing *viewing);
+KrsState *viewing_frame(Viewing *viewing);
 /* Takes the camera to that of the scene. */
 void viewing_take_camera(Viewing *viewing, size_t camera);
 /* Takes a new version of the document. */

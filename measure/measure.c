@@ -26,7 +26,7 @@ static bool mesher_goes_on(void *user, double fraction)
     return measurer_goes_on(user, 0, fraction);
 }
 
-static KrsStatus make_mesh(Measurer *m, KrsFrame *frame)
+static KrsStatus make_mesh(Measurer *m, KrsState *frame)
 {
     const KrsMeasureOptions *options = m->options;
     KrsMeshOptions           how     = {.error        = options->error,
@@ -55,7 +55,7 @@ static void find_box(Measurer *m)
     }
 }
 
-static KrsStatus open_fields(Measurer *m, KrsFrame *frame)
+static KrsStatus open_fields(Measurer *m, KrsState *frame)
 {
     const KrsScene          *scene   = frame->scene;
     const KrsMeasureOptions *options = m->options;
@@ -119,7 +119,7 @@ static void measure_all(Measurer *m)
         measure_lying(m);
 }
 
-static KrsStatus run(Measurer *m, KrsFrame *frame)
+static KrsStatus run(Measurer *m, KrsState *frame)
 {
     KrsMeasures *measures = m->measures;
     jmp_buf      exhausted;
@@ -164,7 +164,7 @@ static void close_measurer(Measurer *m)
     free(m);
 }
 
-KrsStatus krs_measure(KrsFrame *frame, const KrsMeasureOptions *options, KrsMeasures **measures)
+KrsStatus krs_measure(KrsState *frame, const KrsMeasureOptions *options, KrsMeasures **measures)
 {
     static const KrsMeasureOptions none   = {0};
     KrsStatus                      status = KRS_OUT_OF_MEMORY;

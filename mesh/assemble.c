@@ -15,7 +15,7 @@ enum { MAX_VISITS = 1 << 20 };
 static const double ROUNDING_OF_MIRRORS = 1e-9;
 
 typedef struct Assembler {
-    KrsFrame             *frame;
+    KrsState             *frame;
     const KrsMeshOptions *options;
     const Assembly       *from;
     KrsAssembly          *to;
@@ -309,13 +309,13 @@ static KrsStatus assemble(Assembler *a)
     return status;
 }
 
-static bool is_possible(const KrsFrame *frame, const KrsMeshOptions *options)
+static bool is_possible(const KrsState *frame, const KrsMeshOptions *options)
 {
     return frame->scene->assembly.items.count > 0 && !options->within && frame->zone_count == 0 &&
            zone_root(frame->scene) == NODE_NONE;
 }
 
-KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options, KrsAssembly **assembly)
+KrsStatus krs_assemble(KrsState *frame, const KrsMeshOptions *options, KrsAssembly **assembly)
 {
     static const KrsMeshOptions none = {0};
     Assembler                   a    = {
@@ -360,7 +360,7 @@ static bool has_mirrors(const Assembly *assembly)
     return false;
 }
 
-KrsStatus krs_assembly_place(KrsFrame *frame, KrsAssembly *assembly)
+KrsStatus krs_assembly_place(KrsState *frame, KrsAssembly *assembly)
 {
     Assembler a = {.frame = frame, .from = &frame->scene->assembly, .to = assembly};
     frame_refresh(frame);
@@ -385,7 +385,7 @@ KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *m
     return KRS_OK;
 }
 
-size_t krs_component_beams(KrsFrame *frame, size_t index, KrsBeam *beams)
+size_t krs_component_beams(KrsState *frame, size_t index, KrsBeam *beams)
 {
     const KrsScene *scene = frame->scene;
     if (index >= scene->shown_count || !scene->assembly.beams || frame->zone_count > 0 ||

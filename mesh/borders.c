@@ -35,7 +35,7 @@ typedef struct Borders {
     Arena                 arena;
     const KrsMeshOptions *options;
     const double (*copy)[4];
-    KrsFrame *frames[MAX_PARTS];
+    KrsState *frames[MAX_PARTS];
     struct {
         double (*items)[3];
         size_t count, capacity;
@@ -62,7 +62,7 @@ typedef struct Borders {
 /* A triangle in the scene; `margin` is the least weight that points have of each corner. */
 typedef struct Look {
     Borders  *b;
-    KrsFrame *frame;
+    KrsState *frame;
     bool      asks;                                 /* whether the mesh is still wanted */
     double    corners[3][3], margin[3], heights[3]; /* of the corners */
     double    lengths[3];                           /* of the edges from them */
@@ -396,7 +396,7 @@ static void split_all(Borders *b)
         split_triangle(b, &splits, i);
 }
 
-static KrsStatus open_borders(Borders *b, KrsFrame *frame, const KrsMesh *mesh)
+static KrsStatus open_borders(Borders *b, KrsState *frame, const KrsMesh *mesh)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
@@ -439,7 +439,7 @@ static KrsStatus replace_mesh(const Borders *b, KrsMesh *mesh)
     return KRS_OK;
 }
 
-static KrsStatus split(Borders *b, KrsFrame *frame, KrsMesh *mesh)
+static KrsStatus split(Borders *b, KrsState *frame, KrsMesh *mesh)
 {
     jmp_buf exhausted;
     b->memory.exhausted = &exhausted;
@@ -472,7 +472,7 @@ static double size_of(const KrsMesh *mesh)
     return size;
 }
 
-KrsStatus mesh_split_at_borders(KrsFrame *frame, const KrsMeshOptions *options,
+KrsStatus mesh_split_at_borders(KrsState *frame, const KrsMeshOptions *options,
                                 const double (*copy)[4], KrsMesh      *mesh)
 {
     Borders b        = {.options = options, .copy = copy};

@@ -43,7 +43,7 @@ static bool is_nothing(const Mesher *m)
     return m->low[0] >= m->high[0] || m->low[1] >= m->high[1] || m->low[2] >= m->high[2];
 }
 
-static KrsStatus open_fields(Mesher *m, KrsFrame *frame)
+static KrsStatus open_fields(Mesher *m, KrsState *frame)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
@@ -140,7 +140,7 @@ static bool find_flat(Mesher *m)
     return true;
 }
 
-static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
+static KrsStatus run(Mesher *m, KrsState *frame, KrsMesh **mesh)
 {
     jmp_buf exhausted;
     m->memory.exhausted = &exhausted;
@@ -223,7 +223,7 @@ static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh
 }
 
 /* `*spared`: of the error, for leaving out triangles; `*handles`: as of Mesher. */
-static KrsStatus mesh_in_turn(KrsFrame *frame, const KrsMeshOptions *options,
+static KrsStatus mesh_in_turn(KrsState *frame, const KrsMeshOptions *options,
                               const MeshSolid *solid, int turn, KrsMesh **mesh, double *spared,
                               size_t *handles)
 {
@@ -244,7 +244,7 @@ static KrsStatus mesh_in_turn(KrsFrame *frame, const KrsMeshOptions *options,
 }
 
 /* Where a mesh has handles they are mostly those of its tetrahedra at a sharp edge, so others are tried. */
-static KrsStatus mesh_once(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+static KrsStatus mesh_once(KrsState *frame, const KrsMeshOptions *options, const MeshSolid *solid,
                            KrsMesh **mesh)
 {
     Step           step    = {options, 0, options->simplify ? MESHED : 1, 0};
@@ -262,7 +262,7 @@ static KrsStatus mesh_once(KrsFrame *frame, const KrsMeshOptions *options, const
 }
 
 /* Half of the error needs several times the memory: where there is not so much, no triangle is left out. */
-static KrsStatus mesh_all(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+static KrsStatus mesh_all(KrsState *frame, const KrsMeshOptions *options, const MeshSolid *solid,
                           KrsMesh **mesh)
 {
     KrsMeshOptions all    = *options;
@@ -274,7 +274,7 @@ static KrsStatus mesh_all(KrsFrame *frame, const KrsMeshOptions *options, const 
 }
 
 /* Triangles of one material each. */
-static KrsStatus split_at_borders(KrsFrame *frame, const KrsMeshOptions *options,
+static KrsStatus split_at_borders(KrsState *frame, const KrsMeshOptions *options,
                                   const MeshSolid *solid, KrsMesh **mesh)
 {
     Step           step   = {options, ALL_MESHED, 1 - ALL_MESHED, 0};
@@ -287,7 +287,7 @@ static KrsStatus split_at_borders(KrsFrame *frame, const KrsMeshOptions *options
     return status;
 }
 
-KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+KrsStatus mesh_solid(KrsState *frame, const KrsMeshOptions *options, const MeshSolid *solid,
                      KrsMesh **mesh)
 {
     bool           steps  = solid->steps && !solid->plain && !options->even;
@@ -305,7 +305,7 @@ KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshS
     return status;
 }
 
-KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh)
+KrsStatus krs_mesh(KrsState *frame, const KrsMeshOptions *options, KrsMesh **mesh)
 {
     const KrsScene *scene  = frame->scene;
     size_t          number = options ? options->component : 0;

@@ -58,7 +58,7 @@ static bool find_box(KrsSlicer *slicer)
                                             : DEFAULT_ERROR * longest) == KRS_OK;
 }
 
-static KrsStatus open_fields(KrsSlicer *slicer, KrsFrame *frame)
+static KrsStatus open_fields(KrsSlicer *slicer, KrsState *frame)
 {
     jmp_buf            exhausted;
     volatile KrsStatus status = KRS_OK;
@@ -82,7 +82,7 @@ static KrsStatus open_fields(KrsSlicer *slicer, KrsFrame *frame)
     return status;
 }
 
-static KrsStatus open_slicer(KrsSlicer *slicer, KrsFrame *frame)
+static KrsStatus open_slicer(KrsSlicer *slicer, KrsState *frame)
 {
     const KrsScene *scene  = frame->scene;
     size_t          number = slicer->options.component;
@@ -106,7 +106,7 @@ static KrsStatus open_slicer(KrsSlicer *slicer, KrsFrame *frame)
     return status;
 }
 
-KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options, KrsSlicer **result)
+KrsStatus krs_slicer_new(KrsState *frame, const KrsSliceOptions *options, KrsSlicer **result)
 {
     static const KrsSliceOptions none  = {0};
     const KrsScene              *scene = frame->scene;

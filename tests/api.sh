@@ -24,7 +24,7 @@ fixed="KrsAllocator KrsWindow KrsContour KrsSectionPlane KrsPlacing KrsItem KrsM
        KrsRenderStats"
 layouts() { # folder of headers
     printf '#include <krs/%s.h>\n' camera vulkan >"$work/all.c"
-    "$cc" -std=c17 -I"$1" -E -P "$work/all.c" | awk -f tests/api/layout.awk >"$work/layouts.c" &&
+    "$cc" -std=c17 -DKRS_NO_DEPRECATED -I"$1" -E -P "$work/all.c" | awk -f tests/api/layout.awk >"$work/layouts.c" &&
         "$cc" -std=c17 -I"$1" -o "$work/layouts" "$work/layouts.c" && "$work/layouts"
 }
 # What is different of the recorded ones.
@@ -49,7 +49,7 @@ if [ "${1:-}" = --bless ]; then
     cp "$work/layouts_now" tests/api/layouts.txt
     exit
 fi
-echo "1..13"
+echo "1..17"
 [ "$(wc -l <"$work/layouts_now")" -gt 400 ]
 report $? "the headers have $(wc -l <"$work/layouts_now") sizes, members and choices"
 compare tests/api/layouts.txt "$work/layouts_now" >"$work/said"
@@ -74,7 +74,7 @@ broken "an element that grows" slice.h 's/^    double area; .*/&\n    double lat
 
 # ---- programs ----
 
-all="KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsFrameSlope KrsPlace KrsComponent KrsBound KrsMeshOptions
+all="KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsStateSlope KrsPlace KrsComponent KrsBound KrsMeshOptions
      KrsMotion KrsGridOptions KrsGridShape KrsSliceOptions KrsMeasureOptions KrsDevice KrsRendererOptions KrsRenderOptions
      KrsKernelStats KrsRays"
 headers() { # older or later
@@ -113,4 +113,26 @@ run "$work/older" before && cmp "$work/now" "$work/before" >>"$work/said"
 report $? "one that was compiled before is told the same"
 run "$work/later" after -DLATER && cmp "$work/now" "$work/after" >>"$work/said"
 report $? "one of later is, too, and cannot ask for what the library does not know"
+
+# ---- old names ----
+
+old() { # options of the compiler
+    "$cc" -std=c17 -Wall -Wextra -Wpedantic "$@" -Iinclude -o "$work/old" tests/api/old_names.c -L"$build" -lkrs >"$work/said" 2>&1
+}
+old -Werror -DKRS_NO_DEPRECATION_WARNINGS && LD_LIBRARY_PATH="$build" "$work/old" >>"$work/said" 2>&1
+report $? "a program with the names of before 0.3 runs"
+grep -oE '\b(krs_[a-z_]+|Krs[A-Za-z]+|KRS_[A-Z_]+)\b' tests/api/old_names.c | sort -u >"$work/used"
+sed -n 's/^KRS_RENAMED(.*, *\(krs_[a-z_]*\), krs_.*/\1/p; s/^KRS_RENAMED_VOID(\(krs_[a-z_]*\),.*/\1/p
+    s/^typedef .* \(Krs[A-Za-z]*\) *KRS_DEPRECATED.*/\1/p; s/^#define \(KRS_M[A-Z_]*\) *KRS_M.*/\1/p' include/krs/deprecated*.h |
+    sort -u >"$work/old_names"
+[ "$(wc -l <"$work/old_names")" -ge 19 ] && comm -23 "$work/old_names" "$work/used" >"$work/said" && [ ! -s "$work/said" ]
+report $? "it has all $(wc -l <"$work/old_names") of them"
+old && grep -v '^#define' "$work/old_names" | grep -v '^KRS_M' | while read -r name; do
+    grep -q "warning: .*$name.* is deprecated: use " "$work/said" || echo "$name is not warned of"
+done >"$work/silent"
+mv "$work/silent" "$work/said"
+[ ! -s "$work/said" ]
+report $? "compilers warn of each, and say what to write"
+! old -DKRS_NO_DEPRECATED
+report $? "they are no names where nobody wants them"
 exit $failed

@@ -37,10 +37,10 @@ report $? "2 - and prints what the page says"
     echo '#include <stdio.h>'
     echo '#include <krs/vulkan.h>'
     echo 'int main(void) {'
-    echo 'KrsScene *scene; KrsFrame *frame; KrsHit hits[1]; size_t count = 1;'
+    echo 'KrsScene *scene; KrsState *state; KrsHit hits[1]; size_t count = 1;'
     echo 'const double origins[1][3] = {{0, 0, 9}}, directions[1][3] = {{0, 0, -1}};'
     echo 'if (krs_compile_text("show sphere(1);", 15, "a", NULL, &scene) != KRS_OK) return 2;'
-    echo 'if (krs_frame_new(scene, &frame) != KRS_OK) return 2;'
+    echo 'if (krs_state_new(scene, &state) != KRS_OK) return 2;'
     block 6 c
     echo 'return !(hits[0].hit && hits[0].t > 7.99 && hits[0].t < 8.01); }'
 } >"$work/device.c"
@@ -51,9 +51,9 @@ report $? "3 - a device answers as the page asks it"
     echo '#include <stdlib.h>'
     echo '#include <krs/krs.h>'
     echo 'int main(void) {'
-    echo 'KrsScene *scene; KrsFrame *frame; double seconds = 2.5;'
+    echo 'KrsScene *scene; KrsState *state; double seconds = 2.5;'
     echo 'if (krs_compile_text("show sphere(1);", 15, "a", NULL, &scene) != KRS_OK) return 2;'
-    echo 'if (krs_frame_new(scene, &frame) != KRS_OK) return 2;'
+    echo 'if (krs_state_new(scene, &state) != KRS_OK) return 2;'
     block 4 c
     echo 'return !(block[0][0] == 2.5f); }'
 } >"$work/block.c"

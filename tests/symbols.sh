@@ -32,7 +32,7 @@ defined() { # options of nm, files
 for header in krs camera vulkan; do
     printf '#include <krs/%s.h>\n' "$header"
 done >"$work/headers.c"
-"$cc" -std=c17 -Iinclude -E -P "$work/headers.c" | grep -o '\bkrs_[a-z0-9_]* *[[(]' | sed 's/ *[[(]//' |
+"$cc" -std=c17 -DKRS_NO_DEPRECATED -Iinclude -E -P "$work/headers.c" | grep -o '\bkrs_[a-z0-9_]* *[[(]' | sed 's/ *[[(]//' |
     sort -u >"$work/declared"
 sed -n 's/_sized$//p' "$work/declared" | sort | comm -23 "$work/declared" - >"$work/api"
 

@@ -122,7 +122,7 @@ typedef struct Method {
 typedef struct Fixture {
     KrsRenderer  *renderer;
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
 } Fixture;
 
@@ -131,7 +131,7 @@ static Fixture fixture_open(KrsRenderer *renderer, const char *name, const char 
     Fixture    fixture = {.renderer = renderer};
     KrsOptions options = {.gradients = true};
     if (krs_compile_text(text, strlen(text), name, &options, &fixture.scene) != KRS_OK ||
-        krs_frame_new(fixture.scene, &fixture.frame) != KRS_OK)
+        krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
         give_up(name, "it does not compile");
     if (krs_rendering_new(renderer, fixture.scene, &fixture.rendering) != KRS_OK)
         give_up(name, krs_renderer_message(renderer));
@@ -141,7 +141,7 @@ static Fixture fixture_open(KrsRenderer *renderer, const char *name, const char 
 static void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_frame_free(fixture->frame);
+    krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
 }
 

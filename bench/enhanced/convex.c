@@ -39,7 +39,7 @@ typedef struct Ray {
     double origin[3], direction[3];
 } Ray;
 
-static double distance_at(KrsFrame *frame, const Ray *ray, double t)
+static double distance_at(KrsState *frame, const Ray *ray, double t)
 {
     double p[1][3];
     KrsHit hit;
@@ -101,7 +101,7 @@ static Ray ray_inwards(void)
 }
 
 /* A ray that has just entered the solid. */
-static Ray entering_ray(KrsFrame *frame)
+static Ray entering_ray(KrsState *frame)
 {
     for (;;) {
         Ray    ray = ray_inwards();
@@ -132,7 +132,7 @@ static double step_of(Steps steps, double distance, double last_slope, double sl
 
 /* Marches from `t` towards `sign` to where the distance, positive there, has changed its sign.  `side`
    is -1 inside.  Where balls do not meet, a shorter step is tried.  Counts distances. */
-static double march(KrsFrame *frame, const Ray *ray, double t, double sign, double side,
+static double march(KrsState *frame, const Ray *ray, double t, double sign, double side,
                     Steps steps, int *evaluations)
 {
     double last = 0, step = 0, slope = -1 / 0.7;
@@ -162,7 +162,7 @@ typedef struct Counts {
     double farthest; /* of what is found from behind, from what is found inside */
 } Counts;
 
-static Counts count(KrsFrame *frame)
+static Counts count(KrsState *frame)
 {
     Counts counts = {0};
     for (int i = 0; i < RAYS; i++) {
@@ -187,17 +187,17 @@ void compare_convex(const Sheet *sheet)
         "| --- | --- | --- | --- | --- | --- | --- |\n");
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
         KrsScene *scene;
-        KrsFrame *frame;
+        KrsState *frame;
         if (krs_compile_text(solids[i].text, strlen(solids[i].text), solids[i].name, NULL,
                              &scene) != KRS_OK ||
-            krs_frame_new(scene, &frame) != KRS_OK)
+            krs_state_new(scene, &frame) != KRS_OK)
             give_up(solids[i].name, "it does not compile");
         const Counts counts = count(frame);
         sheet_print(sheet, "| %s ", solids[i].name);
         for (int k = 0; k < 5; k++)
             sheet_print(sheet, "| %.1f ", counts.evaluations[k] / (double)RAYS);
         sheet_print(sheet, "| %.4f |\n", counts.farthest);
-        krs_frame_free(frame);
+        krs_state_free(frame);
         krs_scene_free(scene);
     }
 }

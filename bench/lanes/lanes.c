@@ -13,7 +13,7 @@
 enum { POINTS = 4096, BOXES = 64, PRUNED_FOR = 256 };
 
 typedef struct Subject {
-    KrsFrame  *frame;
+    KrsState  *frame;
     Memory     memory;
     Arena      arena;
     LaneTape   tape;
@@ -47,7 +47,7 @@ static bool open_subject(Subject *s, int spheres)
     write_scene(text, sizeof text, spheres);
     KrsOptions options = {0};
     if (krs_compile_text(text, strlen(text), "bench.krs", &options, &scene) != KRS_OK ||
-        krs_frame_new(scene, &s->frame) != KRS_OK)
+        krs_state_new(scene, &s->frame) != KRS_OK)
         return false;
     frame_refresh(s->frame);
     const Node root = distance_root(&scene->roots, 0);
@@ -155,7 +155,7 @@ static void measure(int spheres)
     printf("| %zu | double, pruned for 256 points at a time, to %.0f steps | %.3g | %.1f |\n",
            s.tape.count, left, pruned, pruned / scalar);
     arena_free(&s.arena);
-    krs_frame_free(s.frame);
+    krs_state_free(s.frame);
 }
 
 int main(void)

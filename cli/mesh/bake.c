@@ -59,7 +59,7 @@ typedef struct Baking {
     const Meshing *meshing;
     MeshParts     *parts;
     Atlas          atlas;
-    KrsFrame      *frames[MAX_PARTS];
+    KrsState      *frames[MAX_PARTS];
     double         error;
     Texel         *texels;
     uint32_t      *piece_of;      /* of triangles */
@@ -103,7 +103,7 @@ static Texel texel_of(const KrsHit *hit)
 }
 
 /* The surface is nearest along the gradient. */
-static KrsStatus move_to_surface(const Baking *b, KrsFrame *frame, double (*points)[3],
+static KrsStatus move_to_surface(const Baking *b, KrsState *frame, double (*points)[3],
                                  size_t count)
 {
     double    distances[PROBES], off[PROBES][3], normals[PROBES][3];
@@ -123,7 +123,7 @@ static KrsStatus move_to_surface(const Baking *b, KrsFrame *frame, double (*poin
     return status;
 }
 
-static KrsStatus bake_some(Baking *b, KrsFrame *frame, const size_t *pixels, double (*points)[3],
+static KrsStatus bake_some(Baking *b, KrsState *frame, const size_t *pixels, double (*points)[3],
                            size_t count)
 {
     KrsHit    hits[PROBES];
@@ -135,7 +135,7 @@ static KrsStatus bake_some(Baking *b, KrsFrame *frame, const size_t *pixels, dou
     return status;
 }
 
-static KrsStatus bake_row(Baking *b, KrsFrame *frame, size_t row)
+static KrsStatus bake_row(Baking *b, KrsState *frame, size_t row)
 {
     double    points[PROBES][3];
     size_t    pixels[PROBES], count = 0, end = (row + 1) * b->atlas.side;
@@ -547,7 +547,7 @@ KrsStatus bake_materials(Meshing *meshing, MeshParts *parts, double error)
     if (status == KRS_OK)
         status = bake_all(&b);
     for (size_t i = 0; i < MAX_PARTS; i++)
-        krs_frame_free(b.frames[i]);
+        krs_state_free(b.frames[i]);
     if (status == KRS_OK)
         meshing->pixel = parts->pictures ? b.atlas.pixel : 0;
     return status;

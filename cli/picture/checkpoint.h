@@ -18,7 +18,7 @@ typedef struct Checkpoint {
 /* What the samples of a frame are made by. */
 typedef struct CheckpointFrame {
     KrsRendering           *rendering;
-    KrsFrame               *frame;
+    KrsState               *frame;
     const KrsRenderOptions *how;
     uint32_t                samples, number;
 } CheckpointFrame;

@@ -14,7 +14,7 @@ typedef struct Render {
     const char     **outputs;
     size_t           output_count;
     KrsScene        *scene;
-    KrsFrame        *frame;
+    KrsState        *frame;
     KrsRenderer     *renderer;
     KrsRendering    *rendering;
     KrsRenderOptions how;

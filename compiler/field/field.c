@@ -139,7 +139,7 @@ static double distance_to_cut(const MeshField *field, const double point[3])
     return outside > 0 ? sqrt(outside) : inside;
 }
 
-static double cut_by_zones(const KrsFrame *frame, const double point[3], double distance)
+static double cut_by_zones(const KrsState *frame, const double point[3], double distance)
 {
     for (size_t i = 0; i < frame->zone_count; i++)
         distance = max2(distance, frame->zones[i][3] - distance3(point, frame->zones[i]));

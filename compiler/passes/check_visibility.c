@@ -97,7 +97,7 @@ static bool camera_moves(const Graph *graph, const SceneCamera *camera)
 }
 
 /* The pictures of all cameras; 0: one of them moves, has a lens, or frames all there is. */
-static size_t find_pyramids(const Compilation *c, KrsFrame *frame, Pyramid *pyramids)
+static size_t find_pyramids(const Compilation *c, KrsState *frame, Pyramid *pyramids)
 {
     KrsView view;
     size_t  count = c->elaborated.cameras.count;
@@ -150,7 +150,7 @@ static void warn_of_unseen(Compilation *c, const Pyramid *pyramids, size_t count
     }
 }
 
-static void warn_of_inside(Compilation *c, KrsFrame *frame)
+static void warn_of_inside(Compilation *c, KrsState *frame)
 {
     for (size_t i = 0; i < c->elaborated.cameras.count; i++) {
         const SceneCamera *camera = &c->elaborated.cameras.items[i];
@@ -184,7 +184,7 @@ static double brightest_value(const KrsView *view, const KrsLight *light, double
 }
 
 /* A bound on the distance makes a light brighter than it is, so it is not blamed without cause. */
-static void warn_of_dim_light(Compilation *c, KrsFrame *frame, const KrsView *view, size_t index)
+static void warn_of_dim_light(Compilation *c, KrsState *frame, const KrsView *view, size_t index)
 {
     const SceneLight *light = &c->elaborated.lights.items[index];
     const Graph      *graph = c->elaborated.graph;
@@ -224,7 +224,7 @@ static const Component *plane_before(const Compilation *c, const double directio
 }
 
 /* The solid around a light, all of which is in it; what lets light through is none. */
-static const Component *solid_around(const Compilation *c, KrsFrame *frame, const KrsLight *light)
+static const Component *solid_around(const Compilation *c, KrsState *frame, const KrsLight *light)
 {
     const double reach = light->softness + 0.5 * hypot(light->size[0], light->size[1]);
     double       distance;
@@ -236,7 +236,7 @@ static const Component *solid_around(const Compilation *c, KrsFrame *frame, cons
     return c->is_medium[shown->lowered] ? NULL : shown;
 }
 
-static void warn_of_hidden_light(Compilation *c, KrsFrame *frame, const KrsView *view, size_t index)
+static void warn_of_hidden_light(Compilation *c, KrsState *frame, const KrsView *view, size_t index)
 {
     const SceneLight *light = &c->elaborated.lights.items[index];
     const KrsLight   *now   = &view->lights[index];
@@ -261,7 +261,7 @@ static void warn_of_hidden_light(Compilation *c, KrsFrame *frame, const KrsView 
     diag_secondary(&c->diags, diag, before->span, light->positional ? "this solid" : "this plane");
 }
 
-static void warn_of_lights(Compilation *c, KrsFrame *frame)
+static void warn_of_lights(Compilation *c, KrsState *frame)
 {
     KrsView view;
     if (c->elaborated.cameras.count == 0 || frame_view(frame, 0, &view) != KRS_OK)
@@ -275,7 +275,7 @@ static void warn_of_lights(Compilation *c, KrsFrame *frame)
 KrsStatus pass_visibility(Compilation *c)
 {
     Pyramid  *pyramids = arena_new_array(&c->scratch, Pyramid, c->elaborated.cameras.count + 1);
-    KrsFrame *frame;
+    KrsState *frame;
     KrsStatus status = frame_new(c->scene, &frame);
     if (status != KRS_OK)
         return status;

@@ -105,13 +105,13 @@ static void make_rays(const Ball *ball, int count, Rays *rays)
     }
 }
 
-static void begin_round(const KrsFrame *frame, Rays *rays)
+static void begin_round(const KrsState *frame, Rays *rays)
 {
     uint64_t left = frame->ran < rays->most ? rays->most - frame->ran : 0;
     rays->limits  = (RayLimits){MAX_STEPS, frame->ran + left / SHARE};
 }
 
-static void note_hit(KrsFrame *frame, const KrsHit *hit, Rays *rays)
+static void note_hit(KrsState *frame, const KrsHit *hit, Rays *rays)
 {
     if (!hit->hit || !box_is_finite(frame_box(frame, rays->boxes, hit->component - 1)))
         return;
@@ -122,7 +122,7 @@ static void note_hit(KrsFrame *frame, const KrsHit *hit, Rays *rays)
 /* Casts rays and notes what they hit of bounded components, as long as they do not take too much; false
    after a few unresolved ones.  Distances that are much too short need many steps, and then the camera
    is placed by what is seen so far. */
-static bool cast_rays(KrsFrame *frame, Rays *rays, int count, double radius)
+static bool cast_rays(KrsState *frame, Rays *rays, int count, double radius)
 {
     const uint64_t most       = rays->limits.ran;
     int            unresolved = 0;
@@ -201,7 +201,7 @@ static void halve_cells(Cells *cells)
 
 /* Leaves out the cells that are inside of a box, and those that the distance at their middle shows
    to be empty. */
-static void reduce_cells(KrsFrame *frame, const Box *known, Cells *cells)
+static void reduce_cells(KrsState *frame, const Box *known, Cells *cells)
 {
     size_t outside = 0, kept = 0;
     for (size_t i = 0; i < cells->count; i++)
@@ -221,7 +221,7 @@ static void reduce_cells(KrsFrame *frame, const Box *known, Cells *cells)
 }
 
 /* Leaves out the cells that are next to what has no end. */
-static void keep_separate(KrsFrame *frame, const Rays *rays, Cells *cells)
+static void keep_separate(KrsState *frame, const Rays *rays, Cells *cells)
 {
     size_t kept = 0;
     frame_refresh_points(frame);
@@ -237,7 +237,7 @@ static void keep_separate(KrsFrame *frame, const Rays *rays, Cells *cells)
 
 /* Finds cells of a box that may not be empty and are not inside of another one.  Where there are too
    many they remain larger. */
-static void find_cells(KrsFrame *frame, Box box, const Rays *rays, const Box *known, size_t most,
+static void find_cells(KrsState *frame, Box box, const Rays *rays, const Box *known, size_t most,
                        Cells *cells)
 {
     cells->count    = 1;
@@ -252,7 +252,7 @@ static void find_cells(KrsFrame *frame, Box box, const Rays *rays, const Box *kn
 
 /* Makes a ray from around the ball to the point of a surface that is next to the middle of a cell, as
    far as distance and normal there tell it. */
-static void make_ray_to_cell(KrsFrame *frame, const Ball *ball, int i, int count,
+static void make_ray_to_cell(KrsState *frame, const Ball *ball, int i, int count,
                              const double middle[3], Rays *rays)
 {
     KrsHit near = {.distance = 0};
@@ -265,7 +265,7 @@ static void make_ray_to_cell(KrsFrame *frame, const Ball *ball, int i, int count
 
 /* Casts rays to cells in which there may be something that is not seen yet, until none hits anything
    outside of what is seen and a margin. */
-static void search_beyond(KrsFrame *frame, Box box, int most, double margin, Cells *cells,
+static void search_beyond(KrsState *frame, Box box, int most, double margin, Cells *cells,
                           Rays *rays)
 {
     Ball outer = ball_around(box);
@@ -286,7 +286,7 @@ static void search_beyond(KrsFrame *frame, Box box, int most, double margin, Cel
 
 /* The ball around what rays hit: each round makes it smaller, and so the rays of the next one
    denser.  False when rays cost too much. */
-static bool cast_rounds(KrsFrame *frame, int count, Rays *rays, Ball *ball)
+static bool cast_rounds(KrsState *frame, int count, Rays *rays, Ball *ball)
 {
     for (int round = 0; round < ROUNDS; round++) {
         begin_round(frame, rays);
@@ -301,7 +301,7 @@ static bool cast_rounds(KrsFrame *frame, int count, Rays *rays, Ball *ball)
 
 /* Finds the ball that the picture shows, within the one of the box: around what rays hit, and around
    what they have missed. */
-static void look_for_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
+static void look_for_ball(KrsState *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
 {
     double most      = ball->radius;
     int    count     = count_rays(frame->scene);
@@ -318,7 +318,7 @@ static void look_for_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ba
 
 /* Of a box that is much too large a floor may be hit, and nothing else: then all is tried again, if that takes
    little time. */
-static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
+static void find_ball(KrsState *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
 {
     const Ball outer = *ball;
     rays->apart      = false;
@@ -400,7 +400,7 @@ static DefaultCamera place_camera(const Rays *rays, const Ball *ball, double fov
 
 /* Finds eye and target of the default camera for the values of a frame.  Its direction and field of
    view are fixed.  Without bounded components nothing is changed: then `found` is false. */
-static KrsStatus find_camera(KrsFrame *frame, DefaultCamera *camera, bool *found)
+static KrsStatus find_camera(KrsState *frame, DefaultCamera *camera, bool *found)
 {
     KrsView    view;
     const Box *boxes = frame_find_boxes(frame);
@@ -424,7 +424,7 @@ static KrsStatus find_camera(KrsFrame *frame, DefaultCamera *camera, bool *found
     return status;
 }
 
-KrsStatus krs_frame_place_camera(KrsFrame *frame)
+KrsStatus krs_state_place_camera(KrsState *frame)
 {
     DefaultCamera camera;
     bool          found;
@@ -443,7 +443,7 @@ KrsStatus krs_frame_place_camera(KrsFrame *frame)
 /* With the defaults of parameters. */
 static KrsStatus frame_scene(KrsScene *scene)
 {
-    KrsFrame     *frame;
+    KrsState     *frame;
     DefaultCamera camera;
     KrsStatus     status = frame_new(scene, &frame);
     if (status != KRS_OK)
@@ -479,7 +479,7 @@ static void print_camera(const KrsScene *scene, size_t index, const KrsCamera *c
 
 void print_frame(Compilation *c, Text *out)
 {
-    KrsFrame *frame;
+    KrsState *frame;
     KrsView   view;
     if (frame_new(c->scene, &frame) != KRS_OK) {
         text_add(out, "no frame: out of memory\n");

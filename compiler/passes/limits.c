@@ -328,7 +328,7 @@ static void refuse_default(Compilation *c, Node node)
    callers. */
 static KrsStatus check_defaults(Compilation *c)
 {
-    KrsFrame *frame;
+    KrsState *frame;
     KrsStatus status = frame_new(c->scene, &frame);
     if (status != KRS_OK)
         return status;

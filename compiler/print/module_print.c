@@ -266,7 +266,7 @@ static void emit_about_textures(Emitter *e)
     text_add(
         e->out,
         "// Textures are in krs_cells, a texel buffer of format RG32UI, and equal in all frames:\n"
-        "// krs_frame_tables in krs.h.\n");
+        "// krs_state_tables in krs.h.\n");
 }
 
 static void emit_about_tables(Emitter *e)
@@ -275,8 +275,8 @@ static void emit_about_tables(Emitter *e)
     text_add(e->out,
              "// Parts that are alike are rows of krs_rows, a texel buffer of format RGBA32F.\n"
              "// krs_cells, of format RG32UI, says which of them are near a point.  ");
-    text_add(e->out, vary ? "Both are\n// found for each frame: krs_frame_tables in krs.h.\n"
-                          : "Both are\n// equal in all frames: krs_frame_tables in krs.h.\n");
+    text_add(e->out, vary ? "Both are\n// found for each frame: krs_state_tables in krs.h.\n"
+                          : "Both are\n// equal in all frames: krs_state_tables in krs.h.\n");
     text_add(e->out,
              "// Far from all of them krs_distance may be less than the distance, never more.\n");
 }
@@ -290,11 +290,11 @@ static void emit_block(Emitter *e)
                      "slot 0 holds the time, then one slot for each `param`.\n");
     if (e->module->has_slopes)
         text_add(e->out, "// Behind them slopes that the host finds for each frame: "
-                         "krs_frame_parameters in krs.h.\n");
+                         "krs_state_parameters in krs.h.\n");
     if (v->values && e->module->slots.plain.slots > 0)
         text_format(e->out,
                     "// %u more slots hold what else depends on the frame alone: "
-                    "krs_frame_values in krs.h.\n",
+                    "krs_state_values in krs.h.\n",
                     e->module->slots.plain.slots);
     if (v->zones > 0)
         text_format(e->out, "// %u hold zones: center and radius.\n", v->zones);

@@ -49,7 +49,7 @@ typedef struct KrsView {
     KrsFog          fog;
     KrsImage        image;
     size_t          light_count;
-    const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
+    const KrsLight *lights; /* lives as long as the frame, until the next krs_state_view */
 } KrsView;
 
 /* A ball around something that emits light, and about the mean radiance of its disc. */
@@ -100,9 +100,9 @@ typedef struct KrsProgram {
     bool          per_component;     /* it is faster to march one group after the other */
     uint32_t      scene_parts;       /* number of parts of krs_scene_part_distance */
     uint32_t      expensive;         /* components that cost enough for a group of their own */
-    size_t        table_rows;        /* texels of the tables (krs_frame_tables); 0: none */
+    size_t        table_rows;        /* texels of the tables (krs_state_tables); 0: none */
     size_t        table_cells;
-    bool          rows_vary; /* tables depend on parameters or the time (krs_frame_table_inputs) */
+    bool          rows_vary; /* tables depend on parameters or the time (krs_state_table_inputs) */
     size_t        table_count, table_instances; /* tables, and the rows of all of them */
     size_t        texture_count, texture_texels;
     size_t        noises;  /* in krs_surface */
@@ -139,11 +139,11 @@ bool krs_structure_is_affordable(const KrsScene *scene);
 /* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
-KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
+KrsStatus krs_state_view(KrsState *frame, size_t camera, KrsView *view);
 /* Balls around what emits light in the frame, within a box.  Returns how many; small ones and few
    cost least, so that none is divided whose radius is below `min_radius`.  Light that is emitted
    elsewhere is not in them. */
-size_t krs_frame_emissive(KrsFrame *frame, const double low[3], const double high[3],
+size_t krs_state_emissive(KrsState *frame, const double low[3], const double high[3],
                           double min_radius, KrsEmissive balls[KRS_MAX_EMISSIVE]);
 /* Tells whether the rounding error of such a coordinate in single precision is visible in pixels of this
    width.  Then points must be relative to an origin near the camera. */
@@ -162,18 +162,18 @@ double krs_seen_reach(double distance, double pixel, double lines);
 bool krs_may_blur_normals(double coordinate, double distance, double pixel, double lines);
 /* Slots of the values that depend on the origin of camera-relative points, computed in double
    precision: camera_relative_slots vec4s. */
-void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
-/* krs_frame_tables, where shaders read only so many texels at the beginning of both; others may be left
+void krs_state_rebase(KrsState *frame, const double rebase_origin[3], float (*block)[4]);
+/* krs_state_tables, where shaders read only so many texels at the beginning of both; others may be left
    as they are.  With an origin (NULL: none) they are those of camera-relative points. */
-void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin, float (*rows)[4],
+void krs_state_tables_in_use(const KrsState *frame, const double *rebase_origin, float (*rows)[4],
                              uint32_t (*cells)[2], size_t *row_count, size_t *cell_count);
 /* What these depend on, as parameter_slots numbers; frames in which these are equal have equal tables. */
-void krs_frame_table_inputs(const KrsFrame *frame, const double *rebase_origin,
+void krs_state_table_inputs(const KrsState *frame, const double *rebase_origin,
                             double (*inputs)[4]);
 /* The caller's zones (center, radius), for the slots behind the parameter block.  With an origin (NULL:
    none) they are for camera-relative points: how deep the origin is in each takes the place of the radius.
    Returns how many.  In a variant with room for more the others must have a radius far below 0. */
-size_t krs_frame_zones(const KrsFrame *frame, const double *rebase_origin, float (*zones)[4]);
+size_t krs_state_zones(const KrsState *frame, const double *rebase_origin, float (*zones)[4]);
 /* A ray of a query, with a unit direction.  It is marched from `start` to `end`: the part of
    [0, farthest] in the box around the scene, which is empty when `end` is less than `start`. */
 typedef struct KrsRay {

@@ -42,7 +42,7 @@ static size_t slope_workspace(const KrsScene *scene)
 
 /* Computes the slopes and the floor that depend on a slot.  False, and `unbounded` is set, if one has no
    bound. */
-static bool find_slopes(KrsFrame *frame, uint32_t changed)
+static bool find_slopes(KrsState *frame, uint32_t changed)
 {
     const double(*parameters)[4] = (const double(*)[4])frame->parameters;
     frame->unbounded             = NULL;
@@ -60,10 +60,10 @@ static bool find_slopes(KrsFrame *frame, uint32_t changed)
     return !frame->unbounded;
 }
 
-KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
+KrsStatus frame_new(const KrsScene *scene, KrsState **result)
 {
     *result         = NULL;
-    KrsFrame *frame = frame_alloc(scene, 1, sizeof *frame);
+    KrsState *frame = frame_alloc(scene, 1, sizeof *frame);
     if (!frame)
         return KRS_OUT_OF_MEMORY;
     frame->scene      = scene;
@@ -94,7 +94,7 @@ KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
     return KRS_OK;
 }
 
-void frame_free(KrsFrame *frame)
+void frame_free(KrsState *frame)
 {
     if (!frame)
         return;
@@ -111,7 +111,7 @@ void frame_free(KrsFrame *frame)
     frame_release(scene, frame);
 }
 
-KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy)
+KrsStatus frame_copy_of(const KrsState *frame, KrsState **copy)
 {
     KrsStatus status = frame_new(frame->scene, copy);
     if (status != KRS_OK)
@@ -125,7 +125,7 @@ KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy)
     return KRS_OK;
 }
 
-void frame_refresh(KrsFrame *frame)
+void frame_refresh(KrsState *frame)
 {
     if (frame->fresh)
         return;
@@ -135,13 +135,13 @@ void frame_refresh(KrsFrame *frame)
     frame_lanes_refresh(frame);
 }
 
-void frame_refresh_points(KrsFrame *frame)
+void frame_refresh_points(KrsState *frame)
 {
     frame_refresh(frame);
     frame_tables_refresh(frame);
 }
 
-Node frame_infinite(KrsFrame *frame)
+Node frame_infinite(KrsState *frame)
 {
     const KrsScene *scene = frame->scene;
     RootRange       view  = roots_from(&scene->roots, ROOTS_CAMERA, ROOTS_SKY);
@@ -154,7 +154,7 @@ Node frame_infinite(KrsFrame *frame)
 }
 
 /* Sets the values of a slot of the parameter block, unless the scene would not be finite. */
-static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *values, size_t count)
+static KrsStatus change_slot(KrsState *frame, uint32_t slot, const double *values, size_t count)
 {
     NodeValue before = frame->parameters[slot];
     if (memcmp(before.v, values, count * sizeof *values) == 0)
@@ -171,7 +171,7 @@ static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *value
     return KRS_BAD_ARGUMENT;
 }
 
-KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count)
+KrsStatus krs_state_set(KrsState *frame, const char *name, const double *values, size_t count)
 {
     const KrsScene *scene = frame->scene;
     frame->unbounded      = NULL;
@@ -192,39 +192,39 @@ KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values,
     return KRS_BAD_ARGUMENT;
 }
 
-const char *krs_frame_unbounded(const KrsFrame *frame) { return frame->unbounded; }
+const char *krs_state_unbounded(const KrsState *frame) { return frame->unbounded; }
 
-KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
+KrsStatus krs_state_set_time(KrsState *frame, double time)
 {
     frame->unbounded = NULL;
     return isfinite(time) ? change_slot(frame, 0, &time, 1) : KRS_BAD_ARGUMENT;
 }
 
-double krs_frame_time(const KrsFrame *frame) { return frame->parameters[0].v[0]; }
+double krs_state_time(const KrsState *frame) { return frame->parameters[0].v[0]; }
 
 /* Tells whether a parameter of a frame has another value than its default. */
-static bool is_set(const KrsFrame *frame, const Parameter *parameter)
+static bool is_set(const KrsState *frame, const Parameter *parameter)
 {
     return memcmp(frame->parameters[parameter->slot].v, parameter->value,
                   parameter->components * sizeof *parameter->value) != 0;
 }
 
-KrsStatus krs_frame_update(KrsFrame *frame, const KrsScene *scene)
+KrsStatus krs_state_update(KrsState *frame, const KrsScene *scene)
 {
     const KrsScene *old = frame->scene;
-    KrsFrame       *fresh;
+    KrsState       *fresh;
     KrsStatus       status = frame_new(scene, &fresh);
     if (status != KRS_OK)
         return status;
     for (size_t i = 0; i < old->parameter_count; i++) {
         const Parameter *from = &old->parameters[i];
         if (is_set(frame, from))
-            krs_frame_set(fresh, from->name, frame->parameters[from->slot].v, from->components);
+            krs_state_set(fresh, from->name, frame->parameters[from->slot].v, from->components);
     }
-    krs_frame_set_time(fresh, frame->parameters[0].v[0]);
-    krs_frame_set_zones(fresh, (const double(*)[4])frame->zones, frame->zone_count);
+    krs_state_set_time(fresh, frame->parameters[0].v[0]);
+    krs_state_set_zones(fresh, (const double(*)[4])frame->zones, frame->zone_count);
     fresh->unbounded = NULL;
-    KrsFrame other   = *frame;
+    KrsState other   = *frame;
     *frame           = *fresh;
     *fresh           = other;
     frame_count_operations(frame);
@@ -241,7 +241,7 @@ static bool zone_is_valid(const double zone[4])
     return zone[3] >= 0;
 }
 
-KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count)
+KrsStatus krs_state_set_zones(KrsState *frame, const double (*zones)[4], size_t count)
 {
     if (count > KRS_MOST_ZONES || (!zones && count > 0))
         return KRS_BAD_ARGUMENT;
@@ -254,7 +254,7 @@ KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t 
     return KRS_OK;
 }
 
-size_t krs_frame_zones(const KrsFrame *frame, const double *rebase_origin, float (*zones)[4])
+size_t krs_state_zones(const KrsState *frame, const double *rebase_origin, float (*zones)[4])
 {
     static const double nowhere[3] = {0};
     const double       *origin     = rebase_origin ? rebase_origin : nowhere;
@@ -268,7 +268,7 @@ size_t krs_frame_zones(const KrsFrame *frame, const double *rebase_origin, float
 }
 
 /* The origin is the last slot of the parameter block. */
-void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4])
+void krs_state_rebase(KrsState *frame, const double rebase_origin[3], float (*block)[4])
 {
     const KrsScene *scene = frame->scene;
     if (!scene->program.camera_relative)
@@ -279,19 +279,19 @@ void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*bl
                       block);
 }
 
-void krs_frame_values(const KrsFrame *frame, float (*block)[4])
+void krs_state_values(const KrsState *frame, float (*block)[4])
 {
     frame_values_find(&frame->scene->module.slots.plain, frame->parameters, frame->values, block);
 }
 
-void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])
+void krs_state_parameters(const KrsState *frame, float (*block)[4])
 {
     for (uint32_t i = 0; i < frame->scene->program.parameter_slots; i++)
         for (int k = 0; k < 4; k++)
             block[i][k] = (float)frame->parameters[i].v[k];
 }
 
-void frame_copy(const KrsFrame *frame, Node node, double to[3])
+void frame_copy(const KrsState *frame, Node node, double to[3])
 {
     memcpy(to, frame->values[node].v, 3 * sizeof *to);
 }
@@ -308,7 +308,7 @@ void vector_normalize(double v[3])
         v[i] /= length;
 }
 
-static void view_camera(const KrsFrame *frame, size_t index, KrsCamera *camera)
+static void view_camera(const KrsState *frame, size_t index, KrsCamera *camera)
 {
     const KrsScene    *scene = frame->scene;
     const CameraNodes *roots = camera_roots(&scene->roots, index);
@@ -336,7 +336,7 @@ static void aim_light(KrsLight *light)
     cross3(light->axis, light->right, light->up);
 }
 
-static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
+static void view_light(const KrsState *frame, size_t index, KrsLight *light)
 {
     const SceneLight *from  = &frame->scene->lights[index];
     const LightNodes *roots = light_roots(&frame->scene->roots, index);
@@ -358,7 +358,7 @@ static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
 /* ---- daylight ---- */
 
 /* The sun, once lights are known. */
-static Daylight find_daylight(const KrsFrame *frame)
+static Daylight find_daylight(const KrsState *frame)
 {
     const KrsScene *scene = frame->scene;
     const SkyRoots *sky   = sky_roots(&scene->roots);
@@ -369,7 +369,7 @@ static Daylight find_daylight(const KrsFrame *frame)
 }
 
 /* Air takes light from the sun, unless its colour is given. */
-static void dim_sun(const KrsFrame *frame)
+static void dim_sun(const KrsState *frame)
 {
     const size_t   sun   = frame->scene->daylight_by;
     const Daylight light = find_daylight(frame);
@@ -381,7 +381,7 @@ static void dim_sun(const KrsFrame *frame)
         frame->lights[sun].color[i] *= part[i];
 }
 
-static bool make_sky(KrsFrame *frame, const Daylight *light)
+static bool make_sky(KrsState *frame, const Daylight *light)
 {
     if (memcmp(&frame->sky_made, light, sizeof *light) == 0)
         return true;
@@ -395,7 +395,7 @@ static bool make_sky(KrsFrame *frame, const Daylight *light)
 }
 
 /* The sun is in the middle of the map, so that the map does not depend on where it is round about. */
-static KrsStatus view_daylight(KrsFrame *frame, KrsView *view)
+static KrsStatus view_daylight(KrsState *frame, KrsView *view)
 {
     const size_t    sun   = frame->scene->daylight_by;
     const Daylight  light = find_daylight(frame);
@@ -424,7 +424,7 @@ KrsImage krs_scene_image(const KrsScene *scene)
                       .white_balance = {image->white_balance[0], image->white_balance[1]}};
 }
 
-KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
+KrsStatus frame_view(KrsState *frame, size_t camera, KrsView *view)
 {
     const KrsScene *scene = frame->scene;
     const SkyRoots *sky   = sky_roots(&scene->roots);
@@ -453,17 +453,17 @@ KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
 
 /* ---- the functions of krs.h and compiled.h ---- */
 
-KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame) { return frame_new(scene, frame); }
+KrsStatus krs_state_new(const KrsScene *scene, KrsState **frame) { return frame_new(scene, frame); }
 
-void krs_frame_free(KrsFrame *frame) { frame_free(frame); }
+void krs_state_free(KrsState *frame) { frame_free(frame); }
 
-KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
+KrsStatus krs_state_view(KrsState *frame, size_t camera, KrsView *view)
 {
     KrsStatus status = frame_view(frame, camera, view);
     return status == KRS_OK && frame->scene->daylight ? view_daylight(frame, view) : status;
 }
 
-KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera)
+KrsStatus krs_state_camera(KrsState *frame, size_t index, KrsCamera *camera)
 {
     if (index >= frame->scene->camera_count)
         return KRS_BAD_ARGUMENT;

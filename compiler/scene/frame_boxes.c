@@ -6,7 +6,7 @@
 #include "krs/camera.h"
 #include "compiler/scene/program.h"
 
-const Box *frame_find_boxes(KrsFrame *frame)
+const Box *frame_find_boxes(KrsState *frame)
 {
     const KrsScene *scene = frame->scene;
     if (scene->boxes.nodes.count == 0)
@@ -17,7 +17,7 @@ const Box *frame_find_boxes(KrsFrame *frame)
     return frame->boxes;
 }
 
-Box frame_box(const KrsFrame *frame, const Box *boxes, size_t component)
+Box frame_box(const KrsState *frame, const Box *boxes, size_t component)
 {
     const KrsComponent *all = &frame->scene->components[component];
     Box                 box;
@@ -28,7 +28,7 @@ Box frame_box(const KrsFrame *frame, const Box *boxes, size_t component)
     return box;
 }
 
-Box frame_outer_box(const KrsFrame *frame, const Box *boxes)
+Box frame_outer_box(const KrsState *frame, const Box *boxes)
 {
     Box box = box_empty;
     for (size_t i = 0; i < frame->scene->shown_count; i++) {
@@ -48,19 +48,19 @@ static bool copy_corners(Box box, double low[3], double high[3])
     return box_is_finite(box);
 }
 
-bool krs_frame_component_box(KrsFrame *frame, size_t component, double low[3], double high[3])
+bool krs_state_component_box(KrsState *frame, size_t component, double low[3], double high[3])
 {
     return component < frame->scene->shown_count &&
            copy_corners(frame_box(frame, frame_find_boxes(frame), component), low, high);
 }
 
-bool krs_frame_box(KrsFrame *frame, double low[3], double high[3])
+bool krs_state_box(KrsState *frame, double low[3], double high[3])
 {
     return copy_corners(frame_outer_box(frame, frame_find_boxes(frame)), low, high);
 }
 
 /* The least height of all cameras. */
-static double lowest_eye(const KrsFrame *frame)
+static double lowest_eye(const KrsState *frame)
 {
     const KrsScene *scene = frame->scene;
     double          least = HUGE_VAL;
@@ -72,7 +72,7 @@ static double lowest_eye(const KrsFrame *frame)
     return least;
 }
 
-void frame_find_floor(KrsFrame *frame, uint32_t changed)
+void frame_find_floor(KrsState *frame, uint32_t changed)
 {
     const KrsScene   *scene = frame->scene;
     const FrameFloor *floor = &scene->floor;

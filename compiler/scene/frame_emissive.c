@@ -42,7 +42,7 @@ typedef struct Cell {
 } Cell;
 
 typedef struct Cells {
-    KrsFrame *frame;
+    KrsState *frame;
     Box       region;
     Box       tight[MAX_TIGHT]; /* around the first parts, in this frame */
     size_t    tight_count;
@@ -312,7 +312,7 @@ static void light_up(KrsEmissive *balls, size_t count)
             balls[i].radiance = lit > 0 ? SENT_BY_DARK * lit / dark : 1;
 }
 
-size_t krs_frame_emissive(KrsFrame *frame, const double low[3], const double high[3],
+size_t krs_state_emissive(KrsState *frame, const double low[3], const double high[3],
                           double min_radius, KrsEmissive balls[KRS_MAX_EMISSIVE])
 {
     Cells cells = {.frame = frame};

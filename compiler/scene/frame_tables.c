@@ -35,14 +35,14 @@ static Tape tape_of_frame(const Tape *tape, struct FrameTables *tables)
     return copy;
 }
 
-void frame_count_operations(KrsFrame *frame)
+void frame_count_operations(KrsState *frame)
 {
     FrameTapes *tapes   = &frame->tapes;
     tapes->distance.ran = tapes->guarded.ran = tapes->ahead.ran = &frame->ran;
     tapes->turned.ran = tapes->surface.ran = tapes->places.ran = &frame->ran;
 }
 
-static void make_tables(KrsFrame *frame, struct FrameTables *tables)
+static void make_tables(KrsState *frame, struct FrameTables *tables)
 {
     const KrsScene *scene    = frame->scene;
     Tape           *copies[] = {&frame->tapes.distance, &frame->tapes.guarded, &frame->tapes.ahead,
@@ -69,7 +69,7 @@ static void release(const Memory *memory, void *block)
         free(block);
 }
 
-bool frame_tables_new(KrsFrame *frame)
+bool frame_tables_new(KrsState *frame)
 {
     const KrsScene *scene = frame->scene;
     frame->tapes          = (FrameTapes){scene->distance, scene->guarded, scene->ahead,
@@ -95,7 +95,7 @@ bool frame_tables_new(KrsFrame *frame)
     return true;
 }
 
-void frame_tables_free(KrsFrame *frame)
+void frame_tables_free(KrsState *frame)
 {
     struct FrameTables *tables = frame->tables;
     if (!tables)
@@ -109,7 +109,7 @@ void frame_tables_free(KrsFrame *frame)
 
 /* ---- grids ---- */
 
-void frame_tables_change(KrsFrame *frame)
+void frame_tables_change(KrsState *frame)
 {
     if (frame->tables)
         frame->tables->found = false;
@@ -131,7 +131,7 @@ static void find_grids(struct FrameTables *tables, const Instances *of_scene,
     arena_clear(&tables->scratch);
 }
 
-void frame_tables_refresh(const KrsFrame *frame)
+void frame_tables_refresh(const KrsState *frame)
 {
     struct FrameTables *tables = frame->tables;
     const KrsScene     *scene  = frame->scene;
@@ -151,7 +151,7 @@ static bool is_origin(const KrsScene *scene, uint32_t slot)
     return scene->program.camera_relative && slot == scene->program.parameter_slots - 1;
 }
 
-void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin, float (*rows)[4],
+void krs_state_tables_in_use(const KrsState *frame, const double *rebase_origin, float (*rows)[4],
                              uint32_t (*cells)[2], size_t *row_count, size_t *cell_count)
 {
     const KrsScene  *scene     = frame->scene;
@@ -168,7 +168,7 @@ void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin,
     *cell_count     = used.cells;
 }
 
-void krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2])
+void krs_state_tables(const KrsState *frame, float (*rows)[4], uint32_t (*cells)[2])
 {
     const KrsProgram *program = &frame->scene->program;
     size_t            row_count, cell_count;
@@ -176,11 +176,11 @@ void krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)
         return;
     if (frame->tables)
         memset(cells, 0, program->table_cells * sizeof *cells);
-    krs_frame_tables_in_use(frame, NULL, rows, cells, &row_count, &cell_count);
+    krs_state_tables_in_use(frame, NULL, rows, cells, &row_count, &cell_count);
     memset(rows + row_count, 0, (program->table_rows - row_count) * sizeof *rows);
 }
 
-void krs_frame_table_inputs(const KrsFrame *frame, const double *rebase_origin, double (*inputs)[4])
+void krs_state_table_inputs(const KrsState *frame, const double *rebase_origin, double (*inputs)[4])
 {
     const KrsScene *scene = frame->scene;
     const Tape     *rows  = &scene->rows;

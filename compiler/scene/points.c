@@ -32,7 +32,7 @@ static void room_for_scalars(struct FrameLanes *lanes, LaneTape *tape)
 }
 
 /* The distances of all components, and the zones, whose least is output 0. */
-static void make_distance(struct FrameLanes *lanes, KrsFrame *frame)
+static void make_distance(struct FrameLanes *lanes, KrsState *frame)
 {
     const KrsScene *scene = frame->scene;
     size_t          count = scene->component_count;
@@ -56,7 +56,7 @@ static uint32_t outputs_of(const KrsScene *scene, Node root)
     return type <= TYPE_VEC4 ? (uint32_t)type : 1;
 }
 
-static void make_surface(struct FrameLanes *lanes, KrsFrame *frame)
+static void make_surface(struct FrameLanes *lanes, KrsState *frame)
 {
     const KrsScene *scene = frame->scene;
     size_t          count = scene->component_count, outputs = 0;
@@ -76,7 +76,7 @@ static void make_surface(struct FrameLanes *lanes, KrsFrame *frame)
     lanes->surface_work = new_work(lanes, &lanes->surface, frame->values);
 }
 
-void frame_lanes_refresh(KrsFrame *frame)
+void frame_lanes_refresh(KrsState *frame)
 {
     if (!frame->lanes)
         return;
@@ -84,7 +84,7 @@ void frame_lanes_refresh(KrsFrame *frame)
     lane_tape_scalars(&frame->lanes->surface, frame->values, frame->lanes->surface.scalars);
 }
 
-bool frame_lanes(KrsFrame *frame)
+bool frame_lanes(KrsState *frame)
 {
     const Memory *from = &frame->scene->memory;
     if (frame->lanes)
@@ -110,7 +110,7 @@ bool frame_lanes(KrsFrame *frame)
     return true;
 }
 
-void frame_lanes_free(KrsFrame *frame)
+void frame_lanes_free(KrsState *frame)
 {
     const Memory *from = &frame->scene->memory;
     if (!frame->lanes)
@@ -125,7 +125,7 @@ void frame_lanes_free(KrsFrame *frame)
 
 /* ---- zones of the caller ---- */
 
-static double cut_by_zones(const KrsFrame *frame, const double point[3], double least)
+static double cut_by_zones(const KrsState *frame, const double point[3], double least)
 {
     double depth = -INFINITY;
     for (size_t i = 0; i < frame->zone_count; i++)
@@ -140,7 +140,7 @@ static double cut_by_zones(const KrsFrame *frame, const double point[3], double 
 
 /* Points that are dealt out; what each part needs to run its own. */
 typedef struct Deal {
-    const KrsFrame *frame;
+    const KrsState *frame;
     const LaneTape *tape;
     const double (*points)[3];
     size_t    count;
@@ -161,7 +161,7 @@ static void deal_part(void *task, size_t part, size_t parts)
 }
 
 /* Rows and, where it reads tables, values of the frame, for each part but the first. */
-static void give_works(struct FrameLanes *lanes, const KrsFrame *frame, LaneWork *works)
+static void give_works(struct FrameLanes *lanes, const KrsState *frame, LaneWork *works)
 {
     size_t parts = parallel_parts(), count = frame->scene->graph->count;
     for (size_t i = 1; i < parts; i++) {
@@ -197,7 +197,7 @@ static bool deal_out(struct FrameLanes *lanes, Deal *deal)
 
 /* ---- distances and normals ---- */
 
-KrsStatus points_distances(KrsFrame *frame, const double (*points)[3], size_t count, bool bound,
+KrsStatus points_distances(KrsState *frame, const double (*points)[3], size_t count, bool bound,
                            double *distances)
 {
     LaneWork works[MAX_PARTS];
@@ -237,7 +237,7 @@ static void normal_of_differences(const double *beside, double step, double norm
         normal[k] = length > 1e-3 * step ? normal[k] / length : 0;
 }
 
-KrsStatus points_normals(KrsFrame *frame, const double (*points)[3], size_t count,
+KrsStatus points_normals(KrsState *frame, const double (*points)[3], size_t count,
                          double (*normals)[3])
 {
     double    places[AT_ONCE * BESIDE][3], found[AT_ONCE * BESIDE], steps[AT_ONCE];
@@ -264,7 +264,7 @@ static double output_of(const LaneTape *tape, const LaneWork *work, size_t outpu
 }
 
 /* As distance_by of query.c: behind output 0 are the distances of the components. */
-static uint32_t nearest_component(const KrsFrame *frame, size_t lane)
+static uint32_t nearest_component(const KrsState *frame, size_t lane)
 {
     const struct FrameLanes *lanes   = frame->lanes;
     double                   least   = INFINITY;
@@ -279,7 +279,7 @@ static uint32_t nearest_component(const KrsFrame *frame, size_t lane)
     return nearest;
 }
 
-void points_look(KrsFrame *frame, const double (*points)[3], const double (*normals)[3],
+void points_look(KrsState *frame, const double (*points)[3], const double (*normals)[3],
                  size_t count, double *distances, uint32_t *nearest)
 {
     struct FrameLanes *lanes = frame->lanes;
@@ -292,7 +292,7 @@ void points_look(KrsFrame *frame, const double (*points)[3], const double (*norm
     lane_run(&lanes->surface, &lanes->surface_work, LANE_DOUBLE, all, 0, 0, NULL);
 }
 
-void points_surface(KrsFrame *frame, size_t point, uint32_t nearest)
+void points_surface(KrsState *frame, size_t point, uint32_t nearest)
 {
     const KrsScene          *scene  = frame->scene;
     const struct FrameLanes *lanes  = frame->lanes;

@@ -34,7 +34,7 @@ size_t      krs_parameter_slots(const KrsScene *scene) { return scene->program.p
 size_t      krs_value_slots(const KrsScene *scene) { return scene->program.value_slots; }
 size_t      krs_table_rows(const KrsScene *scene) { return scene->program.table_rows; }
 size_t      krs_table_cells(const KrsScene *scene) { return scene->program.table_cells; }
-size_t      krs_frame_slope_count(const KrsScene *scene) { return scene->slope_count; }
+size_t      krs_state_slope_count(const KrsScene *scene) { return scene->slope_count; }
 size_t      krs_component_count(const KrsScene *scene) { return scene->shown_count; }
 size_t      krs_joined_rank(const KrsScene *scene, size_t index) { return scene->rank[index]; }
 
@@ -107,12 +107,12 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
     return KRS_OK;
 }
 
-KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope)
+KrsStatus krs_state_slope(const KrsScene *scene, size_t index, KrsStateSlope *slope)
 {
     if (index >= scene->slope_count)
         return KRS_BAD_ARGUMENT;
     const RetainedSlope *from = &scene->slopes[index];
-    *slope                    = (KrsFrameSlope){.slot = from->slot, .place = from->place};
+    *slope                    = (KrsStateSlope){.slot = from->slot, .place = from->place};
     for (int i = 0; i < 3; i++) {
         slope->low[i]  = from->task.box.axis[i].low;
         slope->high[i] = from->task.box.axis[i].high;

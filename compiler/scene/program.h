@@ -186,7 +186,7 @@ typedef struct FrameTapes {
 } FrameTapes;
 
 /* A frame: values of the parameters, and memory for the values of all nodes. */
-struct KrsFrame {
+struct KrsState {
     const KrsScene *scene;
     NodeValue      *parameters; /* the parameter block: the time in slot 0, parameters, slopes.  The
                                    slopes always belong to the other values */
@@ -221,56 +221,56 @@ typedef struct RayLimits {
 
 /* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after
    the pass `retain`. */
-KrsStatus frame_new(const KrsScene *scene, KrsFrame **frame);
-void      frame_free(KrsFrame *frame);
-KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view);
-KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+KrsStatus frame_new(const KrsScene *scene, KrsState **frame);
+void      frame_free(KrsState *frame);
+KrsStatus frame_view(KrsState *frame, size_t camera, KrsView *view);
+KrsStatus frame_raycast(KrsState *frame, const double (*origins)[3], const double (*directions)[3],
                         size_t count, double farthest, double tolerance, RayLimits limits,
                         KrsHit *hits);
 /* As krs_probe; without `normals` those of the answers may be 0, and materials must not depend on them. */
-KrsStatus frame_probe(KrsFrame *frame, const double (*points)[3], size_t count, bool normals,
+KrsStatus frame_probe(KrsState *frame, const double (*points)[3], size_t count, bool normals,
                       KrsHit *hits);
 void      scene_free(KrsScene *scene);
 /* A frame of the same scene with the same parameters, time and zones. */
-KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy);
+KrsStatus frame_copy_of(const KrsState *frame, KrsState **copy);
 
 /* The GLSL of all functions that the scene has in a variant, without comments, so that it says
    nothing of names and lines. */
 char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *arena);
 
 /* Evaluates the nodes that depend on parameters only, unless their values are up to date. */
-void frame_refresh(KrsFrame *frame);
+void frame_refresh(KrsState *frame);
 /* The same, and the tables of the frame: for values at points. */
-void frame_refresh_points(KrsFrame *frame);
+void frame_refresh_points(KrsState *frame);
 
 /* frame_boxes.c: the boxes of the shown components, but for a floor, at the values of the frame; NULL:
    they are those of all frames. */
-const Box *frame_find_boxes(KrsFrame *frame);
+const Box *frame_find_boxes(KrsState *frame);
 /* With these boxes: that of a component, and that around all which have an end, empty if none has. */
-Box frame_box(const KrsFrame *frame, const Box *boxes, size_t component);
-Box frame_outer_box(const KrsFrame *frame, const Box *boxes);
+Box frame_box(const KrsState *frame, const Box *boxes, size_t component);
+Box frame_outer_box(const KrsState *frame, const Box *boxes);
 /* Puts the height of the floor into its slot, if it depends on another one. */
-void frame_find_floor(KrsFrame *frame, uint32_t changed);
+void frame_find_floor(KrsState *frame, uint32_t changed);
 
 /* frame_tables.c: tables where instances of groups move, and tapes over them.  False: memory has run out. */
-bool frame_tables_new(KrsFrame *frame);
+bool frame_tables_new(KrsState *frame);
 /* Its tapes add what they run to its own count: after it was copied to another place. */
-void frame_count_operations(KrsFrame *frame);
-void frame_tables_free(KrsFrame *frame);
+void frame_count_operations(KrsState *frame);
+void frame_tables_free(KrsState *frame);
 /* Values of the frame have changed; the tables are found when they are needed. */
-void frame_tables_change(KrsFrame *frame);
-void frame_tables_refresh(const KrsFrame *frame);
+void frame_tables_change(KrsState *frame);
+void frame_tables_refresh(const KrsState *frame);
 
 /* The distance of a component, counted from 1, or of all (0), cut by the zones; frame_refresh_points
    was called before. */
-double frame_component_distance(KrsFrame *frame, size_t component, const double point[3]);
+double frame_component_distance(KrsState *frame, size_t component, const double point[3]);
 /* The component that is nearest, counted from 1; 0: there is none. */
-uint32_t frame_nearest_component(KrsFrame *frame, const double point[3]);
+uint32_t frame_nearest_component(KrsState *frame, const double point[3]);
 /* A value of the frame, used by points or the view, that is not finite; NODE_NONE: there is
    none. */
-Node frame_infinite(KrsFrame *frame);
+Node frame_infinite(KrsState *frame);
 /* Copies the value of a node of type VEC3. */
-void frame_copy(const KrsFrame *frame, Node node, double to[3]);
+void frame_copy(const KrsState *frame, Node node, double to[3]);
 /* Scales a vector to length 1, unless it is 0.  It may be so long or short that the square of its
    length would overflow or be 0. */
 void vector_normalize(double v[3]);

@@ -27,7 +27,7 @@ static bool are_finite(const double (*vectors)[3], size_t count)
 
 /* The largest depth of a point in a zone of the scene, whose value is in frame->values, or of the
    caller; negative outside. */
-static double zone_depth(const KrsFrame *frame, const double point[3])
+static double zone_depth(const KrsState *frame, const double point[3])
 {
     Node   zone  = zone_root(frame->scene);
     double depth = zone == NODE_NONE ? -INFINITY : frame->values[zone].v[0];
@@ -40,7 +40,7 @@ static double zone_depth(const KrsFrame *frame, const double point[3])
 
 /* The least distance of all components by a tape of them, cut by the zones.  *nearest is the number
    from 1 of that component, whether or not a zone cuts it. */
-static double distance_by(KrsFrame *frame, const Tape *tape, const double point[3],
+static double distance_by(KrsState *frame, const Tape *tape, const double point[3],
                           uint32_t *nearest)
 {
     const KrsScene *scene = frame->scene;
@@ -57,12 +57,12 @@ static double distance_by(KrsFrame *frame, const Tape *tape, const double point[
     return least < depth ? depth : least;
 }
 
-static double distance_at(KrsFrame *frame, const double point[3], uint32_t *nearest)
+static double distance_at(KrsState *frame, const double point[3], uint32_t *nearest)
 {
     return distance_by(frame, &frame->tapes.distance, point, nearest);
 }
 
-double frame_component_distance(KrsFrame *frame, size_t component, const double point[3])
+double frame_component_distance(KrsState *frame, size_t component, const double point[3])
 {
     uint32_t nearest  = 0;
     double   distance = distance_at(frame, point, &nearest);
@@ -72,7 +72,7 @@ double frame_component_distance(KrsFrame *frame, size_t component, const double 
                 zone_depth(frame, point));
 }
 
-uint32_t frame_nearest_component(KrsFrame *frame, const double point[3])
+uint32_t frame_nearest_component(KrsState *frame, const double point[3])
 {
     uint32_t nearest = 0;
     distance_at(frame, point, &nearest);
@@ -80,7 +80,7 @@ uint32_t frame_nearest_component(KrsFrame *frame, const double point[3])
 }
 
 /* Far from surfaces, short steps cost less than exact ones. */
-static Tape march_tape(const KrsFrame *frame, const Tape *tape)
+static Tape march_tape(const KrsState *frame, const Tape *tape)
 {
     Tape march     = *tape;
     march.by_cells = !frame->exact;
@@ -89,7 +89,7 @@ static Tape march_tape(const KrsFrame *frame, const Tape *tape)
 
 /* In a scene with open surfaces: how far a ray may go from a point.  `step` is the length from the
    previous point to it. */
-static double step_ahead(KrsFrame *frame, const double point[3], const double direction[3],
+static double step_ahead(KrsState *frame, const double point[3], const double direction[3],
                          double step)
 {
     const KrsScene *scene = frame->scene;
@@ -103,7 +103,7 @@ static double step_ahead(KrsFrame *frame, const double point[3], const double di
 }
 
 /* A bound for the distance that costs less: far levels of sequences are skipped (lower_guarded). */
-static double clearance_at(KrsFrame *frame, const double point[3])
+static double clearance_at(KrsState *frame, const double point[3])
 {
     const KrsScene *scene   = frame->scene;
     RootRange       roots   = roots_of(&scene->roots, ROOTS_GUARDED);
@@ -116,12 +116,12 @@ static double clearance_at(KrsFrame *frame, const double point[3])
 }
 
 /* Tells whether questions are answered in many points at once. */
-static bool by_lanes(const KrsFrame *frame, size_t count)
+static bool by_lanes(const KrsState *frame, size_t count)
 {
     return count >= FEWEST_POINTS && frame->scene->component_count > 0;
 }
 
-static KrsStatus find_distances(KrsFrame *frame, const double (*points)[3], size_t count,
+static KrsStatus find_distances(KrsState *frame, const double (*points)[3], size_t count,
                                 bool bound, double *distances)
 {
     uint32_t nearest = 0;
@@ -137,20 +137,20 @@ static KrsStatus find_distances(KrsFrame *frame, const double (*points)[3], size
     return KRS_OK;
 }
 
-KrsStatus krs_distance_bound(KrsFrame *frame, const double (*points)[3], size_t count,
+KrsStatus krs_distance_bound(KrsState *frame, const double (*points)[3], size_t count,
                              double *distances)
 {
     return find_distances(frame, points, count, true, distances);
 }
 
-KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)
+KrsStatus krs_distance(KrsState *frame, const double (*points)[3], size_t count, double *distances)
 {
     return find_distances(frame, points, count, false, distances);
 }
 
 /* A normal by derivatives, in scenes with open surfaces: differences would mix both sides of an open surface.
    False if there is no derivative. */
-static bool derived_normal(KrsFrame *frame, const double point[3], double normal[3])
+static bool derived_normal(KrsState *frame, const double point[3], double normal[3])
 {
     const KrsScene *scene   = frame->scene;
     uint32_t        nearest = 0;
@@ -169,7 +169,7 @@ static bool derived_normal(KrsFrame *frame, const double point[3], double normal
 }
 
 /* A normal by central differences, whose error is negligible in double precision. */
-static void normal_at(KrsFrame *frame, const double point[3], double normal[3])
+static void normal_at(KrsState *frame, const double point[3], double normal[3])
 {
     double   step = 1e-6 * (1 + largest3(point));
     uint32_t nearest;
@@ -187,7 +187,7 @@ static void normal_at(KrsFrame *frame, const double point[3], double normal[3])
         normal[i] = length > 1e-3 * step ? normal[i] / length : 0;
 }
 
-KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, double (*normals)[3])
+KrsStatus krs_normal(KrsState *frame, const double (*points)[3], size_t count, double (*normals)[3])
 {
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
@@ -201,7 +201,7 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
 
 /* Copies a property of the material at a point.  If queries limit it to its range, NaN becomes the
    lower limit. */
-static void copy_property(const KrsFrame *frame, const Node *roots, ComponentRoot root, double *to)
+static void copy_property(const KrsState *frame, const Node *roots, ComponentRoot root, double *to)
 {
     const RootInfo *info = &root_info[root];
     for (int k = 0; k < (info->type == TYPE_VEC3 ? 3 : 1); k++) {
@@ -211,7 +211,7 @@ static void copy_property(const KrsFrame *frame, const Node *roots, ComponentRoo
 }
 
 /* Puts what is known of the surface of a component into an answer: its roots are in frame->values. */
-static void copy_surface(const KrsFrame *frame, uint32_t nearest, KrsHit *hit)
+static void copy_surface(const KrsState *frame, uint32_t nearest, KrsHit *hit)
 {
     const Node *root = surface_roots(&frame->scene->roots, nearest - 1);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
@@ -243,7 +243,7 @@ static void face(const double view[3], double normal[3])
 
 /* `view` is the direction of the ray that sees the point, or NULL.  Materials of open surfaces have the normal
    that faces it. */
-static void probe(KrsFrame *frame, const double point[3], const double view[3], KrsHit *hit)
+static void probe(KrsState *frame, const double point[3], const double view[3], KrsHit *hit)
 {
     uint32_t nearest = 0;
     *hit             = hit_at(point);
@@ -258,7 +258,7 @@ static void probe(KrsFrame *frame, const double point[3], const double view[3], 
 }
 
 /* As many points as lanes. */
-static KrsStatus probe_lanes(KrsFrame *frame, const double (*points)[3], size_t count,
+static KrsStatus probe_lanes(KrsState *frame, const double (*points)[3], size_t count,
                              bool with_normals, KrsHit *hits)
 {
     double    normals[LANES][3] = {{0}}, distances[LANES];
@@ -277,12 +277,12 @@ static KrsStatus probe_lanes(KrsFrame *frame, const double (*points)[3], size_t 
     return KRS_OK;
 }
 
-KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
+KrsStatus krs_probe(KrsState *frame, const double (*points)[3], size_t count, KrsHit *hits)
 {
     return frame_probe(frame, points, count, true, hits);
 }
 
-KrsStatus frame_probe(KrsFrame *frame, const double (*points)[3], size_t count, bool normals,
+KrsStatus frame_probe(KrsState *frame, const double (*points)[3], size_t count, bool normals,
                       KrsHit *hits)
 {
     if (!are_finite(points, count))
@@ -354,7 +354,7 @@ enum { TOUCHING = 16 }; /* largest gap between solids that touch, in rounding er
 /* A ray that is marched.  There is no surface before `t`, nor within `clearance` behind it.  The
    distance is evaluated next at t + step. */
 typedef struct RayMarch {
-    KrsFrame *frame;
+    KrsState *frame;
     KrsRay    ray;
     double    size; /* largest coordinate of the origin, to which rounding errors are relative */
     double    tolerance;
@@ -461,7 +461,7 @@ static RayState march_step(RayMarch *march, double clearance)
     return MARCHING;
 }
 
-static RayMarch begin_march(KrsFrame *frame, KrsRay ray, double tolerance)
+static RayMarch begin_march(KrsState *frame, KrsRay ray, double tolerance)
 {
     return (RayMarch){.frame     = frame,
                       .ray       = ray,
@@ -494,7 +494,7 @@ static void end_march(RayMarch *march, RayLimits limits, KrsHit *hit)
 
 /* Tells whether clearances of rays are distances, which lanes tell.  Open surfaces have other ones, and guards and
    cells of instance groups make them shorter. */
-static bool march_by_lanes(const KrsFrame *frame)
+static bool march_by_lanes(const KrsState *frame)
 {
     const KrsScene *scene   = frame->scene;
     const Node     *guarded = roots_of(&scene->roots, ROOTS_GUARDED).items;
@@ -505,7 +505,7 @@ static bool march_by_lanes(const KrsFrame *frame)
 }
 
 /* The next step of each of some rays that are not at their end. */
-static KrsStatus step_fused(KrsFrame *frame, RayMarch *const *marches, size_t count)
+static KrsStatus step_fused(KrsState *frame, RayMarch *const *marches, size_t count)
 {
     double points[LANES][3], distances[LANES];
     for (size_t i = 0; i < count; i++)
@@ -519,7 +519,7 @@ static KrsStatus step_fused(KrsFrame *frame, RayMarch *const *marches, size_t co
 }
 
 /* Marches up to LANES rays side by side: their answers are those of each by itself. */
-static KrsStatus march_fused(KrsFrame *frame, RayMarch *rays, size_t count, RayLimits limits)
+static KrsStatus march_fused(KrsState *frame, RayMarch *rays, size_t count, RayLimits limits)
 {
     RayMarch *marches[LANES];
     KrsStatus status = KRS_OK;
@@ -546,7 +546,7 @@ static void march_alone(RayMarch *ray, RayLimits limits)
 }
 
 /* Up to LANES rays. */
-static KrsStatus raycast(KrsFrame *frame, RayMarch *rays, size_t count, bool together,
+static KrsStatus raycast(KrsState *frame, RayMarch *rays, size_t count, bool together,
                          RayLimits limits, KrsHit *hits)
 {
     KrsStatus status = together ? march_fused(frame, rays, count, limits) : KRS_OK;
@@ -558,7 +558,7 @@ static KrsStatus raycast(KrsFrame *frame, RayMarch *rays, size_t count, bool tog
     return status;
 }
 
-KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+KrsStatus frame_raycast(KrsState *frame, const double (*origins)[3], const double (*directions)[3],
                         size_t count, double farthest, double tolerance, RayLimits limits,
                         KrsHit *hits)
 {
@@ -579,7 +579,7 @@ KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const doubl
     return status;
 }
 
-KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+KrsStatus krs_raycast(KrsState *frame, const double (*origins)[3], const double (*directions)[3],
                       size_t count, double farthest, double tolerance, KrsHit *hits)
 {
     return frame_raycast(frame, origins, directions, count, farthest, tolerance,

@@ -14,7 +14,7 @@ static bool reads_normals(const Graph *graph, const Tape *tape)
     return false;
 }
 
-static size_t nearest_component(KrsFrame *frame, const double point[3])
+static size_t nearest_component(KrsState *frame, const double point[3])
 {
     const KrsScene *scene   = frame->scene;
     size_t          nearest = 0;
@@ -29,7 +29,7 @@ static size_t nearest_component(KrsFrame *frame, const double point[3])
 }
 
 /* False: nothing there reads a texture. */
-static bool place_at(KrsFrame *frame, const double point[3], bool normals, double place[2])
+static bool place_at(KrsState *frame, const double point[3], bool normals, double place[2])
 {
     const KrsScene *scene     = frame->scene;
     const Node     *roots     = roots_of(&scene->roots, ROOTS_PLACE).items;
@@ -44,7 +44,7 @@ static bool place_at(KrsFrame *frame, const double point[3], bool normals, doubl
     return true;
 }
 
-KrsStatus krs_texture_places(KrsFrame *frame, const double (*points)[3], size_t count,
+KrsStatus krs_texture_places(KrsState *frame, const double (*points)[3], size_t count,
                              double (*places)[2])
 {
     const KrsScene *scene   = frame->scene;

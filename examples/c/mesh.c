@@ -79,7 +79,7 @@ static void say(void *user, const KrsDiagnostic *diagnostic)
 int main(int argc, char **argv)
 {
     KrsScene      *scene   = NULL;
-    KrsFrame      *frame   = NULL;
+    KrsState      *frame   = NULL;
     KrsMesh       *mesh    = NULL;
     KrsMeshOptions options = {.error = argc > 2 ? atof(argv[2]) : 0, .go_on = go_on};
     KrsOptions     how     = {.diagnostic = say};
@@ -89,7 +89,7 @@ int main(int argc, char **argv)
     }
     KrsStatus status = krs_compile_file(argv[1], &how, &scene);
     if (status == KRS_OK)
-        status = krs_frame_new(scene, &frame);
+        status = krs_state_new(scene, &frame);
     if (status == KRS_OK)
         status = krs_mesh(frame, &options, &mesh);
     fputc('\n', stderr);
@@ -98,7 +98,7 @@ int main(int argc, char **argv)
     else
         fprintf(stderr, "no mesh: status %d\n", (int)status);
     krs_mesh_free(mesh); /* these take NULL */
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
     return status != KRS_OK;
 }

@@ -25,7 +25,7 @@ enum { SAMPLES = 8, COARSE = 4 };
 typedef struct Stage {
     KrsRenderer     *renderer;
     KrsScene        *scene;
-    KrsFrame        *frame;
+    KrsState        *frame;
     KrsRendering    *rendering; /* NULL: the scene does not compile */
     KrsFilm         *film;
     KrsRenderOptions size; /* of the film */
@@ -53,7 +53,7 @@ static void clear(Stage *stage)
 {
     krs_film_free(stage->film);
     krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
+    krs_state_free(stage->frame);
     krs_scene_free(stage->scene);
     *stage = (Stage){.renderer = stage->renderer};
 }
@@ -67,7 +67,7 @@ static void *prepare(void *at)
     clear(stage);
     if ((stage->renderer || krs_renderer_new(NULL, &stage->renderer) == KRS_OK) &&
         krs_compile_file(path, &options, &stage->scene) == KRS_OK &&
-        krs_frame_new(stage->scene, &stage->frame) == KRS_OK)
+        krs_state_new(stage->scene, &stage->frame) == KRS_OK)
         krs_rendering_new(stage->renderer, stage->scene, &stage->rendering);
     atomic_store(&ends, true);
     glfwPostEmptyEvent();
@@ -87,7 +87,7 @@ static void follow_file(void)
     } else if (compiles && atomic_load(&ends)) {
         compiles = pthread_join(compiler, NULL) != 0;
         if (!shown->rendering && hidden->rendering)
-            krs_frame_camera(hidden->frame, 0, &camera); /* to begin with */
+            krs_state_camera(hidden->frame, 0, &camera); /* to begin with */
         shown = hidden->rendering ? hidden : shown;
         moved = true;
     }

@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 /*
- * Grids: what a frame shows, sampled at points whose coordinates are whole multiples of the side of the cells.
+ * Grids: what a state shows, sampled at points whose coordinates are whole multiples of the side of the cells.
  *
  * A sample is a signed distance, negative inside: its sign is right, and its size never above the distance to the
  * nearest surface.  Or, with `fog`, it is the part of the cube around it that is solid, from 0 to 1.
@@ -73,13 +73,13 @@ typedef struct KrsGridBrick {
 typedef struct KrsGrid KrsGrid;
 
 /*
- * Prepares a grid of what a frame shows, which must stay as it is until the grid is freed.  The grid reaches beyond
+ * Prepares a grid of what a state shows, which must stay as it is until the grid is freed.  The grid reaches beyond
  * what is solid by the band, or without one by 3 cells; with `fog` by one.  With `exact` this takes most of the time.
  * KRS_BAD_ARGUMENT: there is no such component; what is sampled has no end, or is no solid (surfaces without
  * thickness); the grid is longer than KRS_MOST_CELLS along an axis, or that far from the origin; or the error is below
  * what krs_mesh takes.
  */
-KRS_SIZED KrsStatus    krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid **grid);
+KRS_SIZED KrsStatus    krs_grid_new(KrsState *state, const KrsGridOptions *options, KrsGrid **grid);
 void                   krs_grid_free(KrsGrid *grid);
 KRS_SIZED KrsGridShape krs_grid_shape(const KrsGrid *grid);
 

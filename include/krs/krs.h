@@ -3,7 +3,7 @@
  * vulkan.h.
  *
  * There is no global state.  A compiled scene never changes, so many threads may use it at the same
- * time.  What varies (the values of parameters, the time, zones of the caller) is in a KrsFrame,
+ * time.  What varies (the values of parameters, the time, zones of the caller) is in a KrsState,
  * which only one thread may use at a time.  Nothing here prints, exits or aborts.
  */
 #ifndef KRS_H
@@ -26,7 +26,7 @@ extern "C" {
 #define KRS_VERSION_MINOR 2
 #define KRS_VERSION_PATCH 0
 /* Grows by 1 whenever the headers have something new: a function, a member, a choice. */
-#define KRS_API_VERSION 1
+#define KRS_API_VERSION 2
 
 /*
  * Structs that a program owns get new members, always behind the others: options, what is told of a scene, answers.
@@ -38,6 +38,19 @@ extern "C" {
 #define KRS_SIZED __attribute__((visibility("hidden")))
 #else
 #define KRS_SIZED static inline
+#endif
+
+/*
+ * Names of before 0.3 stay for this version, with a warning that says what to write instead (deprecated.h).  With
+ * KRS_NO_DEPRECATION_WARNINGS compilers do not warn, and with KRS_NO_DEPRECATED there are no such names.
+ */
+#ifdef KRS_LIBRARY
+#define KRS_NO_DEPRECATED
+#endif
+#if defined __GNUC__ && !defined KRS_NO_DEPRECATION_WARNINGS
+#define KRS_DEPRECATED(instead) __attribute__((deprecated("use " instead)))
+#else
+#define KRS_DEPRECATED(instead)
 #endif
 
 /* The version of the library that a program runs with, as KRS_VERSION has it. */
@@ -58,7 +71,7 @@ typedef enum KrsStatus {
 } KrsStatus;
 
 typedef struct KrsScene KrsScene;
-typedef struct KrsFrame KrsFrame;
+typedef struct KrsState KrsState;
 
 /* One diagnostic, as text ready to print and as one JSON object (field names of the Language
    Server Protocol).  The strings live until the callback returns. */
@@ -102,7 +115,7 @@ typedef enum KrsSpecialize {
                                  many that drivers would take minutes */
 } KrsSpecialize;
 
-/* What compiling a scene, or meshing a frame, may use where nothing else is asked for: 2 GiB. */
+/* What compiling a scene, or meshing a state, may use where nothing else is asked for: 2 GiB. */
 #define KRS_USUAL_MEMORY ((size_t)2 << 30)
 
 typedef struct KrsOptions {
@@ -149,7 +162,7 @@ typedef struct KrsOptions {
 KRS_SIZED KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                                      const KrsOptions *options, KrsScene **scene);
 KRS_SIZED KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
-/* The frames and renderings of the scene must be freed, or updated to another scene, before.  NULL
+/* The states and renderings of the scene must be freed, or updated to another scene, before.  NULL
    is ignored, as in all functions that free. */
 void krs_scene_free(KrsScene *scene);
 
@@ -191,7 +204,7 @@ typedef struct KrsChanges {
  * On KRS_OK the caller owns *updated, and *changes (unless NULL) says what is different.  On any
  * other status *updated is NULL, as of krs_compile_text.
  *
- * Frames and renderings belong to the scene that they were made of.  krs_frame_update and
+ * States and renderings belong to the scene that they were made of.  krs_state_update and
  * krs_rendering_update (vulkan.h) take them over to the new one.
  */
 KRS_SIZED KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
@@ -238,45 +251,45 @@ typedef struct KrsImage {
 } KrsImage;
 KRS_SIZED KrsImage krs_scene_image(const KrsScene *scene);
 
-/* Makes a frame: parameters at their defaults, time 0, no zones of the caller.  The scene must
-   outlive the frame.  KRS_OUT_OF_MEMORY: *frame is NULL. */
-KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame);
-void      krs_frame_free(KrsFrame *frame);
-/* Takes a frame over to an update of its scene, or to one that its scene is an update of.  Time and
+/* Makes a state: parameters at their defaults, time 0, no zones of the caller.  The scene must
+   outlive the state.  KRS_OUT_OF_MEMORY: *state is NULL. */
+KrsStatus krs_state_new(const KrsScene *scene, KrsState **state);
+void      krs_state_free(KrsState *state);
+/* Takes a state over to an update of its scene, or to one that its scene is an update of.  Time and
    zones stay.  Parameters that were set keep their value where the other scene has one of this name
    that permits it; all others have the other scene's default.  A time that the other scene refuses
-   becomes 0.  KRS_OUT_OF_MEMORY: the frame is unchanged. */
-KrsStatus krs_frame_update(KrsFrame *frame, const KrsScene *scene);
+   becomes 0.  KRS_OUT_OF_MEMORY: the state is unchanged. */
+KrsStatus krs_state_update(KrsState *state, const KrsScene *scene);
 /* Sets all `count` components of a parameter, or the time in seconds.  KRS_BAD_ARGUMENT, and the
-   frame is unchanged: there is no such parameter, it has another number of components, a value is
+   state is unchanged: there is no such parameter, it has another number of components, a value is
    outside of its range or not finite, or a number of the scene would not be finite. */
-KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
-KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
-double    krs_frame_time(const KrsFrame *frame);
+KrsStatus krs_state_set(KrsState *state, const char *name, const double *values, size_t count);
+KrsStatus krs_state_set_time(KrsState *state, double time);
+double    krs_state_time(const KrsState *state);
 /* Places the camera of a scene that has none so that all is in the picture at the values and the time of
-   the frame; until then it is placed for the defaults and time 0.  Other scenes are left as they are. */
-KrsStatus krs_frame_place_camera(KrsFrame *frame);
+   the state; until then it is placed for the defaults and time 0.  Other scenes are left as they are. */
+KrsStatus krs_state_place_camera(KrsState *state);
 /* The location ("scene.krs:3:14") of an expression whose slope has no bound for the last value or
    time, which was refused for that reason.  NULL if it was accepted, or refused for another one. */
-const char *krs_frame_unbounded(const KrsFrame *frame);
+const char *krs_state_unbounded(const KrsState *state);
 
 /*
  * The uniforms of the GLSL that `krs compile` writes, for programs that embed it.  Each slot is a
  * vec4; `block` needs krs_parameter_slots of them.  Slot 0 is (time, 0, 0, 0).  A slot for each
  * parameter follows, in the order of krs_parameter.  The last slots are slopes, in x, which are
- * computed for each frame.  Distances are divided by them where no constant is safe, as for
+ * computed for each state.  Distances are divided by them where no constant is safe, as for
  * sin(time * x).  With KrsOptions.studio the height of the floor may be behind them.
  */
 size_t krs_parameter_slots(const KrsScene *scene);
-void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
+void   krs_state_parameters(const KrsState *state, float (*block)[4]);
 /*
  * The GLSL of `krs compile --frame-values on` has krs_value_slots more slots behind those.  They
- * are for other values that depend on the frame alone, such as rotations by a parameter and sines
+ * are for other values that depend on the state alone, such as rotations by a parameter and sines
  * of the time.  So these are not computed at each point, which saves registers, and they are
  * computed in double precision.
  */
 size_t krs_value_slots(const KrsScene *scene);
-void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
+void   krs_state_values(const KrsState *state, float (*block)[4]);
 /*
  * The texel buffers of that GLSL: numbers of parts that are alike but for numbers, and which of them
  * are near a point.  `rows` needs krs_table_rows texels, for krs_rows (RGBA32F), and `cells` needs
@@ -285,7 +298,7 @@ void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
  */
 size_t krs_table_rows(const KrsScene *scene);
 size_t krs_table_cells(const KrsScene *scene);
-void   krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2]);
+void   krs_state_tables(const KrsState *state, float (*rows)[4], uint32_t (*cells)[2]);
 /* A texture that the scene names.  Its texels are in `cells`, level after level, the rows of each from
    the bottom upwards; a level has half the width and height of the one before, rounded down.  Those
    of a gray texture are two floats, gray and alpha, those of others four halves, red, green, blue and
@@ -299,27 +312,27 @@ typedef struct KrsTexture {
 } KrsTexture;
 size_t              krs_texture_count(const KrsScene *scene);
 KRS_SIZED KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture *texture);
-/* A slope that is computed for each frame: its slot, and the location of its expression.
+/* A slope that is computed for each state: its slot, and the location of its expression.
    KRS_BAD_ARGUMENT: there is none of this index. */
-typedef struct KrsFrameSlope {
+typedef struct KrsStateSlope {
     uint32_t    slot;
     const char *place;           /* "scene.krs:3:14" */
     double      low[3], high[3]; /* the box for which the slope holds; may be infinite */
-} KrsFrameSlope;
-size_t              krs_frame_slope_count(const KrsScene *scene);
-KRS_SIZED KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope);
+} KrsStateSlope;
+size_t              krs_state_slope_count(const KrsScene *scene);
+KRS_SIZED KrsStatus krs_state_slope(const KrsScene *scene, size_t index, KrsStateSlope *slope);
 
 /*
  * Sets the caller's zones: spheres (center and radius) that are kept empty, so that the caller can
  * put its own things there.  The spheres are subtracted from all solids; a cut surface has the
  * component and material of its solid.  These zones replace those of the previous call.  Zones that
  * the scene declares stay.
- * KRS_BAD_ARGUMENT, and the frame is unchanged: there are more than KRS_MOST_ZONES, a radius is
+ * KRS_BAD_ARGUMENT, and the state is unchanged: there are more than KRS_MOST_ZONES, a radius is
  * negative, or a number is not finite or beyond KRS_MOST_COORDINATE.
  */
 #define KRS_MOST_ZONES      16
 #define KRS_MOST_COORDINATE 1e18 /* single precision can square it */
-KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count);
+KrsStatus krs_state_set_zones(KrsState *state, const double (*zones)[4], size_t count);
 
 typedef enum KrsProjection {
 #define KRS_PROJECTION(id, name) KRS_##id,
@@ -353,9 +366,9 @@ typedef struct KrsPlace {
     uint32_t    line, column; /* of its beginning, from 1 */
 } KrsPlace;
 KRS_SIZED KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place);
-/* A camera at the frame's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
+/* A camera at the state's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
    index. */
-KRS_SIZED KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera);
+KRS_SIZED KrsStatus krs_state_camera(KrsState *state, size_t index, KrsCamera *camera);
 
 /* The lights of the scene or, if it has none, one that the compiler places.  The name is NULL if the
    light has none. */
@@ -367,7 +380,7 @@ typedef struct KrsComponent {
     const char *name;            /* of the variable in its `show`, or "component 3" */
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
     double      slope;           /* the derived bound on the slope of its expression */
-    bool        per_frame;       /* `slope` is that of the first frame; each has its own */
+    bool        per_frame;       /* `slope` is that of the first state; each has its own */
     bool        exact;           /* the distance is exact outside wherever docs/math.md says so */
     bool        estimate;        /* nothing is proven of the distance; else it is a bound */
     bool        figure;          /* a plane figure: KrsOptions.figures */
@@ -411,16 +424,16 @@ KRS_SIZED KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t in
                               KrsBound *bound);
 
 /*
- * Queries of a frame, in double precision.  Arrays belong to the caller and have `count` elements;
+ * Queries of a state, in double precision.  Arrays belong to the caller and have `count` elements;
  * 0 is permitted.  If a number is not valid (coordinates must be finite) a query returns
  * KRS_BAD_ARGUMENT and writes nothing.
  */
 
 /* Distances for `count` points in world units: never above the distance to the nearest surface,
    negative inside.  +infinity in a scene with nothing in it. */
-KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances);
+KrsStatus krs_distance(KrsState *state, const double (*points)[3], size_t count, double *distances);
 /* Unit gradients of the distance, outwards; 0 where there is none. */
-KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count,
+KrsStatus krs_normal(KrsState *state, const double (*points)[3], size_t count,
                      double (*normals)[3]);
 
 /* How many numbers a member has, by its type in surface.def. */
@@ -450,7 +463,7 @@ typedef struct KrsHit {
 } KrsHit;
 
 /* Distance, normal and identity at points. */
-KRS_SIZED KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count,
+KRS_SIZED KrsStatus krs_probe(KrsState *state, const double (*points)[3], size_t count,
                               KrsHit *hits);
 
 /*
@@ -468,7 +481,7 @@ KRS_SIZED KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t
  * surface, for example along an infinite plane.
  */
 #define KRS_MOST_STEPS 100000
-KRS_SIZED KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3],
+KRS_SIZED KrsStatus krs_raycast(KrsState *state, const double (*origins)[3],
                                 const double (*directions)[3], size_t count, double farthest,
                                 double tolerance, KrsHit *hits);
 
@@ -484,4 +497,7 @@ KRS_SIZED KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3],
 #include "krs/slice.h"
 #include "krs/measure.h"
 #include "krs/sized.h"
+#ifndef KRS_NO_DEPRECATED
+#include "krs/deprecated.h"
+#endif
 #endif

@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 /*
- * Figures of what a frame shows as a solid: volume, center, areas, walls, and how it lies best on a plate.  Lengths are
+ * Figures of what a state shows as a solid: volume, center, areas, walls, and how it lies best on a plate.  Lengths are
  * those of the scene, areas and volumes their powers.
  */
 typedef struct KrsMeasureOptions {
@@ -75,7 +75,7 @@ typedef struct KrsMeasures {
  * On KRS_OK the caller frees *measures with krs_measures_free; where nothing is solid, volume and area are 0.
  * KRS_BAD_ARGUMENT as of krs_mesh, and if an angle or a length cannot be.
  */
-KRS_SIZED KrsStatus krs_measure(KrsFrame *frame, const KrsMeasureOptions *options,
+KRS_SIZED KrsStatus krs_measure(KrsState *state, const KrsMeasureOptions *options,
                                 KrsMeasures **measures);
 void                krs_measures_free(KrsMeasures *measures);
 

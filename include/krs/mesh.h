@@ -65,12 +65,12 @@ typedef struct KrsMesh {
 } KrsMesh;
 
 /*
- * Makes a mesh of what a frame shows.  What is thicker than the error everywhere is never missed.
+ * Makes a mesh of what a state shows.  What is thicker than the error everywhere is never missed.
  * On KRS_OK the caller frees *mesh with krs_mesh_free; it may have no triangles.  KRS_BAD_ARGUMENT:
  * there is no such component; what is meshed has no end, or is no solid (surfaces without
  * thickness); or the error is below a 500,000th of the size.
  */
-KRS_SIZED KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh);
+KRS_SIZED KrsStatus krs_mesh(KrsState *state, const KrsMeshOptions *options, KrsMesh **mesh);
 void                krs_mesh_free(KrsMesh *mesh);
 
 /*
@@ -97,7 +97,7 @@ typedef struct KrsItem {
     const char *name;
 } KrsItem;
 
-/* What a frame shows, as meshes and their copies; the last item is all of it. */
+/* What a state shows, as meshes and their copies; the last item is all of it. */
 typedef struct KrsAssembly {
     KrsItem    *items;
     KrsPlacing *placings;
@@ -114,12 +114,12 @@ typedef struct KrsAssembly {
  * compiled with KrsOptions.assembly.  With KrsOptions.motion what the time moves is taken apart as well.  Then KRS_BAD_SCENE:
  * something that moves cannot be taken apart.
  */
-KRS_SIZED KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options,
+KRS_SIZED KrsStatus krs_assemble(KrsState *state, const KrsMeshOptions *options,
                                  KrsAssembly **assembly);
 void                krs_assembly_free(KrsAssembly *assembly);
-/* Places the meshes of an assembly anew, as they are at the values and the time of the frame, of which it was made or of
+/* Places the meshes of an assembly anew, as they are at the values and the time of the state, of which it was made or of
    another of this scene.  KRS_BAD_SCENE: a mirror would cut something.  The box and `first_copy` stay. */
-KrsStatus krs_assembly_place(KrsFrame *frame, KrsAssembly *assembly);
+KrsStatus krs_assembly_place(KrsState *state, KrsAssembly *assembly);
 /* Calls `visit` for each copy of each mesh, one behind the other, until it returns false; then that is
    returned. */
 typedef bool KrsVisitCopy(void *user, const KrsItem *item, const double matrix[3][4]);
@@ -139,10 +139,10 @@ KRS_SIZED KrsStatus krs_component_motion(const KrsScene *scene, size_t index, Kr
 typedef struct KrsBeam {
     double ends[2][3], radii[2];
 } KrsBeam;
-/* Capsules and balls that a component is the sharp union of, at the values and the time of the frame: writes them, unless `beams`
+/* Capsules and balls that a component is the sharp union of, at the values and the time of the state: writes them, unless `beams`
    is NULL, and returns how many they are.  0: it is something else, zones cut the scene, or nobody asked
    (KrsOptions.beams). */
-size_t krs_component_beams(KrsFrame *frame, size_t index, KrsBeam *beams);
+size_t krs_component_beams(KrsState *state, size_t index, KrsBeam *beams);
 
 /*
  * Where the material of the surface reads its texture, the first if there are several, at some points: 0, 0 is
@@ -150,7 +150,7 @@ size_t krs_component_beams(KrsFrame *frame, size_t index, KrsBeam *beams);
  * coordinates as meshes have them; they jump where those of the surface do.  The scene must have been compiled with
  * KrsOptions.assembly.
  */
-KrsStatus krs_texture_places(KrsFrame *frame, const double (*points)[3], size_t count,
+KrsStatus krs_texture_places(KrsState *state, const double (*points)[3], size_t count,
                              double (*places)[2]);
 
 #ifdef __GNUC__

@@ -27,33 +27,33 @@ KrsStatus krs_parameter_sized(const KrsScene *scene, size_t index, KrsParameter 
                               size_t size);
 void      krs_scene_image_sized(const KrsScene *scene, KrsImage *image, size_t size);
 KrsStatus krs_texture_sized(const KrsScene *scene, size_t index, KrsTexture *texture, size_t size);
-KrsStatus krs_frame_slope_sized(const KrsScene *scene, size_t index, KrsFrameSlope *slope,
+KrsStatus krs_state_slope_sized(const KrsScene *scene, size_t index, KrsStateSlope *slope,
                                 size_t size);
 KrsStatus krs_camera_place_sized(const KrsScene *scene, size_t index, KrsPlace *place, size_t size);
-KrsStatus krs_frame_camera_sized(KrsFrame *frame, size_t index, KrsCamera *camera, size_t size);
+KrsStatus krs_state_camera_sized(KrsState *state, size_t index, KrsCamera *camera, size_t size);
 KrsStatus krs_component_sized(const KrsScene *scene, size_t index, KrsComponent *component,
                               size_t size);
 KrsStatus krs_bound_sized(const KrsScene *scene, size_t component, size_t index, KrsBound *bound,
                           size_t size);
-KrsStatus krs_probe_sized(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits,
+KrsStatus krs_probe_sized(KrsState *state, const double (*points)[3], size_t count, KrsHit *hits,
                           size_t size);
-KrsStatus krs_raycast_sized(KrsFrame *frame, const double (*origins)[3],
+KrsStatus krs_raycast_sized(KrsState *state, const double (*origins)[3],
                             const double (*directions)[3], size_t count, double farthest,
                             double tolerance, KrsHit *hits, size_t size);
-KrsStatus krs_mesh_sized(KrsFrame *frame, const KrsMeshOptions *options, size_t size,
+KrsStatus krs_mesh_sized(KrsState *state, const KrsMeshOptions *options, size_t size,
                          KrsMesh **mesh);
 KrsStatus krs_mesh_simplify_sized(const KrsMesh *mesh, const KrsMeshOptions *options, size_t size,
                                   KrsMesh **simplified);
-KrsStatus krs_assemble_sized(KrsFrame *frame, const KrsMeshOptions *options, size_t size,
+KrsStatus krs_assemble_sized(KrsState *state, const KrsMeshOptions *options, size_t size,
                              KrsAssembly **assembly);
 KrsStatus krs_component_motion_sized(const KrsScene *scene, size_t index, KrsMotion *motion,
                                      size_t size);
-KrsStatus krs_grid_new_sized(KrsFrame *frame, const KrsGridOptions *options, size_t size,
+KrsStatus krs_grid_new_sized(KrsState *state, const KrsGridOptions *options, size_t size,
                              KrsGrid **grid);
 void      krs_grid_shape_sized(const KrsGrid *grid, KrsGridShape *shape, size_t size);
-KrsStatus krs_slicer_new_sized(KrsFrame *frame, const KrsSliceOptions *options, size_t size,
+KrsStatus krs_slicer_new_sized(KrsState *state, const KrsSliceOptions *options, size_t size,
                                KrsSlicer **slicer);
-KrsStatus krs_measure_sized(KrsFrame *frame, const KrsMeasureOptions *options, size_t size,
+KrsStatus krs_measure_sized(KrsState *state, const KrsMeasureOptions *options, size_t size,
                             KrsMeasures **measures);
 
 #ifndef KRS_LIBRARY
@@ -94,17 +94,17 @@ KRS_SIZED KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture 
 {
     return krs_texture_sized(scene, index, texture, sizeof *texture);
 }
-KRS_SIZED KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope)
+KRS_SIZED KrsStatus krs_state_slope(const KrsScene *scene, size_t index, KrsStateSlope *slope)
 {
-    return krs_frame_slope_sized(scene, index, slope, sizeof *slope);
+    return krs_state_slope_sized(scene, index, slope, sizeof *slope);
 }
 KRS_SIZED KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place)
 {
     return krs_camera_place_sized(scene, index, place, sizeof *place);
 }
-KRS_SIZED KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera)
+KRS_SIZED KrsStatus krs_state_camera(KrsState *state, size_t index, KrsCamera *camera)
 {
-    return krs_frame_camera_sized(frame, index, camera, sizeof *camera);
+    return krs_state_camera_sized(state, index, camera, sizeof *camera);
 }
 KRS_SIZED KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component)
 {
@@ -115,39 +115,39 @@ KRS_SIZED KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t in
 {
     return krs_bound_sized(scene, component, index, bound, sizeof *bound);
 }
-KRS_SIZED KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count,
+KRS_SIZED KrsStatus krs_probe(KrsState *state, const double (*points)[3], size_t count,
                               KrsHit *hits)
 {
-    return krs_probe_sized(frame, points, count, hits, sizeof *hits);
+    return krs_probe_sized(state, points, count, hits, sizeof *hits);
 }
-KRS_SIZED KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3],
+KRS_SIZED KrsStatus krs_raycast(KrsState *state, const double (*origins)[3],
                                 const double (*directions)[3], size_t count, double farthest,
                                 double tolerance, KrsHit *hits)
 {
-    return krs_raycast_sized(frame, origins, directions, count, farthest, tolerance, hits,
+    return krs_raycast_sized(state, origins, directions, count, farthest, tolerance, hits,
                              sizeof *hits);
 }
-KRS_SIZED KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh)
+KRS_SIZED KrsStatus krs_mesh(KrsState *state, const KrsMeshOptions *options, KrsMesh **mesh)
 {
-    return krs_mesh_sized(frame, options, sizeof *options, mesh);
+    return krs_mesh_sized(state, options, sizeof *options, mesh);
 }
 KRS_SIZED KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
                                       KrsMesh **simplified)
 {
     return krs_mesh_simplify_sized(mesh, options, sizeof *options, simplified);
 }
-KRS_SIZED KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options,
+KRS_SIZED KrsStatus krs_assemble(KrsState *state, const KrsMeshOptions *options,
                                  KrsAssembly **assembly)
 {
-    return krs_assemble_sized(frame, options, sizeof *options, assembly);
+    return krs_assemble_sized(state, options, sizeof *options, assembly);
 }
 KRS_SIZED KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *motion)
 {
     return krs_component_motion_sized(scene, index, motion, sizeof *motion);
 }
-KRS_SIZED KrsStatus krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid **grid)
+KRS_SIZED KrsStatus krs_grid_new(KrsState *state, const KrsGridOptions *options, KrsGrid **grid)
 {
-    return krs_grid_new_sized(frame, options, sizeof *options, grid);
+    return krs_grid_new_sized(state, options, sizeof *options, grid);
 }
 KRS_SIZED KrsGridShape krs_grid_shape(const KrsGrid *grid)
 {
@@ -155,15 +155,15 @@ KRS_SIZED KrsGridShape krs_grid_shape(const KrsGrid *grid)
     krs_grid_shape_sized(grid, &shape, sizeof shape);
     return shape;
 }
-KRS_SIZED KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options,
+KRS_SIZED KrsStatus krs_slicer_new(KrsState *state, const KrsSliceOptions *options,
                                    KrsSlicer **slicer)
 {
-    return krs_slicer_new_sized(frame, options, sizeof *options, slicer);
+    return krs_slicer_new_sized(state, options, sizeof *options, slicer);
 }
-KRS_SIZED KrsStatus krs_measure(KrsFrame *frame, const KrsMeasureOptions *options,
+KRS_SIZED KrsStatus krs_measure(KrsState *state, const KrsMeasureOptions *options,
                                 KrsMeasures **measures)
 {
-    return krs_measure_sized(frame, options, sizeof *options, measures);
+    return krs_measure_sized(state, options, sizeof *options, measures);
 }
 #endif
 

@@ -19,19 +19,19 @@ KrsStatus krs_renderer_new_sized(const KrsRendererOptions *options, size_t size,
 void      krs_renderer_device_sized(const KrsRenderer *renderer, KrsDevice *device, size_t size);
 size_t    krs_rendering_kernels_sized(const KrsRendering *rendering, KrsKernelStats *kernels,
                                       size_t size, size_t capacity);
-KrsStatus krs_render_sized(KrsRendering *rendering, KrsFrame *frame,
+KrsStatus krs_render_sized(KrsRendering *rendering, KrsState *state,
                            const KrsRenderOptions *options, size_t size, KrsPicture **picture);
 KrsStatus krs_film_new_sized(KrsRendering *rendering, const KrsRenderOptions *options, size_t size,
                              KrsFilm **film);
-KrsStatus krs_film_add_sized(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, size_t size,
+KrsStatus krs_film_add_sized(KrsFilm *film, KrsState *state, const KrsCamera *camera, size_t size,
                              uint32_t samples);
-KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsFrame *frame, const KrsRays *rays, size_t size);
-KrsStatus krs_sample_sized(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsState *state, const KrsRays *rays, size_t size);
+KrsStatus krs_sample_sized(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                            size_t count, float *distances, KrsSurfacePoint *surfaces, size_t size);
-KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsFrame *frame,
+KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsState *state,
                                  const double (*points)[3], size_t count, KrsHit *hits,
                                  size_t size);
-KrsStatus krs_device_raycast_sized(KrsRendering *rendering, KrsFrame *frame,
+KrsStatus krs_device_raycast_sized(KrsRendering *rendering, KrsState *state,
                                    const double (*origins)[3], const double (*directions)[3],
                                    size_t count, double farthest, double tolerance, KrsHit *hits,
                                    size_t size);
@@ -56,41 +56,41 @@ KRS_SIZED size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelS
 {
     return krs_rendering_kernels_sized(rendering, kernels, sizeof *kernels, capacity);
 }
-KRS_SIZED KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame,
+KRS_SIZED KrsStatus krs_render(KrsRendering *rendering, KrsState *state,
                                const KrsRenderOptions *options, KrsPicture **picture)
 {
-    return krs_render_sized(rendering, frame, options, sizeof *options, picture);
+    return krs_render_sized(rendering, state, options, sizeof *options, picture);
 }
 KRS_SIZED KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
                                  KrsFilm **film)
 {
     return krs_film_new_sized(rendering, options, sizeof *options, film);
 }
-KRS_SIZED KrsStatus krs_film_add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera,
+KRS_SIZED KrsStatus krs_film_add(KrsFilm *film, KrsState *state, const KrsCamera *camera,
                                  uint32_t samples)
 {
-    return krs_film_add_sized(film, frame, camera, sizeof *camera, samples);
+    return krs_film_add_sized(film, state, camera, sizeof *camera, samples);
 }
-KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays)
+KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsRays *rays)
 {
-    return krs_film_add_rays_sized(film, frame, rays, sizeof *rays);
+    return krs_film_add_rays_sized(film, state, rays, sizeof *rays);
 }
-KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                                size_t count, float *distances, KrsSurfacePoint *surfaces)
 {
-    return krs_sample_sized(rendering, frame, points, count, distances, surfaces, sizeof *surfaces);
+    return krs_sample_sized(rendering, state, points, count, distances, surfaces, sizeof *surfaces);
 }
-KRS_SIZED KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame,
+KRS_SIZED KrsStatus krs_device_probe(KrsRendering *rendering, KrsState *state,
                                      const double (*points)[3], size_t count, KrsHit *hits)
 {
-    return krs_device_probe_sized(rendering, frame, points, count, hits, sizeof *hits);
+    return krs_device_probe_sized(rendering, state, points, count, hits, sizeof *hits);
 }
-KRS_SIZED KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame,
+KRS_SIZED KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *state,
                                        const double (*origins)[3], const double (*directions)[3],
                                        size_t count, double farthest, double tolerance,
                                        KrsHit *hits)
 {
-    return krs_device_raycast_sized(rendering, frame, origins, directions, count, farthest,
+    return krs_device_raycast_sized(rendering, state, origins, directions, count, farthest,
                                     tolerance, hits, sizeof *hits);
 }
 #endif

@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 /*
- * Sections: where a plane cuts what a frame shows, as closed contours.
+ * Sections: where a plane cuts what a state shows, as closed contours.
  *
  * Contours have the solid on their left: outer ones are counter-clockwise, those of holes clockwise.  Points are on
  * the surface, and its corners are points.
@@ -65,11 +65,11 @@ typedef struct KrsSection {
 typedef struct KrsSlicer KrsSlicer;
 
 /*
- * What is needed to make sections of what a frame shows, which must stay as it is until the slicer is freed.
+ * What is needed to make sections of what a state shows, which must stay as it is until the slicer is freed.
  * KRS_BAD_ARGUMENT: there is no such component; what is cut has no end, or is no solid (surfaces without thickness);
  * or the error is below a ten-millionth of the size.
  */
-KRS_SIZED KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options,
+KRS_SIZED KrsStatus krs_slicer_new(KrsState *state, const KrsSliceOptions *options,
                                    KrsSlicer **slicer);
 void                krs_slicer_free(KrsSlicer *slicer);
 /* Another error than that of the options, which the box may tell: at least a ten-millionth of the size. */

@@ -2,7 +2,7 @@
  * vulkan.h: render compiled scenes on a Vulkan device.
  *
  * A KrsRenderer is an open device.  A KrsRendering is a scene whose shaders are compiled for it.
- * krs_render turns one frame of the scene into a KrsPicture in host memory.  A KrsFilm is a picture
+ * krs_render turns one state of the scene into a KrsPicture in host memory.  A KrsFilm is a picture
  * that persists: samples are added to it, and it is read when it is wanted.  Different renderers
  * may be used from different threads; a renderer, and all that was made from it, belongs to one
  * thread at a time.  Nothing here prints, exits or aborts: every failure is a status, and one
@@ -110,7 +110,7 @@ KRS_SIZED KrsDevice krs_renderer_device(const KrsRenderer *renderer);
 uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
 
 /* What a rendering is mostly for.  Those shaders are compiled at once, others when they are
-   first needed.  Empty zones (krs_frame_set_zones) need shaders of their own: for the first
+   first needed.  Empty zones (krs_state_set_zones) need shaders of their own: for the first
    zone, and when there are more than 1, 2, 4 or 8 for the first time. */
 typedef enum KrsPurpose {
     KRS_FOR_PICTURES,      /* krs_render, by the integrator preview */
@@ -148,7 +148,7 @@ KRS_SIZED size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelS
  * Takes a rendering over to an update of its scene (krs_scene_update), or to one that its scene is
  * an update of.  Its films stay as large as they are, and lose their samples; what their options
  * left to the scene is chosen anew.  Afterwards the rendering needs the other scene alone, and
- * frames of that one.  On any other status than KRS_OK rendering and films are as they were:
+ * states of that one.  On any other status than KRS_OK rendering and films are as they were:
  * KRS_OUT_OF_MEMORY, KRS_INTERRUPTED, KRS_INTERNAL.
  *
  * Shaders whose text is the same stay.  A renderer has each of them once, whatever scene they are
@@ -333,11 +333,11 @@ typedef struct KrsPicture {
 #undef KRS_PLANE
 } KrsPicture;
 
-/* Renders a frame of the rendering's own scene.  On KRS_OK the caller owns *picture; on any
+/* Renders a state of the rendering's own scene.  On KRS_OK the caller owns *picture; on any
    other status it is NULL.  `options` may be NULL.  KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY (host or
    device), KRS_INTERRUPTED, KRS_INTERNAL.  Equal arguments on an equal device give equal
    pictures, bit by bit, whatever the crop and the slices. */
-KRS_SIZED KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame,
+KRS_SIZED KrsStatus krs_render(KrsRendering *rendering, KrsState *state,
                                const KrsRenderOptions *options, KrsPicture **picture);
 void                krs_picture_free(KrsPicture *picture);
 
@@ -358,7 +358,7 @@ KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bo
 /*
  * Films: pictures that grow.
  *
- * A film begins without samples.  Each call that adds some may have another frame and camera: the
+ * A film begins without samples.  Each call that adds some may have another state and camera: the
  * mean of all is what is read, so equal ones refine the picture, and others blur it.  The planes
  * other than colour, and the matrices, are those of the first sample.  As many samples as
  * `options->samples` says, added in whatever portions, give the picture of krs_render bit by bit;
@@ -378,10 +378,10 @@ void                krs_film_free(KrsFilm *film); /* before its rendering */
 void     krs_film_clear(KrsFilm *film); /* forgets all samples, as after the camera has moved */
 uint32_t krs_film_samples(const KrsFilm *film); /* of each pixel so far */
 
-/* Adds samples of a frame, as seen by the camera, or by the one of the options where it is NULL.
-   krs_frame_camera gives the scene's own to begin with.  KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY,
+/* Adds samples of a state, as seen by the camera, or by the one of the options where it is NULL.
+   krs_state_camera gives the scene's own to begin with.  KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY,
    KRS_INTERRUPTED, KRS_INTERNAL. */
-KRS_SIZED KrsStatus krs_film_add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera,
+KRS_SIZED KrsStatus krs_film_add(KrsFilm *film, KrsState *state, const KrsCamera *camera,
                                  uint32_t samples);
 
 /* A ray for each pixel of the whole picture, row by row from the top, also where there is a crop:
@@ -399,7 +399,7 @@ typedef struct KrsRays {
 
 /* Adds a sample of each pixel by rays of a list, which share no beams; its depth is the distance
    along the ray.  The first time it compiles shaders. */
-KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays);
+KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsRays *rays);
 
 /* The mean of the samples so far, with planes of the options (bits; 0: all of these).  The film
    stays as it is.  On KRS_OK the caller owns *picture; its statistics are sums over the samples.
@@ -424,7 +424,7 @@ typedef struct KrsSurfacePoint {
    Where it is constant around a point the normal by differences is 0, and what is there is that of
    some part.  KRS_BAD_ARGUMENT: `points` is NULL and `count` is not 0; KRS_OUT_OF_MEMORY,
    KRS_INTERNAL. */
-KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                                size_t count, float *distances, KrsSurfacePoint *surfaces);
 
 /*
@@ -443,9 +443,9 @@ KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const f
  * KRS_BAD_ARGUMENT (nothing is answered), KRS_OUT_OF_MEMORY, KRS_INTERNAL; what is written to
  * `hits` is then undefined.  Memory does not grow with `count`.
  */
-KRS_SIZED KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame,
+KRS_SIZED KrsStatus krs_device_probe(KrsRendering *rendering, KrsState *state,
                                      const double (*points)[3], size_t count, KrsHit *hits);
-KRS_SIZED KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame,
+KRS_SIZED KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *state,
                                        const double (*origins)[3], const double (*directions)[3],
                                        size_t count, double farthest, double tolerance,
                                        KrsHit *hits);

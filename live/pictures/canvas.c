@@ -20,7 +20,7 @@ typedef struct Film {
 struct Canvas {
     KrsRenderer  *renderer;
     KrsRendering *rendering;
-    KrsFrame     *frame;
+    KrsState     *frame;
     Version      *version;
     Needs         made;        /* whose shaders there are; the most of each kind */
     bool          previews;    /* such shaders there are */
@@ -86,7 +86,7 @@ void canvas_free(Canvas *canvas)
     free_films(canvas);
     krs_rendering_free(canvas->rendering);
     krs_renderer_free(canvas->renderer);
-    krs_frame_free(canvas->frame);
+    krs_state_free(canvas->frame);
     version_release(canvas->version);
     free(canvas);
 }
@@ -163,7 +163,7 @@ static unsigned lens_of_scene(const Canvas *canvas)
     unsigned        most  = 0;
     for (size_t i = 0; i < krs_camera_count(scene); i++) {
         KrsCamera      camera;
-        const unsigned lens = krs_frame_camera(canvas->frame, i, &camera) == KRS_OK
+        const unsigned lens = krs_state_camera(canvas->frame, i, &camera) == KRS_OK
                                   ? lens_of(&camera)
                                   : 0;
         most                = lens > most ? lens : most;
@@ -189,19 +189,19 @@ static void note_made(Canvas *canvas, const Needs *needs)
 /* Makes frame and rendering; what there was stays if that fails. */
 static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool paths)
 {
-    KrsFrame     *frame     = NULL;
+    KrsState     *frame     = NULL;
     KrsRendering *rendering = NULL;
-    KrsStatus     status    = krs_frame_new(scene, &frame);
+    KrsStatus     status    = krs_state_new(scene, &frame);
     if (status == KRS_OK)
         status = krs_rendering_new_for(canvas->renderer, scene,
                                        paths ? KRS_FOR_PATHS : KRS_FOR_PICTURES, &rendering);
     if (status != KRS_OK) {
-        krs_frame_free(frame);
+        krs_state_free(frame);
         return status;
     }
     free_films(canvas);
     krs_rendering_free(canvas->rendering);
-    krs_frame_free(canvas->frame);
+    krs_state_free(canvas->frame);
     canvas->rendering   = rendering;
     canvas->frame       = frame;
     canvas->paths_first = paths;
@@ -211,15 +211,15 @@ static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool path
 /* Frame and rendering are of the same scene, whatever fails. */
 static KrsStatus update(Canvas *canvas, const KrsScene *scene)
 {
-    KrsFrame *frame  = NULL;
-    KrsStatus status = krs_frame_new(scene, &frame);
+    KrsState *frame  = NULL;
+    KrsStatus status = krs_state_new(scene, &frame);
     if (status == KRS_OK)
         status = krs_rendering_update(canvas->rendering, scene);
     if (status != KRS_OK) {
-        krs_frame_free(frame);
+        krs_state_free(frame);
         return status;
     }
-    krs_frame_free(canvas->frame);
+    krs_state_free(canvas->frame);
     canvas->frame = frame;
     return KRS_OK;
 }
@@ -285,19 +285,19 @@ KrsStatus canvas_set(Canvas *canvas, const View *view)
     for (size_t i = 0; i < krs_parameter_count(scene); i++) {
         KrsParameter parameter;
         krs_parameter(scene, i, &parameter);
-        if (krs_frame_set(canvas->frame, parameter.name, view->values[i], parameter.components) !=
+        if (krs_state_set(canvas->frame, parameter.name, view->values[i], parameter.components) !=
             KRS_OK)
             status = KRS_BAD_ARGUMENT;
     }
-    if (krs_frame_set_time(canvas->frame, view->time) != KRS_OK ||
-        krs_frame_set_zones(canvas->frame, view->zones, view->zone_count) != KRS_OK)
+    if (krs_state_set_time(canvas->frame, view->time) != KRS_OK ||
+        krs_state_set_zones(canvas->frame, view->zones, view->zone_count) != KRS_OK)
         status = KRS_BAD_ARGUMENT;
     return status;
 }
 
 KrsStatus canvas_camera(Canvas *canvas, size_t index, KrsCamera *camera)
 {
-    return krs_frame_camera(canvas->frame, index, camera);
+    return krs_state_camera(canvas->frame, index, camera);
 }
 
 static bool go_on(void *user, double done)

@@ -125,9 +125,9 @@ struct KrsRendering {
     VkDescriptorPool pool;
     VkDescriptorSet  scene_set, band_set, points_set;
     Buffer           parameters, frame, control;
-    Buffer           table_rows, table_cells; /* krs_frame_tables; none where there are no tables */
+    Buffer           table_rows, table_cells; /* krs_state_tables; none where there are no tables */
     double (*table_inputs)
-        [4]; /* krs_frame_table_inputs of those on the device; NULL: there are none yet */
+        [4]; /* krs_state_table_inputs of those on the device; NULL: there are none yet */
     Buffer   sky_table;      /* sky_table.h; none for other skies */
     uint64_t sky_version;    /* of the map in it */
     double   sky_irradiance; /* by half of it, on the average */

@@ -60,7 +60,7 @@ static bool is_camera_relative(const Job *job)
 /* Tells whether all rays begin outside of all solids.  A ray from inside of a solid hits the inner wall
    of the union, which no march group or scene part knows by itself.  Rays of a list may begin
    anywhere, and are not tested one by one. */
-static bool begins_outside(const Job *job, KrsFrame *frame)
+static bool begins_outside(const Job *job, KrsState *frame)
 {
     const KrsProgram *program   = job->rendering->program;
     const KrsCamera  *camera    = &job->view.camera;
@@ -131,9 +131,9 @@ static bool choose_light(Job *job)
     return light == KRS_NO_LIGHT || light <= job->view.light_count;
 }
 
-bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera)
+bool job_read_frame(Job *job, KrsState *frame, const KrsCamera *camera)
 {
-    if (krs_frame_view(frame, camera || job->rays ? 0 : job->options.camera, &job->view) != KRS_OK)
+    if (krs_state_view(frame, camera || job->rays ? 0 : job->options.camera, &job->view) != KRS_OK)
         return job_refuse(job, "the scene has no such camera");
     if (!choose_light(job))
         return job_refuse(job, "the scene has no such light");

@@ -38,7 +38,7 @@ static double pixel_at(const Viewer *viewer, double distance)
     return view_width(viewer->camera, viewer->rays, viewer->height, distance);
 }
 
-static void look(const Viewer *viewer, KrsFrame *frame, Sight *sight)
+static void look(const Viewer *viewer, KrsState *frame, Sight *sight)
 {
     double origins[RAYS][3], directions[RAYS][3];
     for (int i = 0; i < RAYS; i++) {
@@ -88,7 +88,7 @@ static const double *nearest_point(const Sight *sight, const double eye[3])
     return nearest ? nearest->point : eye;
 }
 
-void origin_choose(const KrsRendering *rendering, KrsFrame *frame, const Viewer *viewer,
+void origin_choose(const KrsRendering *rendering, KrsState *frame, const Viewer *viewer,
                    double origin[3])
 {
     const double(*eye)[3] = (const double(*)[3]) & viewer->camera->eye;

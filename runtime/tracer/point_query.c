@@ -67,7 +67,7 @@ bool point_query_run(KrsRendering *rendering, uint32_t count, double step)
     return gpu_finish(gpu, &ms);
 }
 
-KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+KrsStatus krs_sample(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
                      size_t count, float *distances, KrsSurfacePoint *surfaces)
 {
     renderer_clear(rendering->renderer);

@@ -68,7 +68,7 @@ static const double PART_OF_SCENE = 0.1;
 /* Who asks, and the base that points on the device are relative to. */
 typedef struct Asker {
     KrsRendering *rendering;
-    KrsFrame     *frame;
+    KrsState     *frame;
     double        base[3];
     double        step; /* the least one to a tap for a normal */
 } Asker;
@@ -136,7 +136,7 @@ static uint32_t batch_of(size_t left)
     return left < POINTS_AT_ONCE ? (uint32_t)left : POINTS_AT_ONCE;
 }
 
-KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame, const double (*points)[3],
+KrsStatus krs_device_probe(KrsRendering *rendering, KrsState *frame, const double (*points)[3],
                            size_t count, KrsHit *hits)
 {
     Asker asker = {rendering, frame, {0}, POINT_QUERY_STEP};
@@ -259,7 +259,7 @@ static void take_ray_hit(const KrsRay *ray, const RayHitBlock *ray_hit, const An
 
 /* Single precision cannot tell on which side of a surface a ray begins that is as near to it as
    rounding: on the wrong one it would go through the solid, or past its end.  The host can. */
-static bool took_wrong_side(KrsFrame *frame, const RayHitBlock *ray_hit, const double (*origin)[3])
+static bool took_wrong_side(KrsState *frame, const RayHitBlock *ray_hit, const double (*origin)[3])
 {
     bool   inside = ray_hit->steps & QUERY_BEGINS_INSIDE;
     double distance;
@@ -330,7 +330,7 @@ static bool raycast_batch(Asker *asker, const Question *ask, uint32_t count, Krs
             (move_base(asker, base) && answer_rays(asker, ask, count, hits)));
 }
 
-KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const double (*origins)[3],
+KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *frame, const double (*origins)[3],
                              const double (*directions)[3], size_t count, double farthest,
                              double tolerance, KrsHit *hits)
 {

@@ -50,7 +50,7 @@ static const double points[3][3]     = {{0, 0, 2}, {3, 0, 1}, {0, 3, 0}};
 static const double origins[3][3]    = {{0, 0, 9}, {3, 0, 9}, {0, 9, 9}};
 static const double directions[3][3] = {{0, 0, -1}, {0, 0, -1}, {0, 1, 0}};
 
-static void tell_scene(const KrsScene *scene, KrsFrame *frame)
+static void tell_scene(const KrsScene *scene, KrsState *frame)
 {
     GUARDED(KrsParameter, parameter, 1);
     check(krs_parameter(scene, 0, parameter.is) == KRS_OK, "a parameter");
@@ -69,7 +69,7 @@ static void tell_scene(const KrsScene *scene, KrsFrame *frame)
     printf("bound %s line %u\n", bound.is->name, bound.is->line);
     check_guard(bound.guard, "a bound is too long");
     GUARDED(KrsCamera, camera, 1);
-    check(krs_frame_camera(frame, 0, camera.is) == KRS_OK, "a camera");
+    check(krs_state_camera(frame, 0, camera.is) == KRS_OK, "a camera");
     krs_camera_turn(camera.is, 0.1, 0.2);
     printf("camera %.3f %.3f %.3f fov %.3f\n", camera.is->eye[0], camera.is->eye[1],
            camera.is->eye[2], camera.is->fov);
@@ -78,7 +78,7 @@ static void tell_scene(const KrsScene *scene, KrsFrame *frame)
     printf("image %u x %u, %u\n", image.width, image.height, image.samples);
 }
 
-static void ask_host(KrsFrame *frame)
+static void ask_host(KrsState *frame)
 {
     GUARDED(KrsHit, hits, 3);
     check(krs_probe(frame, points, 3, hits.is) == KRS_OK, "probes");
@@ -91,7 +91,7 @@ static void ask_host(KrsFrame *frame)
     check_guard(hits.guard, "rays are too long");
 }
 
-static void make_shapes(KrsFrame *frame)
+static void make_shapes(KrsState *frame)
 {
     KrsMesh *mesh;
     GUARDED(KrsMeshOptions, how, 1);
@@ -144,7 +144,7 @@ static double sum_of(const KrsPicture *picture)
     return sum;
 }
 
-static void render(KrsRendering *rendering, KrsFrame *frame)
+static void render(KrsRendering *rendering, KrsState *frame)
 {
     KrsPicture *picture;
     GUARDED(KrsRenderOptions, options, 1);
@@ -157,7 +157,7 @@ static void render(KrsRendering *rendering, KrsFrame *frame)
     krs_picture_free(picture);
     KrsFilm  *film;
     KrsCamera camera;
-    check(krs_frame_camera(frame, 0, &camera) == KRS_OK, "a camera again");
+    check(krs_state_camera(frame, 0, &camera) == KRS_OK, "a camera again");
     check(krs_film_new(rendering, options.is, &film) == KRS_OK, "a film");
     check(krs_film_add(film, frame, &camera, 2) == KRS_OK, "samples");
     check(krs_film_read(film, 0, &picture) == KRS_OK, "the film's picture");
@@ -170,7 +170,7 @@ static void render(KrsRendering *rendering, KrsFrame *frame)
     check_guard(kernels.guard, "kernels are too long");
 }
 
-static void ask_device(KrsRendering *rendering, KrsFrame *frame)
+static void ask_device(KrsRendering *rendering, KrsState *frame)
 {
     static const float at[3][3] = {{0, 0, 2}, {3, 0, 1}, {0, 3, 0}};
     float              distances[3];
@@ -194,7 +194,7 @@ static void ask_device(KrsRendering *rendering, KrsFrame *frame)
     check_guard(hits.guard, "answers of the device are too long");
 }
 
-static void use_device(const KrsScene *scene, KrsFrame *frame)
+static void use_device(const KrsScene *scene, KrsState *frame)
 {
     size_t        count;
     KrsRenderer  *renderer;
@@ -219,7 +219,7 @@ static void use_device(const KrsScene *scene, KrsFrame *frame)
 
 #ifdef LATER
 /* What the library does not know may not be asked for. */
-static void ask_for_more(KrsFrame *frame)
+static void ask_for_more(KrsState *frame)
 {
     KrsMesh  *mesh;
     KrsScene *scene;
@@ -246,11 +246,11 @@ int main(void)
                                "let block = box([2, 2, 2]).move([3, 0, 0]);\n"
                                "show ball; show block;\n";
     KrsScene         *scene;
-    KrsFrame         *frame;
+    KrsState         *frame;
     GUARDED(KrsOptions, options, 1);
     options.is[0] = (KrsOptions){.studio = true};
     if (krs_compile_text(text, strlen(text), "a.krs", NULL, &scene) != KRS_OK ||
-        krs_frame_new(scene, &frame) != KRS_OK)
+        krs_state_new(scene, &frame) != KRS_OK)
         return 2;
     tell_scene(scene, frame);
     ask_host(frame);
@@ -260,7 +260,7 @@ int main(void)
 #ifdef LATER
     ask_for_more(frame);
 #endif
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
     check(krs_compile_text(text, strlen(text), "a.krs", options.is, &scene) == KRS_OK, "options");
     printf("%zu components in a studio\n", krs_component_count(scene));

@@ -36,13 +36,13 @@ static void ask(const KrsScene *scene)
 {
     static const double points[4][3] = {{0, 0, 0}, {1, 2, 3}, {-4, 0.5, 10}, {100, -100, 3}};
     double              distances[4];
-    KrsFrame           *frame;
+    KrsState           *frame;
     KrsView             view;
-    if (krs_frame_new(scene, &frame) != KRS_OK)
+    if (krs_state_new(scene, &frame) != KRS_OK)
         return;
     krs_distance(frame, points, 4, distances);
-    demand(krs_frame_view(frame, 0, &view) == KRS_OK);
-    krs_frame_free(frame);
+    demand(krs_state_view(frame, 0, &view) == KRS_OK);
+    krs_state_free(frame);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);

@@ -20,7 +20,7 @@ typedef struct Show {
     const char   *path;
     KrsRenderer  *renderer;
     KrsRendering *rendering;
-    KrsFrame     *frame;
+    KrsState     *frame;
     bool          failed;
 } Show;
 
@@ -80,14 +80,14 @@ static bool show_scene(KrsRenderer *renderer, const char *path)
     Show      show = {.path = path, .renderer = renderer};
     KrsScene *scene;
     bool      good = krs_compile_file(path, NULL, &scene) == KRS_OK &&
-                krs_frame_new(scene, &show.frame) == KRS_OK &&
+                krs_state_new(scene, &show.frame) == KRS_OK &&
                 krs_rendering_new(renderer, scene, &show.rendering) == KRS_OK;
     if (good)
         render_all(&show);
     else
         fprintf(stderr, "pictures: %s cannot be rendered\n", path);
     krs_rendering_free(show.rendering);
-    krs_frame_free(show.frame);
+    krs_state_free(show.frame);
     krs_scene_free(scene);
     return good;
 }

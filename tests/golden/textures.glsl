@@ -1,6 +1,6 @@
 // Distance code of a scene; slot 0 holds the time, then one slot for each `param`.
 // Textures are in krs_cells, a texel buffer of format RG32UI, and equal in all frames:
-// krs_frame_tables in krs.h.
+// krs_state_tables in krs.h.
 layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[1]; };
 
 layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;

@@ -34,7 +34,7 @@ enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT, ASKED = 400 };
 typedef struct Fixture {
     const char   *name;
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     KrsView       view;
     Lens          lens;
@@ -46,10 +46,10 @@ static void fixture_open(Fixture *fixture, KrsStatus status)
 {
     if (status != KRS_OK)
         fail_msg("%s does not compile", fixture->name);
-    assert_int_equal(krs_frame_new(fixture->scene, &fixture->frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture->scene, &fixture->frame), KRS_OK);
     if (krs_rendering_new(renderer, fixture->scene, &fixture->rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
-    assert_int_equal(krs_frame_view(fixture->frame, 0, &fixture->view), KRS_OK);
+    assert_int_equal(krs_state_view(fixture->frame, 0, &fixture->view), KRS_OK);
     const KrsCamera *camera = &fixture->view.camera;
     assert_int_equal(camera->projection, KRS_PERSPECTIVE);
     fixture->lens = lens_make(vec_of(camera->eye), vec_of(camera->target), tan(camera->fov / 2),
@@ -59,7 +59,7 @@ static void fixture_open(Fixture *fixture, KrsStatus status)
 static void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_frame_free(fixture->frame);
+    krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
 }
 
@@ -368,9 +368,9 @@ static void other_pictures_are_found(void **state)
     assert_true(wrong_rays(&fixture, picture) > 0);
     krs_picture_free(picture);
     const double lateral = 2 * pixel_at(&fixture, 5), none = 0;
-    assert_int_equal(krs_frame_set(fixture.frame, "aside", &lateral, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture.frame, "aside", &lateral, 1), KRS_OK);
     picture = fixture_render(&fixture, (KrsRenderOptions){0});
-    assert_int_equal(krs_frame_set(fixture.frame, "aside", &none, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture.frame, "aside", &none, 1), KRS_OK);
     assert_true(wrong_rays(&fixture, picture) > 0);
     krs_picture_free(picture);
     fixture_close(&fixture);

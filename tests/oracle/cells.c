@@ -339,7 +339,7 @@ static void choices_of_frames(void **state)
     for (int i = 0; i < 300; i++) {
         double value = values[i % 3];
         Vec    p     = random_in_cube(&random, 3);
-        assert_int_equal(krs_frame_set(product.frame, "big", &value, 1), KRS_OK);
+        assert_int_equal(krs_state_set(product.frame, "big", &value, 1), KRS_OK);
         KrsHit is     = product_probe(&product, p);
         double wanted = i % 3 == 0 ? ball(p, 1) : bar(p, vec(0.5, 1, 0.5));
         if (i % 3 == 2)

@@ -254,7 +254,7 @@ static void check_chain(const Run *run, Random *random, Tally *tally)
     scene_write(&lipschitz, ".offset(0);\ncamera { eye: [0, 0, 9], target: [0, 0, 0] }\n");
     if (krs_compile_text(lipschitz.bytes, lipschitz.length, "steady.krs", NULL,
                          &c.lipschitz.scene) == KRS_OK)
-        assert_int_equal(krs_frame_new(c.lipschitz.scene, &c.lipschitz.frame), KRS_OK);
+        assert_int_equal(krs_state_new(c.lipschitz.scene, &c.lipschitz.frame), KRS_OK);
     c.bounded = chain_box(&c.product, &c.low, &c.high);
     if (!c.bounded)
         c.low = vec(-4, -4, -4), c.high = vec(4, 4, 4);

@@ -54,10 +54,10 @@ static Comparison compare_scene(const char *text, double roughness, double plant
 {
     KrsOptions    options = {.diagnostic = print_diagnostic};
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     KrsStatus status = krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering);
     if (status != KRS_OK)
         fprintf(stderr, "%s\n", krs_renderer_message(renderer));
@@ -97,7 +97,7 @@ static Comparison compare_scene(const char *text, double roughness, double plant
     free(hits);
     free(surfaces);
     krs_rendering_free(rendering);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
     return result;
 }
@@ -246,7 +246,7 @@ static void sample_sines(double scale, double *arguments, KrsSurfacePoint *found
 {
     char          text[200];
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     float        *distances = malloc(POINTS * sizeof *distances);
     float(*points)[3]       = calloc(POINTS, sizeof *points);
@@ -259,12 +259,12 @@ static void sample_sines(double scale, double *arguments, KrsSurfacePoint *found
              "show sphere(1).paint(waves);",
              scale, scale, scale);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
     assert_int_equal(
         krs_sample(rendering, frame, (const float(*)[3])points, POINTS, distances, found), KRS_OK);
     krs_rendering_free(rendering);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
     free(distances);
     free(points);
@@ -397,7 +397,7 @@ static void parameters_agree(void **context)
 }
 
 /* Largest difference, over what is permitted; `late`: the device is asked before a frame is set. */
-static double compare_frames(KrsRendering *rendering, KrsFrame *frame, bool late)
+static double compare_frames(KrsRendering *rendering, KrsState *frame, bool late)
 {
     static const double times[] = {0, 0.4, -3, 25, 200, 1};
     enum { FEW = 2000 };
@@ -411,8 +411,8 @@ static double compare_frames(KrsRendering *rendering, KrsFrame *frame, bool late
         if (late)
             krs_sample(rendering, frame, (const float(*)[3])rounded, FEW, device, NULL);
         double k = 2 + times[f];
-        assert_int_equal(krs_frame_set(frame, "k", &k, 1), KRS_OK);
-        assert_int_equal(krs_frame_set_time(frame, times[f]), KRS_OK);
+        assert_int_equal(krs_state_set(frame, "k", &k, 1), KRS_OK);
+        assert_int_equal(krs_state_set_time(frame, times[f]), KRS_OK);
         if (!late)
             krs_sample(rendering, frame, (const float(*)[3])rounded, FEW, device, NULL);
         krs_distance(frame, (const double(*)[3])points, FEW, host);
@@ -431,16 +431,16 @@ static void frames_agree(void **context)
         "show sphere(0.5).displace(sin(time * x + k * z), 0.1).move([1, 1, 0]);";
     (void)context;
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_frame_slope_count(scene), 3);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_slope_count(scene), 3);
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
     assert_true(compare_frames(rendering, frame, false) <= 1);
     assert_true(compare_frames(rendering, frame, true) > 100); /* the frame before */
     krs_rendering_free(rendering);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 

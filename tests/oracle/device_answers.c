@@ -22,7 +22,7 @@ Scene scene_ready(KrsStatus status, KrsScene *scene, KrsPurpose purpose)
 {
     Scene s = {.scene = scene};
     assert_int_equal(status, KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &s.frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &s.frame), KRS_OK);
     status = krs_rendering_new_for(renderer, scene, purpose, &s.rendering);
     if (status != KRS_OK)
         print_message("%s\n", krs_renderer_message(renderer));
@@ -40,7 +40,7 @@ Scene scene_of(const char *text, KrsPurpose purpose)
 void scene_close(Scene s)
 {
     krs_rendering_free(s.rendering);
-    krs_frame_free(s.frame);
+    krs_state_free(s.frame);
     krs_scene_free(s.scene);
 }
 

@@ -13,7 +13,7 @@
 
 typedef struct Scene {
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
 } Scene;
 

@@ -145,14 +145,14 @@ static double angle(Vec a, Vec b)
 }
 
 /* Sets the zone of the caller. */
-static void set_zone(const struct Form *form, KrsFrame *frame, double size, Vec middle)
+static void set_zone(const struct Form *form, KrsState *frame, double size, Vec middle)
 {
     for (size_t i = 0; i < sizeof zones / sizeof *zones; i++) {
         const double *ball       = zones[i].ball;
         const double  zone[1][4] = {{middle.x + size * ball[0], middle.y + size * ball[1],
                                      middle.z + size * ball[2], size * ball[3]}};
         if (strcmp(zones[i].form, form->name) == 0)
-            assert_int_equal(krs_frame_set_zones(frame, zone, 1), KRS_OK);
+            assert_int_equal(krs_state_set_zones(frame, zone, 1), KRS_OK);
     }
 }
 
@@ -228,10 +228,10 @@ static KrsPicture *render(const Subject *subject, const Shot *shot, bool literal
                  away[]       = {shot->away.x, shot->away.y, shot->away.z};
     options.width             = width;
     if (!literal) {
-        assert_int_equal(krs_frame_set(subject->product.frame, "s", &shot->size, 1), KRS_OK);
-        assert_int_equal(krs_frame_set(subject->product.frame, "o", middle, 3), KRS_OK);
-        assert_int_equal(krs_frame_set(subject->product.frame, "e", away, 3), KRS_OK);
-        assert_int_equal(krs_frame_set(subject->product.frame, "f", &shot->fov, 1), KRS_OK);
+        assert_int_equal(krs_state_set(subject->product.frame, "s", &shot->size, 1), KRS_OK);
+        assert_int_equal(krs_state_set(subject->product.frame, "o", middle, 3), KRS_OK);
+        assert_int_equal(krs_state_set(subject->product.frame, "e", away, 3), KRS_OK);
+        assert_int_equal(krs_state_set(subject->product.frame, "f", &shot->fov, 1), KRS_OK);
     }
     set_zone(subject->form, subject->product.frame, shot->size, shot->middle);
     if (krs_render(subject->rendering, subject->product.frame, &options, &picture) != KRS_OK)
@@ -281,8 +281,8 @@ static void ask_device(const Subject *subject, const Shot *shot, KrsHit *answers
         memcpy(origins[i], &eye, sizeof origins[i]);
         memcpy(directions[i], &ray.direction, sizeof directions[i]);
     }
-    assert_int_equal(krs_frame_set(subject->product.frame, "s", &shot->size, 1), KRS_OK);
-    assert_int_equal(krs_frame_set(subject->product.frame, "o", middle, 3), KRS_OK);
+    assert_int_equal(krs_state_set(subject->product.frame, "s", &shot->size, 1), KRS_OK);
+    assert_int_equal(krs_state_set(subject->product.frame, "o", middle, 3), KRS_OK);
     set_zone(subject->form, subject->product.frame, shot->size, shot->middle);
     if (krs_device_raycast(subject->rendering, subject->product.frame, (const double(*)[3])origins,
                            (const double(*)[3])directions, PIXELS, HUGE_VAL, 0, answers) != KRS_OK)

@@ -345,7 +345,7 @@ static void far_away_is_far(void **state)
 
 static void set_parameter(Product *product, const char *name, const double *values, size_t count)
 {
-    assert_int_equal(krs_frame_set(product->frame, name, values, count), KRS_OK);
+    assert_int_equal(krs_state_set(product->frame, name, values, count), KRS_OK);
 }
 
 /* Iterations and c of frame time give the same solid as constants. */

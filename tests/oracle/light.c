@@ -121,13 +121,13 @@ static void close_fixture(Fixture *fixture)
 static void set_numbers(Fixture *fixture, const Setting *setting)
 {
     const Room *room  = setting->room;
-    KrsFrame   *frame = fixture->product.frame;
+    KrsState   *frame = fixture->product.frame;
     Vec         at    = setting->light;
     for (int i = 0; i < ROOM_NUMBERS && room->numbers[i].high > room->numbers[i].low; i++)
         assert_int_equal(
-            krs_frame_set(frame, (char[]){(char)('a' + i), 0}, &setting->numbers[i], 1), KRS_OK);
-    assert_int_equal(krs_frame_set(frame, "at", (double[]){at.x, at.y, at.z}, 3), KRS_OK);
-    assert_int_equal(krs_frame_set(frame, "wide", &setting->wide, 1), KRS_OK);
+            krs_state_set(frame, (char[]){(char)('a' + i), 0}, &setting->numbers[i], 1), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "at", (double[]){at.x, at.y, at.z}, 3), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "wide", &setting->wide, 1), KRS_OK);
 }
 
 static KrsPicture *take_picture(Fixture *fixture, KrsShadows shadows, uint32_t samples)

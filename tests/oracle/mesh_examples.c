@@ -81,7 +81,7 @@ static Example open_example(const char *path, const Row *row)
     e.options.within = true;
     e.options.error  = row->error;
     assert_int_equal(krs_compile_file(path, NULL, &e.product.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(e.product.scene, &e.product.frame), KRS_OK);
+    assert_int_equal(krs_state_new(e.product.scene, &e.product.frame), KRS_OK);
     look_at_components(&e);
     return e;
 }

@@ -189,7 +189,7 @@ static bool open_scene(const SceneText *text, Product *product)
     *product = (Product){0};
     if (krs_compile_text(text->bytes, text->length, "oracle.krs", NULL, &product->scene) != KRS_OK)
         return false;
-    assert_int_equal(krs_frame_new(product->scene, &product->frame), KRS_OK);
+    assert_int_equal(krs_state_new(product->scene, &product->frame), KRS_OK);
     return true;
 }
 

@@ -88,19 +88,19 @@ static void set_frame(const Product *product, Frame frame)
 {
     KrsParameter k;
     if (krs_parameter(product->scene, 0, &k) == KRS_OK)
-        assert_int_equal(krs_frame_set(product->frame, "k", &frame.k, 1), KRS_OK);
-    assert_int_equal(krs_frame_set_time(product->frame, frame.time), KRS_OK);
+        assert_int_equal(krs_state_set(product->frame, "k", &frame.k, 1), KRS_OK);
+    assert_int_equal(krs_state_set_time(product->frame, frame.time), KRS_OK);
 }
 
 /* What the host has found; there is one in each scene. */
 static double slope_in_block(const Product *product)
 {
-    KrsFrameSlope slope;
+    KrsStateSlope slope;
     float         block[8][4];
-    assert_int_equal(krs_frame_slope_count(product->scene), 1);
-    assert_int_equal(krs_frame_slope(product->scene, 0, &slope), KRS_OK);
+    assert_int_equal(krs_state_slope_count(product->scene), 1);
+    assert_int_equal(krs_state_slope(product->scene, 0, &slope), KRS_OK);
     assert_in_range(krs_parameter_slots(product->scene), slope.slot + 1, 8);
-    krs_frame_parameters(product->frame, block);
+    krs_state_parameters(product->frame, block);
     return block[slope.slot][0];
 }
 

@@ -328,10 +328,10 @@ static void frames_are_scenes(void **state)
     for (int set = 0; set < 6; set++) {
         double r = random_between(&random, 0.05, 0.6), time = random_between(&random, -4, 4);
         Vec    v = random_in_cube(&random, 1);
-        assert_int_equal(krs_frame_set(moving.frame, "r", &r, 1), KRS_OK);
+        assert_int_equal(krs_state_set(moving.frame, "r", &r, 1), KRS_OK);
         const double shift[3] = {v.x, v.y, v.z};
-        assert_int_equal(krs_frame_set(moving.frame, "shift", shift, 3), KRS_OK);
-        assert_int_equal(krs_frame_set_time(moving.frame, time), KRS_OK);
+        assert_int_equal(krs_state_set(moving.frame, "shift", shift, 3), KRS_OK);
+        assert_int_equal(krs_state_set_time(moving.frame, time), KRS_OK);
         Product still = product_format("%sshow union(a.move([%.17g, %.17g, %.17g]),"
                                        " b.rotate([0, 1, 0], %.17g), blend: %.17g);",
                                        prelude, v.x, v.y, v.z, time, r);
@@ -343,8 +343,8 @@ static void frames_are_scenes(void **state)
         product_free(&still);
     }
     double too_large = 0.7;
-    assert_int_equal(krs_frame_set(moving.frame, "r", &too_large, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set(moving.frame, "s", &too_large, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(moving.frame, "r", &too_large, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(moving.frame, "s", &too_large, 1), KRS_BAD_ARGUMENT);
     product_free(&moving);
 }
 

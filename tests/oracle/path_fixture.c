@@ -25,12 +25,12 @@ void path_fixture_close(PathFixture *fixture)
 
 void path_fixture_set(PathFixture *fixture, const char *name, double number)
 {
-    assert_int_equal(krs_frame_set(fixture->product.frame, name, &number, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->product.frame, name, &number, 1), KRS_OK);
 }
 
 void path_fixture_set_all(PathFixture *fixture, const char *name, double x, double y, double z)
 {
-    assert_int_equal(krs_frame_set(fixture->product.frame, name, (double[]){x, y, z}, 3), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->product.frame, name, (double[]){x, y, z}, 3), KRS_OK);
 }
 
 KrsPicture *path_fixture_render(const PathFixture *fixture, const KrsRenderOptions *options)

@@ -343,7 +343,7 @@ static void devices_read_what_the_host_reads(void **state)
 
 /* ---- other pictures ---- */
 
-static void color_is(KrsRendering *rendering, KrsFrame *frame, double wanted)
+static void color_is(KrsRendering *rendering, KrsState *frame, double wanted)
 {
     KrsSurfacePoint found;
     const float     point[1][3] = {{0.5f / SIDE, 0, 0.5f / SIDE}};
@@ -374,7 +374,7 @@ static void an_edited_picture_is_read_again(void **state)
     assert_int_equal(krs_scene_update(product.scene, text, strlen(text), &edited, &changes),
                      KRS_OK);
     assert_int_equal(changes.kind, KRS_CHANGE_VALUES);
-    assert_int_equal(krs_frame_update(product.frame, edited), KRS_OK);
+    assert_int_equal(krs_state_update(product.frame, edited), KRS_OK);
     assert_int_equal(krs_rendering_update(rendering, edited), KRS_OK);
     color_is(rendering, product.frame, texel(0, 0));
     krs_rendering_free(rendering);

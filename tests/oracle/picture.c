@@ -117,16 +117,16 @@ static Verdict judge(const KrsPicture *picture, const KrsHit *hits, double pixel
 static Verdict compare(const char *text, double planted)
 {
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     KrsPicture   *picture;
     KrsView       view;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
     assert_int_equal(krs_render(rendering, frame, &plain, &picture), KRS_OK);
     assert_int_equal(picture->stats.unresolved, 0);
-    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
 
     double(*origins)[3]    = malloc(PIXELS * sizeof *origins);
     double(*directions)[3] = malloc(PIXELS * sizeof *directions);
@@ -141,7 +141,7 @@ static Verdict compare(const char *text, double planted)
     free(hits);
     krs_picture_free(picture);
     krs_rendering_free(rendering);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
     return verdict;
 }

@@ -48,7 +48,7 @@ Product product_compile(const char *text)
     KrsStatus  status  = compile(text, &options, &product.scene);
     if (status != KRS_OK)
         fail_msg("status %d for the scene:\n%s", (int)status, text);
-    assert_int_equal(krs_frame_new(product.scene, &product.frame), KRS_OK);
+    assert_int_equal(krs_state_new(product.scene, &product.frame), KRS_OK);
     return product;
 }
 
@@ -65,7 +65,7 @@ Product product_format(const char *format, ...)
 
 void product_free(Product *product)
 {
-    krs_frame_free(product->frame);
+    krs_state_free(product->frame);
     krs_scene_free(product->scene);
     *product = (Product){0};
 }

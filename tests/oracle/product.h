@@ -15,7 +15,7 @@
 /* A scene and its frame at default parameters. */
 typedef struct Product {
     KrsScene *scene;
-    KrsFrame *frame;
+    KrsState *frame;
 } Product;
 
 /* A scene written piece by piece; too long a text fails the test. */

@@ -25,14 +25,14 @@ enum { ASKED = 400 }; /* rays that the host casts, too */
 
 typedef struct Fixture {
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
 } Fixture;
 
 static void fixture_prepare(Fixture *fixture, KrsStatus status)
 {
     assert_int_equal(status, KRS_OK);
-    assert_int_equal(krs_frame_new(fixture->scene, &fixture->frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture->scene, &fixture->frame), KRS_OK);
     if (krs_rendering_new(renderer, fixture->scene, &fixture->rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
 }
@@ -48,7 +48,7 @@ static Fixture fixture_of_text(const char *text)
 static void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_frame_free(fixture->frame);
+    krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
 }
 
@@ -286,7 +286,7 @@ static void cameras_are_lists(void **state)
     KrsCamera   camera;
     double      spread;
     (void)state;
-    assert_int_equal(krs_frame_camera(fixture.frame, 0, &camera), KRS_OK);
+    assert_int_equal(krs_state_camera(fixture.frame, 0, &camera), KRS_OK);
     list_camera(&camera, &list, &spread);
     KrsRays rays                     = rays_of(&list, spread);
     rays.width                       = 0;
@@ -365,7 +365,7 @@ static void lists_and_cameras_take_turns(void **state)
     KrsFilm    *film;
     KrsPicture *picture, *before, *after;
     (void)state;
-    assert_int_equal(krs_frame_camera(fixture.frame, 0, &camera), KRS_OK);
+    assert_int_equal(krs_state_camera(fixture.frame, 0, &camera), KRS_OK);
     list_camera(&camera, &list, &spread);
     const KrsRays rays = rays_of(&list, spread);
     assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &before), KRS_OK);

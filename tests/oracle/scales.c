@@ -73,7 +73,7 @@ typedef struct Shot {
 static void set_vector(const Scene *scene, const char *name, Vec v)
 {
     const double values[3] = {v.x, v.y, v.z};
-    assert_int_equal(krs_frame_set(scene->product.frame, name, values, 3), KRS_OK);
+    assert_int_equal(krs_state_set(scene->product.frame, name, values, 3), KRS_OK);
 }
 
 static KrsPicture *shot_render(const Shot *shot)
@@ -87,9 +87,9 @@ static KrsPicture *shot_render(const Shot *shot)
     if (shot->kind == BLOCK) {
         set_vector(scene, "sides", shot->sides);
         set_vector(scene, "axis", shot->axis);
-        krs_frame_set(scene->product.frame, "angle", &shot->angle, 1);
+        krs_state_set(scene->product.frame, "angle", &shot->angle, 1);
     } else
-        krs_frame_set(scene->product.frame, "size", &shot->size, 1);
+        krs_state_set(scene->product.frame, "size", &shot->size, 1);
     if (krs_render(scene->rendering, scene->product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;

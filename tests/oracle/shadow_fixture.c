@@ -141,10 +141,10 @@ Fixture *use_fixture(FixtureKind kind)
 static void set_parameter(const Fixture *fixture, const char *name, const double *values,
                           size_t count)
 {
-    assert_int_equal(krs_frame_set(fixture->product.frame, name, values, count), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->product.frame, name, values, count), KRS_OK);
 }
 
-KrsPicture *take_picture(KrsRendering *rendering, KrsFrame *frame, KrsRenderOptions options)
+KrsPicture *take_picture(KrsRendering *rendering, KrsState *frame, KrsRenderOptions options)
 {
     KrsPicture *picture;
     if (krs_render(rendering, frame, &options, &picture) != KRS_OK)

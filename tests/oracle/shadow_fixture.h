@@ -79,7 +79,7 @@ typedef struct Shot {
 
 /* Gives the frame of the shot's fixture its light, and the size of twigs. */
 void        set_lighting(const Shot *shot);
-KrsPicture *take_picture(KrsRendering *rendering, KrsFrame *frame, KrsRenderOptions options);
+KrsPicture *take_picture(KrsRendering *rendering, KrsState *frame, KrsRenderOptions options);
 KrsPicture *shoot(const Shot *shot);
 Lens        shot_lens(const Shot *shot);
 /* How much of the light a pixel of the window sees; -1 where it is not ground in the light. */

@@ -145,11 +145,11 @@ static bool has_texts(const KrsScene *scene, Texts wanted)
    box of the scene.  What is only a bound may be another one, but is one of the same solid. */
 static double difference(const KrsScene *a, const KrsScene *b)
 {
-    KrsFrame *first, *second;
+    KrsState *first, *second;
     Random    random = {1};
     double    most   = 0;
-    assert_int_equal(krs_frame_new(a, &first), KRS_OK);
-    assert_int_equal(krs_frame_new(b, &second), KRS_OK);
+    assert_int_equal(krs_state_new(a, &first), KRS_OK);
+    assert_int_equal(krs_state_new(b, &second), KRS_OK);
     for (int i = 0; i < 300; i++) {
         double point[1][3], x, y;
         random_vector(&random, i % 2 ? 2 : 12, point[0]);
@@ -158,8 +158,8 @@ static double difference(const KrsScene *a, const KrsScene *b)
         const bool far = (x > 0) == (y > 0) && fmin(fabs(x), fabs(y)) > 0.01;
         most           = fmax(most, (isinf(x) && isinf(y)) || far ? 0 : fabs(x - y) / 12);
     }
-    krs_frame_free(first);
-    krs_frame_free(second);
+    krs_state_free(first);
+    krs_state_free(second);
     return most;
 }
 
@@ -283,15 +283,15 @@ static const char *const texts[][2] = {
 static KrsPicture *render(const KrsScene *scene)
 {
     const KrsRenderOptions options = {.width = 120, .height = 80};
-    KrsFrame              *frame;
+    KrsState              *frame;
     KrsRendering          *rendering;
     KrsPicture            *picture;
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     if (krs_rendering_new(renderer, scene, &rendering) != KRS_OK ||
         krs_render(rendering, frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     krs_rendering_free(rendering);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     return picture;
 }
 

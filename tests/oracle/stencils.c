@@ -38,7 +38,7 @@ static int stop(void **state)
 
 typedef struct Fixture {
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
 } Fixture;
 
@@ -48,7 +48,7 @@ static Fixture fixture_open(const char *text)
     KrsOptions options = {.gradients = true};
     if (krs_compile_text(text, strlen(text), "scene.krs", &options, &fixture.scene) != KRS_OK)
         fail_msg("does not compile: %s", text);
-    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, fixture.scene, &fixture.rendering), KRS_OK);
     return fixture;
 }
@@ -56,7 +56,7 @@ static Fixture fixture_open(const char *text)
 static void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_frame_free(fixture->frame);
+    krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
 }
 
@@ -144,7 +144,7 @@ static void derivatives_agree_with_closed_forms(void **state)
 /* ---- differences ---- */
 
 /* The gradient of the distance by differences of two widths; false where they do not agree. */
-static bool differences(KrsFrame *frame, const float at[3], double n[3])
+static bool differences(KrsState *frame, const float at[3], double n[3])
 {
     const double steps[2] = {1e-5, 2e-5};
     double       found[2][3], apart = 0, size = 0;
@@ -337,7 +337,7 @@ static void analytic_normals_are_asked_for_in_time(void **state)
     KrsPicture      *picture;
     KrsRenderOptions options = {.width = 16, .height = 16, .normals = KRS_NORMALS_ANALYTIC};
     assert_int_equal(krs_compile_text(text, strlen(text), "s.krs", NULL, &fixture.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, fixture.scene, &fixture.rendering), KRS_OK);
     assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &picture),
                      KRS_BAD_ARGUMENT);

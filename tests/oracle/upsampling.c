@@ -65,7 +65,7 @@ static bool is_unseen(Difference difference)
 }
 
 /* A picture with upsampling, and one without. */
-static void take_both(KrsRendering *rendering, KrsFrame *frame, KrsPicture *pictures[2])
+static void take_both(KrsRendering *rendering, KrsState *frame, KrsPicture *pictures[2])
 {
     for (int i = 0; i < 2; i++)
         pictures[i] = take_picture(
@@ -73,10 +73,10 @@ static void take_both(KrsRendering *rendering, KrsFrame *frame, KrsPicture *pict
             (KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .samples = 1, .no_upsampling = i});
 }
 
-static bool upsampling_is_unseen(const char *name, KrsFrame *frame, KrsPicture *pictures[2])
+static bool upsampling_is_unseen(const char *name, KrsState *frame, KrsPicture *pictures[2])
 {
     KrsView view;
-    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
     Difference d = compare_pictures(&view.image, pictures[0], pictures[1]);
     print_message("# upsampling, %s: off by %.1f of 255 at most, %.3f %% by more than 1, %.3f %% "
                   "by more than 4\n",
@@ -88,7 +88,7 @@ static bool upsampling_is_unseen(const char *name, KrsFrame *frame, KrsPicture *
 
 /* The mean of pictures of one ray each to lights and sky, through the pixels' centres, of which
    neighbours know nothing. */
-static KrsPicture *take_reference(KrsRendering *rendering, KrsFrame *frame)
+static KrsPicture *take_reference(KrsRendering *rendering, KrsState *frame)
 {
     enum { SEEDS = 16 };
     const size_t     numbers = 4 * (size_t)WIDTH * HEIGHT;
@@ -127,7 +127,7 @@ static double means_apart(const KrsPicture *a, const KrsPicture *b)
 
 /* A picture whose neighbours share, against the reference of the same scene, or a scene with its
    light from elsewhere. */
-static bool sharing_is_unseen(const char *name, KrsRendering *rendering, KrsFrame *frame)
+static bool sharing_is_unseen(const char *name, KrsRendering *rendering, KrsState *frame)
 {
     KrsPicture *reference = take_reference(rendering, frame);
     KrsPicture *picture   = take_picture(
@@ -149,7 +149,7 @@ static bool example_is_unharmed(const char *path)
     Product       product = {0};
     KrsRendering *rendering;
     assert_int_equal(krs_compile_file(path, NULL, &product.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(product.scene, &product.frame), KRS_OK);
+    assert_int_equal(krs_state_new(product.scene, &product.frame), KRS_OK);
     open_rendering(&product, &rendering);
     bool unseen = sharing_is_unseen(path, rendering, product.frame);
     krs_rendering_free(rendering);

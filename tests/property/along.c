@@ -103,7 +103,7 @@ static double first_change(Formula *f, const double o[3], const double v[3], dou
     return most;
 }
 
-static double along_at(KrsFrame *frame, const Tape *tape, Node root, const double p[3],
+static double along_at(KrsState *frame, const Tape *tape, Node root, const double p[3],
                        const double v[3])
 {
     tape_run_surface(tape, p, v, 0, frame->values);
@@ -117,10 +117,10 @@ static void steps_stay_before_the_surface(void **state)
 {
     const struct Case *c = *state;
     KrsScene          *scene;
-    KrsFrame          *frame;
+    KrsState          *frame;
     uint32_t           seed = 3;
     assert_int_equal(krs_compile_text(c->text, strlen(c->text), c->name, NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_true(krs_scene_program(scene)->along);
     Node root = along_roots(&scene->roots, ALONG_EXACT)[0];
     Tape tape = tape_new(scene->graph, &root, 1, &scene->arena);
@@ -161,7 +161,7 @@ static void steps_stay_before_the_surface(void **state)
     }
     assert_true(hits > 60);
     assert_true(evaluations < 250 * 20);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 

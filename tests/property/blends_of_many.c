@@ -80,7 +80,7 @@ static void probe(const CsgNode *csg_node, const Part *parts, int count, double 
     size_t      length  = (size_t)sprintf(text, "show %s([", csg_node->function);
     KrsOptions  options = {0};
     KrsScene   *scene   = NULL;
-    KrsFrame   *frame   = NULL;
+    KrsState   *frame   = NULL;
     for (int i = 0; i < count; i++) {
         write_part(text + length, &parts[i]);
         length += strlen(text + length);
@@ -88,9 +88,9 @@ static void probe(const CsgNode *csg_node, const Part *parts, int count, double 
     length += (size_t)sprintf(text + length, "], blend: %.17g, kind: \"%s\"%s);", csg_node->width,
                               csg_node->kind, strcmp(csg_node->kind, "stairs") ? "" : ", steps: 3");
     assert_int_equal(krs_compile_text(text, length, "many.krs", &options, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_probe(frame, (const double(*)[3])points, POINTS, hits), KRS_OK);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 
@@ -342,12 +342,12 @@ static void colours_do_not_show_the_order(void **state)
     for (int t = 0; t < 3; t++) {
         KrsOptions options = {0};
         KrsScene  *scene   = NULL;
-        KrsFrame  *frame   = NULL;
+        KrsState  *frame   = NULL;
         assert_int_equal(krs_compile_text(texts[t], strlen(texts[t]), "c.krs", &options, &scene),
                          KRS_OK);
-        assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+        assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
         assert_int_equal(krs_probe(frame, (const double(*)[3])points, POINTS, hits[t]), KRS_OK);
-        krs_frame_free(frame);
+        krs_state_free(frame);
         krs_scene_free(scene);
     }
     for (int t = 1; t < 3; t++)

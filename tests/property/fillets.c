@@ -160,13 +160,13 @@ static void probe_text(const char *text, const char *param, double value, double
 {
     KrsOptions options = {0};
     KrsScene  *scene   = NULL;
-    KrsFrame  *frame   = NULL;
+    KrsState  *frame   = NULL;
     assert_int_equal(krs_compile_text(text, strlen(text), "fillets.krs", &options, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     if (param)
-        assert_int_equal(krs_frame_set(frame, param, &value, 1), KRS_OK);
+        assert_int_equal(krs_state_set(frame, param, &value, 1), KRS_OK);
     assert_int_equal(krs_probe(frame, (const double(*)[3])points, (size_t)count, hits), KRS_OK);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 

@@ -23,7 +23,7 @@ enum { POINTS = 240, RAYS = POINTS / 2, SEED = 11, LEAST = 16 };
 
 typedef struct Asked {
     KrsScene *scene;
-    KrsFrame *frame;
+    KrsState *frame;
     double    distances[POINTS];
     KrsHit    hits[POINTS], rays[RAYS];
 } Asked;
@@ -50,13 +50,13 @@ static void open_scene(Asked *asked, const InstanceText *scene, bool apart)
     if (status != KRS_OK)
         fail_msg("%s does not compile:\n%s", scene->name, text);
     free(text);
-    assert_int_equal(krs_frame_new(asked->scene, &asked->frame), KRS_OK);
+    assert_int_equal(krs_state_new(asked->scene, &asked->frame), KRS_OK);
     assert_true((asked->scene->program.table_count == 0) == apart);
 }
 
 static void close_scene(Asked *asked)
 {
-    krs_frame_free(asked->frame);
+    krs_state_free(asked->frame);
     krs_scene_free(asked->scene);
 }
 

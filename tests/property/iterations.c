@@ -135,7 +135,7 @@ static const Loop by_iterations[] = {
 
 typedef struct Asked {
     KrsScene *scene;
-    KrsFrame *frame;
+    KrsState *frame;
     double    distances[POINTS];
     KrsHit    hits[POINTS];
 } Asked;
@@ -156,12 +156,12 @@ static void open_loop(Asked *asked, const Loop *loop, int seed, KrsSpecialize sp
                            : compile_with_instances(text, length, LEAST, &options, &asked->scene);
     if (status != KRS_OK)
         fail_msg("%s does not compile:\n%s", loop->name, text);
-    assert_int_equal(krs_frame_new(asked->scene, &asked->frame), KRS_OK);
+    assert_int_equal(krs_state_new(asked->scene, &asked->frame), KRS_OK);
 }
 
 static void close_loop(Asked *asked)
 {
-    krs_frame_free(asked->frame);
+    krs_state_free(asked->frame);
     krs_scene_free(asked->scene);
 }
 

@@ -31,7 +31,7 @@ static Random randomness = {SEED};
 typedef struct Subject {
     Memory      memory;
     Arena       arena;
-    KrsFrame   *frame;
+    KrsState   *frame;
     const Tape *tape;
     Node        roots[ROOT_COUNT];
     size_t      count;
@@ -121,7 +121,7 @@ static KrsScene *open_scene(Subject *s, const char *name, const char *text)
         compile_with_instances(text, strlen(text), LEAST, NULL, &scene) != KRS_OK)
         fail_msg("%s does not compile", name);
     assert_true(scene->program.table_count > 0);
-    assert_int_equal(krs_frame_new(scene, &s->frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &s->frame), KRS_OK);
     frame_refresh(s->frame);
     return scene;
 }
@@ -129,7 +129,7 @@ static KrsScene *open_scene(Subject *s, const char *name, const char *text)
 static void close_scene(Subject *s, KrsScene *scene)
 {
     arena_free(&s->arena);
-    krs_frame_free(s->frame);
+    krs_state_free(s->frame);
     krs_scene_free(scene);
 }
 

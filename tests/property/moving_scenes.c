@@ -29,18 +29,18 @@ static const char scene_text[] =
     ".scale(0.5 + 0.1 * gap).move(place(i)).paint(#808080) for i in 0..400]);"
     "show union([sphere(0.4).move([i - 100, gap, 3 * sin(beat)]) for i in 0..200], blend: 0.1);";
 
-static KrsFrame *frame_of(const char *declared, KrsScene **scene)
+static KrsState *frame_of(const char *declared, KrsScene **scene)
 {
     char      text[1024];
-    KrsFrame *frame;
+    KrsState *frame;
     snprintf(text, sizeof text, scene_text, declared);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
-    assert_int_equal(krs_frame_new(*scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(*scene, &frame), KRS_OK);
     return frame;
 }
 
 /* Whether answers in a frame are those of a scene in which its numbers are known. */
-static void assert_same_answers(KrsFrame *frame, KrsFrame *known)
+static void assert_same_answers(KrsState *frame, KrsState *known)
 {
     double points[POINTS][3], is[POINTS], wanted[POINTS], bounds[POINTS];
     for (int i = 0; i < POINTS; i++)
@@ -62,22 +62,22 @@ static void frames_are_scenes(void **state)
 {
     (void)state;
     KrsScene *scene, *other;
-    KrsFrame *frame = frame_of(
+    KrsState *frame = frame_of(
         "param gap = 1 in [0.5, 3]; param turn = 1 in [0, 6]; let beat = time;", &scene);
     for (int i = 0; i < 4; i++) {
         double gap = between(0.5, 3), turn = between(0, 6), beat = between(-9, 9);
         char   declared[128];
         snprintf(declared, sizeof declared, "let gap = %.17g; let turn = %.17g; let beat = %.17g;",
                  gap, turn, beat);
-        KrsFrame *known = frame_of(declared, &other);
-        assert_int_equal(krs_frame_set(frame, "gap", &gap, 1), KRS_OK);
-        assert_int_equal(krs_frame_set(frame, "turn", &turn, 1), KRS_OK);
-        assert_int_equal(krs_frame_set_time(frame, beat), KRS_OK);
+        KrsState *known = frame_of(declared, &other);
+        assert_int_equal(krs_state_set(frame, "gap", &gap, 1), KRS_OK);
+        assert_int_equal(krs_state_set(frame, "turn", &turn, 1), KRS_OK);
+        assert_int_equal(krs_state_set_time(frame, beat), KRS_OK);
         assert_same_answers(frame, known);
-        krs_frame_free(known);
+        krs_state_free(known);
         krs_scene_free(other);
     }
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 

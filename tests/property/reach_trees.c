@@ -134,7 +134,7 @@ static void trees_shrink_to_their_crowns(void **state)
 
 /* Goes from one point to another until it is inside of a solid; false when it never is.  Nothing
    solid may be met outside of the box. */
-static bool walk(KrsFrame *frame, Box box, const double from[3], const double to[3], double p[3])
+static bool walk(KrsState *frame, Box box, const double from[3], const double to[3], double p[3])
 {
     double offset[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, distance, t = 0;
     double length = sqrt(dot3(offset, offset));
@@ -162,7 +162,7 @@ static void random_outside(Random *random, Box box, double far, double p[3])
 }
 
 /* What 2,000 walks from around a box into it meet. */
-static Box seen_of_scene(KrsFrame *frame, Box box)
+static Box seen_of_scene(KrsState *frame, Box box)
 {
     Box    seen   = box_empty;
     Random random = {3};
@@ -183,10 +183,10 @@ static void nothing_solid_is_outside_of_reported_bounds(void **state)
 {
     (void)state;
     KrsScene    *scene;
-    KrsFrame    *frame;
+    KrsState    *frame;
     KrsComponent tree;
     assert_int_equal(krs_compile_file("bench/scenes/tree28.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_component_count(scene), 1);
     assert_int_equal(krs_component(scene, 0, &tree), KRS_OK);
     Box box = {
@@ -203,7 +203,7 @@ static void nothing_solid_is_outside_of_reported_bounds(void **state)
         assert_true(box.axis[i].high - seen.axis[i].high < 0.05 * diagonal(box));
         assert_true(seen.axis[i].low - box.axis[i].low < 0.05 * diagonal(box));
     }
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 

@@ -47,14 +47,14 @@ bool same_shaders(const KrsScene *a, const KrsScene *b)
 }
 
 /* The numbers of parts that are alike, and which of them are near a point. */
-static void assert_same_tables(const KrsFrame *a, const KrsFrame *b, size_t rows, size_t cells)
+static void assert_same_tables(const KrsState *a, const KrsState *b, size_t rows, size_t cells)
 {
     float(*x)[4] = calloc(rows + 1, sizeof *x), (*y)[4] = calloc(rows + 1, sizeof *y);
     uint32_t(*near)[2] = calloc(cells + 1, sizeof *near),
     (*same)[2]         = calloc(cells + 1, sizeof *same);
     assert_true(x && y && near && same);
-    krs_frame_tables(a, x, near);
-    krs_frame_tables(b, y, same);
+    krs_state_tables(a, x, near);
+    krs_state_tables(b, y, same);
     assert_memory_equal(x, y, (rows + 1) * sizeof *x);
     assert_memory_equal(near, same, (cells + 1) * sizeof *near);
     free(x);
@@ -65,10 +65,10 @@ static void assert_same_tables(const KrsFrame *a, const KrsFrame *b, size_t rows
 
 void assert_same_distances(const KrsScene *a, const KrsScene *b)
 {
-    KrsFrame *first, *second;
+    KrsState *first, *second;
     Random    random = {7};
-    assert_int_equal(krs_frame_new(a, &first), KRS_OK);
-    assert_int_equal(krs_frame_new(b, &second), KRS_OK);
+    assert_int_equal(krs_state_new(a, &first), KRS_OK);
+    assert_int_equal(krs_state_new(b, &second), KRS_OK);
     for (int i = 0; i < 200; i++) {
         double point[1][3], near[1], same[1];
         random_vector(&random, 4, point[0]);
@@ -76,25 +76,25 @@ void assert_same_distances(const KrsScene *a, const KrsScene *b)
         assert_int_equal(krs_distance(second, (const double(*)[3])point, 1, same), KRS_OK);
         assert_true(near[0] == same[0]);
     }
-    krs_frame_free(first);
-    krs_frame_free(second);
+    krs_state_free(first);
+    krs_state_free(second);
 }
 
 void assert_same_scene(const KrsScene *a, const KrsScene *b)
 {
-    KrsFrame *first, *second;
+    KrsState *first, *second;
     KrsCamera x, y;
     assert_same_distances(a, b);
     assert_true(same_shaders(a, b));
     assert_int_equal(krs_table_rows(a), krs_table_rows(b));
     assert_int_equal(krs_table_cells(a), krs_table_cells(b));
     assert_int_equal(krs_value_slots(a), krs_value_slots(b));
-    assert_int_equal(krs_frame_new(a, &first), KRS_OK);
-    assert_int_equal(krs_frame_new(b, &second), KRS_OK);
-    assert_int_equal(krs_frame_camera(first, 0, &x), KRS_OK);
-    assert_int_equal(krs_frame_camera(second, 0, &y), KRS_OK);
+    assert_int_equal(krs_state_new(a, &first), KRS_OK);
+    assert_int_equal(krs_state_new(b, &second), KRS_OK);
+    assert_int_equal(krs_state_camera(first, 0, &x), KRS_OK);
+    assert_int_equal(krs_state_camera(second, 0, &y), KRS_OK);
     assert_memory_equal(x.eye, y.eye, sizeof x.eye);
     assert_same_tables(first, second, krs_table_rows(a), krs_table_cells(a));
-    krs_frame_free(first);
-    krs_frame_free(second);
+    krs_state_free(first);
+    krs_state_free(second);
 }

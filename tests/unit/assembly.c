@@ -17,7 +17,7 @@
 
 typedef struct Taken {
     KrsScene    *scene;
-    KrsFrame    *frame;
+    KrsState    *frame;
     KrsAssembly *assembly;
 } Taken;
 
@@ -27,7 +27,7 @@ static Taken take(const char *text, double error)
     KrsOptions     options = {.assembly = true};
     KrsMeshOptions how     = {.error = error};
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &t.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(t.scene, &t.frame), KRS_OK);
+    assert_int_equal(krs_state_new(t.scene, &t.frame), KRS_OK);
     assert_int_equal(krs_assemble(t.frame, &how, &t.assembly), KRS_OK);
     return t;
 }
@@ -35,7 +35,7 @@ static Taken take(const char *text, double error)
 static void leave(Taken t)
 {
     krs_assembly_free(t.assembly);
-    krs_frame_free(t.frame);
+    krs_state_free(t.frame);
     krs_scene_free(t.scene);
 }
 
@@ -48,7 +48,7 @@ static double determinant(const double m[3][4])
 
 /* What visits find. */
 typedef struct Found {
-    KrsFrame      *frame;
+    KrsState      *frame;
     double         volume, farthest; /* of a vertex from the surface */
     size_t         copies, reflections;
     const KrsMesh *last; /* mesh, and its volume */
@@ -177,11 +177,11 @@ static void each_frame_is_asked(void **context)
     double         at  = -0.3;
     assert_non_null(t.assembly);
     krs_assembly_free(t.assembly);
-    assert_int_equal(krs_frame_set(t.frame, "at", &at, 1), KRS_OK);
+    assert_int_equal(krs_state_set(t.frame, "at", &at, 1), KRS_OK);
     assert_int_equal(krs_assemble(t.frame, &how, &t.assembly), KRS_OK);
     assert_null(t.assembly);
     at = 0.3;
-    assert_int_equal(krs_frame_set(t.frame, "at", &at, 1), KRS_OK);
+    assert_int_equal(krs_state_set(t.frame, "at", &at, 1), KRS_OK);
     assert_int_equal(krs_assemble(t.frame, &how, &t.assembly), KRS_OK);
     assert_non_null(t.assembly);
     assert_true(fabs(t.assembly->low[0] + 1.7) <= 0.1);

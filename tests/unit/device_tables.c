@@ -1,5 +1,5 @@
 /*
- * device_tables.c: the tables of a scene are on the device, word for word as krs_frame_tables gives
+ * device_tables.c: the tables of a scene are on the device, word for word as krs_state_tables gives
  * them for the frame, when a picture or a query has begun.  They are texels, or storage buffers where
  * the device reads too few texels; a device that has no room for them says so.  All of it under the
  * validation layers.
@@ -36,7 +36,7 @@ static void note_validation_message(void *user, const char *message)
 typedef struct Fixture {
     KrsRenderer *renderer;
     KrsScene    *scene;
-    KrsFrame    *frame;
+    KrsState    *frame;
     Instances   *instances;
 } Fixture;
 
@@ -85,7 +85,7 @@ static Fixture open_scene(const char *text, unsigned emulation)
         fail_msg("%s", krs_renderer_message(fixture.renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene),
                      KRS_OK);
-    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
     return fixture;
 }
 
@@ -100,7 +100,7 @@ static void close_fixture(Fixture *fixture)
 {
     if (krs_renderer_complaints(fixture->renderer) != 0)
         fail_msg("the validation layers complain: %s", validation_message);
-    krs_frame_free(fixture->frame);
+    krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
     krs_renderer_free(fixture->renderer);
 }
@@ -126,7 +126,7 @@ static bool device_has_tables(const Fixture *fixture, const KrsRendering *render
     size_t rows = krs_table_rows(fixture->scene), cells = krs_table_cells(fixture->scene);
     float(*wanted_rows)[4]     = calloc(rows, sizeof *wanted_rows);
     uint32_t(*wanted_cells)[2] = calloc(cells, sizeof *wanted_cells);
-    krs_frame_tables_in_use(fixture->frame, NULL, wanted_rows, wanted_cells, &rows, &cells);
+    krs_state_tables_in_use(fixture->frame, NULL, wanted_rows, wanted_cells, &rows, &cells);
     bool same = device_has(gpu, &rendering->table_rows, wanted_rows, rows * sizeof *wanted_rows) &&
                 device_has(gpu, &rendering->table_cells, wanted_cells,
                            cells * sizeof *wanted_cells);
@@ -217,8 +217,8 @@ static void rows_are_those_of_the_frame(Bench *bench, unsigned emulation)
     assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         bool same = i > 0 && frames[i][0] == frames[i - 1][0] && frames[i][1] == frames[i - 1][1];
-        assert_int_equal(krs_frame_set_time(fixture.frame, frames[i][0]), KRS_OK);
-        assert_int_equal(krs_frame_set(fixture.frame, "height", &frames[i][1], 1), KRS_OK);
+        assert_int_equal(krs_state_set_time(fixture.frame, frames[i][0]), KRS_OK);
+        assert_int_equal(krs_state_set(fixture.frame, "height", &frames[i][1], 1), KRS_OK);
         assert_true(i == 0 || device_has_tables(&fixture, rendering) == same);
         assert_frame_is_seen(bench, &fixture, rendering, frames[i][0], frames[i][1]);
     }
@@ -256,7 +256,7 @@ static void pictures_are_those_of_the_frame(void **state)
         Fixture     other = open_scene(text, 0);
         KrsPicture *pictures[2];
         assert_false(other.scene->program.rows_vary);
-        assert_int_equal(krs_frame_set_time(fixture.frame, times[i]), KRS_OK);
+        assert_int_equal(krs_state_set_time(fixture.frame, times[i]), KRS_OK);
         assert_int_equal(krs_render(rendering, fixture.frame, &options, &pictures[0]), KRS_OK);
         KrsRendering *of_other;
         assert_int_equal(krs_rendering_new(other.renderer, other.scene, &of_other), KRS_OK);

@@ -33,7 +33,7 @@ static void note_validation_message(void *user, const char *message)
 typedef struct Fixture {
     KrsRenderer  *renderer;
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
 } Fixture;
 
@@ -50,7 +50,7 @@ static Fixture open_fixture(const char *text, unsigned emulation)
         fail_msg("%s", krs_renderer_message(fixture.renderer));
     if (krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene) != KRS_OK)
         fail_msg("does not compile: %s", text);
-    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
     assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &fixture.rendering),
                      KRS_OK);
     return fixture;
@@ -61,7 +61,7 @@ static void close_fixture(Fixture *fixture)
     if (krs_renderer_complaints(fixture->renderer) != 0)
         fail_msg("the validation layers complain: %s", validation_message);
     krs_rendering_free(fixture->rendering);
-    krs_frame_free(fixture->frame);
+    krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
     krs_renderer_free(fixture->renderer);
 }

@@ -45,7 +45,7 @@ static const KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samp
 /* A scene on the device, with what a viewer has of it. */
 typedef struct Viewer {
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     KrsFilm      *film;
 } Viewer;
@@ -61,7 +61,7 @@ static Viewer open_viewer(const char *text)
     const KrsOptions how = {.specialize = KRS_SPECIALIZE_STRUCTURE};
     Viewer           viewer;
     check(krs_compile_text(text, strlen(text), "edited.krs", &how, &viewer.scene));
-    check(krs_frame_new(viewer.scene, &viewer.frame));
+    check(krs_state_new(viewer.scene, &viewer.frame));
     check(krs_rendering_new(renderer, viewer.scene, &viewer.rendering));
     check(krs_film_new(viewer.rendering, &options, &viewer.film));
     return viewer;
@@ -71,7 +71,7 @@ static void close_viewer(Viewer *viewer)
 {
     krs_film_free(viewer->film);
     krs_rendering_free(viewer->rendering);
-    krs_frame_free(viewer->frame);
+    krs_state_free(viewer->frame);
     krs_scene_free(viewer->scene);
 }
 
@@ -81,7 +81,7 @@ static KrsChange edit(Viewer *viewer, const char *text)
     KrsChanges changes;
     check(krs_scene_update(viewer->scene, text, strlen(text), &updated, &changes));
     check(krs_rendering_update(viewer->rendering, updated));
-    check(krs_frame_update(viewer->frame, updated));
+    check(krs_state_update(viewer->frame, updated));
     krs_scene_free(viewer->scene);
     viewer->scene = updated;
     return changes.kind;
@@ -219,13 +219,13 @@ static void rays_and_zones_follow(void **state)
 {
     (void)state;
     Viewer viewer = open_viewer(before);
-    check(krs_frame_set_zones(viewer.frame, (const double[][4]){{0, 1, 0, 0.75}}, 1));
+    check(krs_state_set_zones(viewer.frame, (const double[][4]){{0, 1, 0, 0.75}}, 1));
     KrsPicture *picture = render(&viewer);
     krs_picture_free(picture);
     assert_int_equal(edit(&viewer, numbers), KRS_CHANGE_VALUES);
     picture = render(&viewer);
     assert_shaders_stay(&viewer);
-    check(krs_frame_set_zones(viewer.frame, NULL, 0));
+    check(krs_state_set_zones(viewer.frame, NULL, 0));
     KrsPicture *whole = render(&viewer);
     assert_false(are_equal(picture, whole));
     assert_int_equal(edit(&viewer, panorama), KRS_CHANGE_STRUCTURE);

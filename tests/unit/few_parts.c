@@ -60,12 +60,12 @@ static void answers_are_those_of_parts_apart(void **state)
             points[i][k] = random_between(&random, -2, k == 0 ? 26 : 3);
     for (int pictures = 0; pictures < 2; pictures++) {
         KrsScene *scene = compile(PARTS(8) ");", pictures);
-        KrsFrame *frame = NULL;
-        assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+        KrsState *frame = NULL;
+        assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
         assert_int_equal(
             krs_probe(frame, (const double(*)[3])points, COUNT, pictures ? together : apart),
             KRS_OK);
-        krs_frame_free(frame);
+        krs_state_free(frame);
         krs_scene_free(scene);
     }
     for (int i = 0; i < COUNT; i++) {

@@ -202,7 +202,7 @@ static void frames_may_differ(void **state)
     KrsFilm               *film       = new_film(fixture, &options), *alone[2];
     KrsPicture            *seen[2];
     for (int n = 0; n < 2; n++) {
-        assert_int_equal(krs_frame_set(fixture->frame, "height", &heights[n], 1), KRS_OK);
+        assert_int_equal(krs_state_set(fixture->frame, "height", &heights[n], 1), KRS_OK);
         alone[n] = new_film(fixture, &options);
         add(fixture, alone[n], NULL, 1);
         seen[n] = read_film(fixture, alone[n]);
@@ -225,7 +225,7 @@ static void frames_may_differ(void **state)
     }
     krs_picture_free(blurred);
     krs_film_free(film);
-    assert_int_equal(krs_frame_set(fixture->frame, "height", &heights[0], 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->frame, "height", &heights[0], 1), KRS_OK);
 }
 
 /* A camera that the caller gives is as good as one of the scene. */
@@ -236,14 +236,14 @@ static void cameras_are_the_callers(void **state)
     KrsFilm         *film    = new_film(fixture, &options);
     KrsCamera        camera;
     for (size_t i = 0; i < krs_camera_count(fixture->scene); i++) {
-        assert_int_equal(krs_frame_camera(fixture->frame, i, &camera), KRS_OK);
+        assert_int_equal(krs_state_camera(fixture->frame, i, &camera), KRS_OK);
         krs_film_clear(film);
         add(fixture, film, &camera, 1);
         options.camera = i;
         assert_same(read_film(fixture, film), fixture_render(fixture, options));
     }
     assert_int_equal(krs_camera_count(fixture->scene), 3);
-    assert_int_equal(krs_frame_camera(fixture->frame, 3, &camera), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_camera(fixture->frame, 3, &camera), KRS_BAD_ARGUMENT);
 
     /* Another scene says what the caller says here; it is compiled without a panorama. */
     static const char text[]  = "camera { eye: [0.5, 0.75, 4], target: [0, 0.5, 0],"

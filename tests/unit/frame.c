@@ -14,21 +14,21 @@
 #include "compiler/base/vec.h"
 #include "compiler/passes/compile.h"
 
-static KrsFrame *open_scene(const char *text, KrsScene **scene)
+static KrsState *open_scene(const char *text, KrsScene **scene)
 {
-    KrsFrame *frame;
+    KrsState *frame;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
-    assert_int_equal(krs_frame_new(*scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(*scene, &frame), KRS_OK);
     return frame;
 }
 
-static void close_scene(KrsFrame *frame, KrsScene *scene)
+static void close_scene(KrsState *frame, KrsScene *scene)
 {
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 
-static double distance_at(KrsFrame *frame, double x, double y, double z)
+static double distance_at(KrsState *frame, double x, double y, double z)
 {
     double point[1][3] = {{x, y, z}}, distance;
     krs_distance(frame, (const double(*)[3])point, 1, &distance);
@@ -40,7 +40,7 @@ static void parameters_move_the_scene(void **state)
     (void)state;
     KrsScene    *scene;
     KrsParameter parameter;
-    KrsFrame    *frame = open_scene("param r = 1 in [0.5, 2]; param at = [1, 0, 0];"
+    KrsState    *frame = open_scene("param r = 1 in [0.5, 2]; param at = [1, 0, 0];"
                                        "show sphere(r).move(at + [0, time, 0]);",
                                     &scene);
     assert_int_equal(krs_parameter_count(scene), 2);
@@ -50,19 +50,19 @@ static void parameters_move_the_scene(void **state)
     assert_int_equal(krs_parameter(scene, 2, &parameter), KRS_BAD_ARGUMENT);
 
     assert_true(fabs(distance_at(frame, 4, 0, 0) - 2) < 1e-12);
-    assert_int_equal(krs_frame_set(frame, "r", (double[]){2}, 1), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "r", (double[]){2}, 1), KRS_OK);
     assert_true(fabs(distance_at(frame, 4, 0, 0) - 1) < 1e-12);
-    assert_int_equal(krs_frame_set(frame, "at", (double[]){0, 0, 0}, 3), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "at", (double[]){0, 0, 0}, 3), KRS_OK);
     assert_true(fabs(distance_at(frame, 4, 0, 0) - 2) < 1e-12);
-    assert_int_equal(krs_frame_set_time(frame, 3), KRS_OK);
+    assert_int_equal(krs_state_set_time(frame, 3), KRS_OK);
     assert_true(fabs(distance_at(frame, 4, 0, 0) - 3) < 1e-12);
 
     /* What is refused changes nothing. */
-    assert_int_equal(krs_frame_set(frame, "r", (double[]){2.5}, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set(frame, "r", (double[]){NAN}, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set(frame, "r", (double[]){1, 1}, 2), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set(frame, "q", (double[]){1}, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set_time(frame, INFINITY), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(frame, "r", (double[]){2.5}, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(frame, "r", (double[]){NAN}, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(frame, "r", (double[]){1, 1}, 2), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(frame, "q", (double[]){1}, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set_time(frame, INFINITY), KRS_BAD_ARGUMENT);
     assert_true(fabs(distance_at(frame, 4, 0, 0) - 3) < 1e-12);
     close_scene(frame, scene);
 }
@@ -77,8 +77,8 @@ static double chosen_at(const char *index, double k)
              "let i = %s; show sphere(radii[i]).move(at[i] + [0, 0, [7, 8, 9][clamp(i, 0, 2)]]);",
              index);
     KrsScene *scene;
-    KrsFrame *frame = open_scene(text, &scene);
-    assert_int_equal(krs_frame_set(frame, "k", (double[]){k}, 1), KRS_OK);
+    KrsState *frame = open_scene(text, &scene);
+    assert_int_equal(krs_state_set(frame, "k", (double[]){k}, 1), KRS_OK);
     const double distance = distance_at(frame, 0.3, -0.4, 0.2);
     close_scene(frame, scene);
     return distance;
@@ -117,8 +117,8 @@ static void an_index_may_come_near_to_the_length(void **state)
                  "param k = 0 in [0, %s]; show sphere([j for j in 1..%d][floor(%d * k)]);", most,
                  n + 1, n);
         KrsScene *scene;
-        KrsFrame *frame = open_scene(text, &scene);
-        assert_int_equal(krs_frame_set(frame, "k", (double[]){nextafter(1, 0)}, 1), KRS_OK);
+        KrsState *frame = open_scene(text, &scene);
+        assert_int_equal(krs_state_set(frame, "k", (double[]){nextafter(1, 0)}, 1), KRS_OK);
         assert_true(fabs(distance_at(frame, 20, 0, 0) - (20 - n)) < 1e-12);
         close_scene(frame, scene);
     }
@@ -128,16 +128,16 @@ static void frames_that_are_not_finite_are_refused(void **state)
 {
     (void)state;
     KrsScene *scene;
-    KrsFrame *frame = open_scene("param a = 0.5 in [-1, 1]; show sphere(2 + sqrt(a));", &scene);
-    assert_int_equal(krs_frame_set(frame, "a", (double[]){-1}, 1), KRS_BAD_ARGUMENT);
+    KrsState *frame = open_scene("param a = 0.5 in [-1, 1]; show sphere(2 + sqrt(a));", &scene);
+    assert_int_equal(krs_state_set(frame, "a", (double[]){-1}, 1), KRS_BAD_ARGUMENT);
     assert_true(fabs(distance_at(frame, 4, 0, 0) - (2 - sqrt(0.5))) < 1e-12);
-    assert_int_equal(krs_frame_set(frame, "a", (double[]){1}, 1), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "a", (double[]){1}, 1), KRS_OK);
     close_scene(frame, scene);
 
     /* A root that is chosen against does no harm. */
     frame = open_scene("param a = 0.5 in [-1, 1]; show sphere(if a < 0 then 1 else 1 + sqrt(a));",
                        &scene);
-    assert_int_equal(krs_frame_set(frame, "a", (double[]){-1}, 1), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "a", (double[]){-1}, 1), KRS_OK);
     assert_true(fabs(distance_at(frame, 4, 0, 0) - 3) < 1e-12);
     close_scene(frame, scene);
 }
@@ -157,24 +157,24 @@ static void values_of_frames_are_found(void **state)
     (void)state;
     KrsScene *scene;
     float     block[4][4];
-    KrsFrame *frame = open_scene("param a = 0.3 in [0, 2]; param on = 1 in [0, 1];\n"
+    KrsState *frame = open_scene("param a = 0.3 in [0, 2]; param on = 1 in [0, 1];\n"
                                  "show sphere(1.5 + sin(a)).move([0 * a, cos(a + time), a]);\n"
                                  "show sphere(if on > 0.5 then exp(a) else 7).move([9, 0, 0]);",
                                  &scene);
     assert_in_range(krs_value_slots(scene), 1, 4);
     for (double a = 0.3; a < 2; a += 0.7) {
-        assert_int_equal(krs_frame_set(frame, "a", &a, 1), KRS_OK);
-        assert_int_equal(krs_frame_set_time(frame, 3 * a), KRS_OK);
-        krs_frame_values(frame, block);
+        assert_int_equal(krs_state_set(frame, "a", &a, 1), KRS_OK);
+        assert_int_equal(krs_state_set_time(frame, 3 * a), KRS_OK);
+        krs_state_values(frame, block);
         size_t count = 4 * krs_value_slots(scene);
         assert_true(holds_number(block[0], count, 1.5 + sin(a)));
         assert_true(holds_number(block[0], count, cos(4 * a)));
         assert_true(holds_number(block[0], count, exp(a)));
         assert_false(holds_number(block[0], count, a));
-        assert_int_equal(krs_frame_set(frame, "on", (double[]){a < 1}, 1), KRS_OK);
-        krs_frame_values(frame, block);
+        assert_int_equal(krs_state_set(frame, "on", (double[]){a < 1}, 1), KRS_OK);
+        krs_state_values(frame, block);
         assert_true(holds_number(block[0], count, a < 1 ? exp(a) : 7));
-        assert_int_equal(krs_frame_set(frame, "on", (double[]){1}, 1), KRS_OK);
+        assert_int_equal(krs_state_set(frame, "on", (double[]){1}, 1), KRS_OK);
     }
     close_scene(frame, scene);
 
@@ -188,35 +188,35 @@ static void frames_without_a_slope_are_refused(void **state)
 {
     (void)state;
     KrsScene     *scene;
-    KrsFrameSlope slope;
+    KrsStateSlope slope;
     float         before[4][4], after[4][4];
-    KrsFrame     *frame = open_scene("param k = 1;\nlet f = field(y - sin(k * x / (time - 2)));\n"
+    KrsState     *frame = open_scene("param k = 1;\nlet f = field(y - sin(k * x / (time - 2)));\n"
                                          "show f; show f.move([0, 5, 0]);",
                                      &scene);
-    assert_int_equal(krs_frame_slope_count(scene), 1); /* one expression */
-    assert_int_equal(krs_frame_slope(scene, 0, &slope), KRS_OK);
-    assert_int_equal(krs_frame_slope(scene, 1, &slope), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_slope_count(scene), 1); /* one expression */
+    assert_int_equal(krs_state_slope(scene, 0, &slope), KRS_OK);
+    assert_int_equal(krs_state_slope(scene, 1, &slope), KRS_BAD_ARGUMENT);
     assert_string_equal(slope.place, "scene.krs:2:9");
     assert_true(slope.low[0] == -INFINITY && slope.high[2] == INFINITY);
     assert_int_equal(krs_parameter_slots(scene), 3);
     assert_int_equal(slope.slot, 2);
 
-    assert_int_equal(krs_frame_set_time(frame, 1), KRS_OK);
-    krs_frame_parameters(frame, before);
+    assert_int_equal(krs_state_set_time(frame, 1), KRS_OK);
+    krs_state_parameters(frame, before);
     assert_true(before[2][0] > 1.41421f && before[2][0] < 1.4143f);
     double distance = distance_at(frame, 3, 2, 1);
-    assert_int_equal(krs_frame_set_time(frame, 2), KRS_BAD_ARGUMENT);
-    assert_string_equal(krs_frame_unbounded(frame), "scene.krs:2:9");
-    krs_frame_parameters(frame, after);
+    assert_int_equal(krs_state_set_time(frame, 2), KRS_BAD_ARGUMENT);
+    assert_string_equal(krs_state_unbounded(frame), "scene.krs:2:9");
+    krs_state_parameters(frame, after);
     assert_memory_equal(before, after, 3 * sizeof *before);
     assert_true(distance_at(frame, 3, 2, 1) == distance);
-    assert_int_equal(krs_frame_set_time(frame, INFINITY), KRS_BAD_ARGUMENT);
-    assert_null(krs_frame_unbounded(frame));
-    assert_int_equal(krs_frame_set(frame, "k", (double[]){1e38}, 1), KRS_BAD_ARGUMENT);
-    assert_non_null(krs_frame_unbounded(frame));
-    assert_int_equal(krs_frame_set(frame, "k", (double[]){10}, 1), KRS_OK);
-    assert_null(krs_frame_unbounded(frame));
-    krs_frame_parameters(frame, after);
+    assert_int_equal(krs_state_set_time(frame, INFINITY), KRS_BAD_ARGUMENT);
+    assert_null(krs_state_unbounded(frame));
+    assert_int_equal(krs_state_set(frame, "k", (double[]){1e38}, 1), KRS_BAD_ARGUMENT);
+    assert_non_null(krs_state_unbounded(frame));
+    assert_int_equal(krs_state_set(frame, "k", (double[]){10}, 1), KRS_OK);
+    assert_null(krs_state_unbounded(frame));
+    krs_state_parameters(frame, after);
     assert_true(after[2][0] > 10);
     close_scene(frame, scene);
 }
@@ -226,9 +226,9 @@ static void nothing_over_nothing_has_no_slope(void **state)
 {
     (void)state;
     KrsScene *scene;
-    KrsFrame *frame = open_scene("param k = 1; show field(y + sin(x * time / k));", &scene);
-    assert_int_equal(krs_frame_set(frame, "k", (double[]){0}, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set(frame, "k", (double[]){0.5}, 1), KRS_OK);
+    KrsState *frame = open_scene("param k = 1; show field(y + sin(x * time / k));", &scene);
+    assert_int_equal(krs_state_set(frame, "k", (double[]){0}, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(frame, "k", (double[]){0.5}, 1), KRS_OK);
     close_scene(frame, scene);
 }
 
@@ -237,16 +237,16 @@ static void a_cut_field_has_one_slope(void **state)
 {
     (void)state;
     KrsScene     *scene;
-    KrsFrameSlope slope;
-    KrsFrame *frame = open_scene("show field(y - sin(x * time)).within(box([2, 2, 2]));", &scene);
-    assert_int_equal(krs_frame_slope_count(scene), 1);
-    assert_int_equal(krs_frame_slope(scene, 0, &slope), KRS_OK);
+    KrsStateSlope slope;
+    KrsState *frame = open_scene("show field(y - sin(x * time)).within(box([2, 2, 2]));", &scene);
+    assert_int_equal(krs_state_slope_count(scene), 1);
+    assert_int_equal(krs_state_slope(scene, 0, &slope), KRS_OK);
     assert_true(slope.low[0] == -1 && slope.high[2] == 1);
     close_scene(frame, scene);
 
     /* A parameter with a range needs none. */
     frame = open_scene("param k = 1 in [0, 9]; show field(y - sin(x * k));", &scene);
-    assert_int_equal(krs_frame_slope_count(scene), 0);
+    assert_int_equal(krs_state_slope_count(scene), 0);
     close_scene(frame, scene);
 }
 
@@ -256,15 +256,15 @@ static void far_steeper_ranges_have_slopes_of_frames(void **state)
     (void)state;
     static const double values[] = {1, 0.5, 300, 900, 0};
     KrsScene           *scene;
-    KrsFrameSlope       slope;
+    KrsStateSlope       slope;
     float               block[4][4];
-    KrsFrame *frame = open_scene("param k = 1 in [0, 900]; show field(y - sin(x * k));", &scene);
-    assert_int_equal(krs_frame_slope_count(scene), 1);
-    assert_int_equal(krs_frame_slope(scene, 0, &slope), KRS_OK);
+    KrsState *frame = open_scene("param k = 1 in [0, 900]; show field(y - sin(x * k));", &scene);
+    assert_int_equal(krs_state_slope_count(scene), 1);
+    assert_int_equal(krs_state_slope(scene, 0, &slope), KRS_OK);
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         const double steepest = hypot(1, values[i]);
-        assert_int_equal(krs_frame_set(frame, "k", &values[i], 1), KRS_OK);
-        krs_frame_parameters(frame, block);
+        assert_int_equal(krs_state_set(frame, "k", &values[i], 1), KRS_OK);
+        krs_state_parameters(frame, block);
         assert_true((double)block[slope.slot][0] >= steepest);
         assert_true((double)block[slope.slot][0] <= 1.00001 * steepest);
         assert_true(fabs(distance_at(frame, 0, 3, 0)) <= 3 / steepest);
@@ -273,13 +273,13 @@ static void far_steeper_ranges_have_slopes_of_frames(void **state)
 
     /* Not where the first frame is as steep, nor where cells without end have no slope in common. */
     frame = open_scene("param k = 1 in [0, 900]; show field(y + 90 * x - sin(x * k));", &scene);
-    assert_int_equal(krs_frame_slope_count(scene), 0);
+    assert_int_equal(krs_state_slope_count(scene), 0);
     close_scene(frame, scene);
     frame = open_scene("param k = 1 in [0, 900];\n"
                        "def wave(cell) = field(y - 0.1 * sin(k * random(cell) * x))"
                        ".within(box([0.5, 0.5, 0.5]));\nshow wave.repeat([1, 0, 1]);",
                        &scene);
-    assert_int_equal(krs_frame_slope_count(scene), 0);
+    assert_int_equal(krs_state_slope_count(scene), 0);
     close_scene(frame, scene);
 }
 
@@ -302,15 +302,15 @@ static void a_missing_camera_frames_the_scene(void **state)
     /* The box of a sequence with a moving mirror is far larger than what is there. */
     KrsScene *scene;
     KrsView   view;
-    KrsFrame *frame = open_scene("param w = 1 in [1, 50]; show plane([0, 1, 0], -1);"
+    KrsState *frame = open_scene("param w = 1 in [1, 50]; show plane([0, 1, 0], -1);"
                                  "show krs { kernel sphere(0.5); reflect plane([1, 0, 0], w); };",
                                  &scene);
-    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
     double half = 0.5 * view.camera.fov;
     double left = angle_to(&view.camera, -0.5, 0, 0), right = angle_to(&view.camera, 2.5, 0, 0);
     assert_true(left < half && right < half);
     assert_true(left > 0.3 * half && right > 0.3 * half);
-    assert_int_equal(krs_frame_view(frame, 1, &view), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_view(frame, 1, &view), KRS_BAD_ARGUMENT);
     close_scene(frame, scene);
 }
 
@@ -335,9 +335,9 @@ static double box_fills(const char *text, const double size[3], bool upwards, do
 {
     KrsScene *scene;
     KrsView   view;
-    KrsFrame *frame = open_scene(text, &scene);
+    KrsState *frame = open_scene(text, &scene);
     double    low = HUGE_VAL, high = -HUGE_VAL;
-    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
     for (int i = 0; i < 8; i++) {
         double corner[3];
         for (int k = 0; k < 3; k++)
@@ -357,8 +357,8 @@ static void the_scene_fills_the_picture(void **state)
     (void)state;
     KrsScene *scene;
     KrsView   view;
-    KrsFrame *frame = open_scene("show sphere(2).move([9, 1, 7]);", &scene);
-    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    KrsState *frame = open_scene("show sphere(2).move([9, 1, 7]);", &scene);
+    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
     double away = distance3(view.camera.eye, (double[]){9, 1, 7});
     assert_float_equal(tan(asin(2 / away)) / tan(0.5 * view.camera.fov), 0.67, 0.04);
     assert_true(angle_to(&view.camera, 9, 1, 7) < 0.02);
@@ -381,14 +381,14 @@ static void thin_things_are_framed_whole(void **state)
                                      {4, 9, -1}, {0, 4, 3}, {-5, -3, 0}};
     KrsScene           *scene;
     KrsView             view;
-    KrsFrame           *frame = open_scene(
+    KrsState           *frame = open_scene(
                   "let r = 0.02;"
                             "show capsule([0, 0, 0], [0, 9, 0], r) |"
                             "capsule([-4, 9, 1], [4, 9, -1], r) |"
                             "capsule([0, 3, 0], [0, 4, 3], r) |"
                             "capsule([-5, -3, 0], [0, 0, 0], r) | sphere(0.7).move([0, 2, 0]);",
                   &scene);
-    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
     double half = 0.5 * view.camera.fov, widest = 0;
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
         double angle = angle_to(&view.camera, ends[i][0], ends[i][1], ends[i][2]);
@@ -405,10 +405,10 @@ static void endless_components_are_not_framed(void **state)
     (void)state;
     KrsScene *scene;
     KrsView   view;
-    KrsFrame *frame = open_scene("show sphere(0.5); show cylinder(0.2, 0.9)"
+    KrsState *frame = open_scene("show sphere(0.5); show cylinder(0.2, 0.9)"
                                  ".move([1.5, 0, 0]).repeat([0, 1, 0]);",
                                  &scene);
-    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
     for (int k = 0; k < 3; k++)
         assert_true(fabs(view.camera.target[k]) < 0.1);
     close_scene(frame, scene);
@@ -420,7 +420,7 @@ static void rays_of_any_length_hit(void **state)
     static const double lengths[] = {1e-300, 1e-160, 1e-3, 1, 1e200, 1e300};
     (void)state;
     KrsScene *scene;
-    KrsFrame *frame = open_scene("show sphere(1);", &scene);
+    KrsState *frame = open_scene("show sphere(1);", &scene);
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         const double origin[1][3] = {{0, 0, 3}}, direction[1][3] = {{0, 0, -lengths[i]}};
         KrsHit       hit;
@@ -437,7 +437,7 @@ static void pointers_that_are_null_are_refused(void **state)
     static const char text[]   = "param r = 1 in [0.1, 2]; show sphere(r);";
     const double      value[1] = {0.5};
     KrsScene         *scene = (KrsScene *)1, *other = (KrsScene *)1;
-    KrsFrame         *frame;
+    KrsState         *frame;
     char             *formatted = (char *)1;
     bool              same;
     double            distance[1];
@@ -451,18 +451,18 @@ static void pointers_that_are_null_are_refused(void **state)
     assert_int_equal(krs_compile_text(text, sizeof text - 1, "a.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_scene_update(scene, NULL, 3, &other, NULL), KRS_BAD_ARGUMENT);
     assert_null(other);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_frame_set(frame, NULL, value, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set(frame, "r", NULL, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set_zones(frame, NULL, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_frame_set_zones(frame, NULL, 0), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_set(frame, NULL, value, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(frame, "r", NULL, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set_zones(frame, NULL, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set_zones(frame, NULL, 0), KRS_OK);
     assert_int_equal(krs_distance(frame, NULL, 1, distance), KRS_BAD_ARGUMENT);
     assert_int_equal(krs_normal(frame, NULL, 1, &hit.normal), KRS_BAD_ARGUMENT);
     assert_int_equal(krs_probe(frame, NULL, 1, &hit), KRS_BAD_ARGUMENT);
     assert_int_equal(krs_raycast(frame, NULL, NULL, 1, 1, 0, &hit), KRS_BAD_ARGUMENT);
     assert_int_equal(krs_distance(frame, &(const double[3]){3, 0, 0}, 1, distance), KRS_OK);
     assert_true(fabs(distance[0] - 2) < 1e-12);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 

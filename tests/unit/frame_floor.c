@@ -19,7 +19,7 @@ enum { MAX_TEXT = 1024 };
 
 typedef struct Opened {
     KrsScene *scene;
-    KrsFrame *frame;
+    KrsState *frame;
 } Opened;
 
 static Opened open_scene(const char *head, const char *text, uint32_t specialize)
@@ -30,13 +30,13 @@ static Opened open_scene(const char *head, const char *text, uint32_t specialize
     snprintf(whole, sizeof whole, "%s%s", head, text);
     if (krs_compile_text(whole, strlen(whole), "scene.krs", &options, &opened.scene) != KRS_OK)
         fail_msg("%s is refused", whole);
-    assert_int_equal(krs_frame_new(opened.scene, &opened.frame), KRS_OK);
+    assert_int_equal(krs_state_new(opened.scene, &opened.frame), KRS_OK);
     return opened;
 }
 
 static void close_scene(Opened opened)
 {
-    krs_frame_free(opened.frame);
+    krs_state_free(opened.frame);
     krs_scene_free(opened.scene);
 }
 
@@ -56,7 +56,7 @@ static double floor_height(Opened opened)
 
 static void set_height(Opened opened, double height)
 {
-    assert_int_equal(krs_frame_set(opened.frame, "h", &height, 1), KRS_OK);
+    assert_int_equal(krs_state_set(opened.frame, "h", &height, 1), KRS_OK);
 }
 
 /* Scenes of all kinds of shapes whose box has a rule, with a parameter h from 0.5 to 4. */
@@ -96,20 +96,20 @@ static const char *const scenes[] = {
 static void compare_boxes(Opened asked, Opened fixed)
 {
     double found[2][3], truth[2][3];
-    assert_true(krs_frame_box(asked.frame, found[0], found[1]));
-    assert_true(krs_frame_box(fixed.frame, truth[0], truth[1]));
+    assert_true(krs_state_box(asked.frame, found[0], found[1]));
+    assert_true(krs_state_box(fixed.frame, truth[0], truth[1]));
     for (int side = 0; side < 2; side++)
         for (int k = 0; k < 3; k++)
             assert_true(fabs(found[side][k] - truth[side][k]) < 1e-6);
     for (size_t i = 0; i < krs_component_count(fixed.scene); i++) {
-        const bool ends = krs_frame_component_box(fixed.frame, i, truth[0], truth[1]);
-        assert_int_equal(krs_frame_component_box(asked.frame, i, found[0], found[1]), ends);
+        const bool ends = krs_state_component_box(fixed.frame, i, truth[0], truth[1]);
+        assert_int_equal(krs_state_component_box(asked.frame, i, found[0], found[1]), ends);
         for (int k = 0; ends && k < 3; k++)
             assert_true(fabs(found[0][k] - truth[0][k]) < 1e-6 &&
                         fabs(found[1][k] - truth[1][k]) < 1e-6);
     }
     assert_false(
-        krs_frame_component_box(fixed.frame, krs_component_count(fixed.scene), found[0], found[1]));
+        krs_state_component_box(fixed.frame, krs_component_count(fixed.scene), found[0], found[1]));
 }
 
 /* Of a scene with a parameter, for some values of it: as of the text with these numbers. */
@@ -157,13 +157,13 @@ static void camera_follows_where_it_is_asked_to(void **state)
         const Opened fixed = open_scene("let h = 3.3;", scenes[i], 0);
         KrsCamera    first, before, after, truth;
         double       error = 0, moved = 0, away = 0;
-        assert_int_equal(krs_frame_camera(asked.frame, 0, &first), KRS_OK);
+        assert_int_equal(krs_state_camera(asked.frame, 0, &first), KRS_OK);
         set_height(asked, 3.3);
-        assert_int_equal(krs_frame_camera(asked.frame, 0, &before), KRS_OK);
+        assert_int_equal(krs_state_camera(asked.frame, 0, &before), KRS_OK);
         assert_memory_equal(first.eye, before.eye, sizeof first.eye);
-        assert_int_equal(krs_frame_place_camera(asked.frame), KRS_OK);
-        assert_int_equal(krs_frame_camera(asked.frame, 0, &after), KRS_OK);
-        assert_int_equal(krs_frame_camera(fixed.frame, 0, &truth), KRS_OK);
+        assert_int_equal(krs_state_place_camera(asked.frame), KRS_OK);
+        assert_int_equal(krs_state_camera(asked.frame, 0, &after), KRS_OK);
+        assert_int_equal(krs_state_camera(fixed.frame, 0, &truth), KRS_OK);
         for (int k = 0; k < 3; k++) {
             error = fmax(error, fabs(after.eye[k] - truth.eye[k]));
             moved = fmax(moved, fabs(after.eye[k] - before.eye[k]));
@@ -185,7 +185,7 @@ static void stays_with_the_time(void **state)
                                      "show box([1, h, 1]).move([0, 3 * sin(time), 0]);", 0);
     (void)state;
     for (int i = 0; i < 5; i++) {
-        assert_int_equal(krs_frame_set_time(opened.frame, 0.7 * i), KRS_OK);
+        assert_int_equal(krs_state_set_time(opened.frame, 0.7 * i), KRS_OK);
         set_height(opened, 1);
         assert_true(fabs(floor_height(opened) + 3.5) < 1e-6);
         set_height(opened, 2);
@@ -223,7 +223,7 @@ static void camera_finds_a_small_thing_in_a_large_box(void **state)
     (void)state;
     assert_int_equal(krs_component(opened.scene, 0, &component), KRS_OK);
     assert_true(component.low[0] < -10 && component.high[0] > 10);
-    assert_int_equal(krs_frame_camera(opened.frame, 0, &camera), KRS_OK);
+    assert_int_equal(krs_state_camera(opened.frame, 0, &camera), KRS_OK);
     for (int k = 0; k < 3; k++) {
         assert_true(lower[k] < camera.target[k] && camera.target[k] < upper[k]);
         away = hypot(away, camera.eye[k] - camera.target[k]);

@@ -35,7 +35,7 @@ enum { SHOWN = KRS_PLANE_DEPTH | KRS_PLANE_NORMAL | KRS_PLANE_ALBEDO | KRS_PLANE
 
 typedef struct Seen {
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     KrsPicture   *picture;
 } Seen;
@@ -48,7 +48,7 @@ static void look(Seen *seen, const InstanceText *scenes, size_t count, bool apar
                                               &seen->scene);
     free(text);
     assert_int_equal(status, KRS_OK);
-    assert_int_equal(krs_frame_new(seen->scene, &seen->frame), KRS_OK);
+    assert_int_equal(krs_state_new(seen->scene, &seen->frame), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, seen->scene, &seen->rendering), KRS_OK);
     if (krs_render(seen->rendering, seen->frame, &options, &seen->picture) != KRS_OK)
         fail_msg("%s: %s", scenes->name, krs_renderer_message(renderer));
@@ -58,7 +58,7 @@ static void forget(Seen *seen)
 {
     krs_picture_free(seen->picture);
     krs_rendering_free(seen->rendering);
-    krs_frame_free(seen->frame);
+    krs_state_free(seen->frame);
     krs_scene_free(seen->scene);
 }
 

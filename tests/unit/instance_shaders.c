@@ -54,17 +54,17 @@ static void open_fixture(Fixture *fixture, Bench *bench)
 /* What shaders find where a root of the graph is the scene's distance. */
 static void sample_root(Fixture *fixture, Node root)
 {
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
     surface_roots(&fixture->scene->roots, 0)[ROOT_DISTANCE] = root;
-    assert_int_equal(krs_frame_new(fixture->scene, &frame), KRS_OK);
-    assert_int_equal(krs_frame_set_time(frame, TIME), KRS_OK);
+    assert_int_equal(krs_state_new(fixture->scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_set_time(frame, TIME), KRS_OK);
     assert_int_equal(krs_rendering_new(fixture->renderer, fixture->scene, &rendering), KRS_OK);
     assert_int_equal(krs_sample(rendering, frame, (const float(*)[3])fixture->points, POINTS,
                                 fixture->found, NULL),
                      KRS_OK);
     krs_rendering_free(rendering);
-    krs_frame_free(frame);
+    krs_state_free(frame);
 }
 
 /* At how many points the tape finds something else. */

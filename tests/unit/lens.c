@@ -69,7 +69,7 @@ static Blot find_blot(const KrsPicture *picture)
 
 static void set(Fixture *fixture, const char *name, double value)
 {
-    assert_int_equal(krs_frame_set(fixture->frame, name, &value, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->frame, name, &value, 1), KRS_OK);
 }
 
 static KrsPicture *render(Fixture *fixture, size_t camera, uint32_t samples, KrsEye eye)
@@ -309,7 +309,7 @@ static void what_moves_is_drawn_out(void **state)
     assert_near(blot.x, 0.25 / unit, 0.1);
     assert_near(blot.spread / (way * way / 12 + size * size / 2 + 1.0 / 6), 1, 0.03);
     assert_near(blot.weight / still.weight, 1, 0.02);
-    assert_near(krs_frame_time(fixture->frame), 0, 0);
+    assert_near(krs_state_time(fixture->frame), 0, 0);
     /* The planes are those of the middle. */
     set(fixture, "beside", 0.25);
     KrsPicture *middle = render(fixture, PLAIN, 1, KRS_EYE_OF_BOTH);

@@ -330,14 +330,14 @@ static void expect_gray(Document *document, KrsChange kind, unsigned char gray)
 {
     assert_int_equal(document_read(document), KRS_OK);
     Version  *version = document_version(document);
-    KrsFrame *frame;
+    KrsState *frame;
     double    distance;
     assert_int_equal(version_changes(version).kind, kind);
-    assert_int_equal(krs_frame_new(version_scene(version), &frame), KRS_OK);
+    assert_int_equal(krs_state_new(version_scene(version), &frame), KRS_OK);
     const double point[1][3] = {{1 + 0.2 * gray / 255.0, 0, 0}};
     assert_int_equal(krs_distance(frame, point, 1, &distance), KRS_OK);
     assert_true(fabs(distance) < 1e-6);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     version_release(version);
 }
 

@@ -30,17 +30,17 @@ static KrsStatus use_scene(const char *text, Scarce *scarce)
 {
     KrsOptions options = {.allocator = scarce_allocator(scarce)};
     KrsScene  *scene;
-    KrsFrame  *frame  = NULL;
+    KrsState  *frame  = NULL;
     KrsStatus  status = krs_compile_text(text, strlen(text), "scene.krs", &options, &scene);
     if (status == KRS_OK)
-        status = krs_frame_new(scene, &frame);
+        status = krs_state_new(scene, &frame);
     if (status == KRS_OK) {
         double point[1][3] = {{1, 2, 3}}, distance;
         KrsHit hit;
         krs_distance(frame, (const double(*)[3])point, 1, &distance);
         krs_probe(frame, (const double(*)[3])point, 1, &hit);
     }
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
     return status;
 }

@@ -564,7 +564,7 @@ static void smooth_surfaces_have_large_triangles(void **context)
         assert_int_equal(krs_compile_text(rows[i].text, strlen(rows[i].text), "scene.krs", &options,
                                           &meshed.scene),
                          KRS_OK);
-        assert_int_equal(krs_frame_new(meshed.scene, &meshed.frame), KRS_OK);
+        assert_int_equal(krs_state_new(meshed.scene, &meshed.frame), KRS_OK);
         assert_int_equal(krs_mesh(meshed.frame, &(KrsMeshOptions){.error = rows[i].error}, &mesh),
                          KRS_OK);
         print_message("# %s within %g: %zu triangles\n", rows[i].text, rows[i].error,

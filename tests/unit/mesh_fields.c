@@ -32,11 +32,11 @@ static Opened *open_field(const char *text)
 {
     Opened *o = calloc(1, sizeof *o);
     assert_non_null(o);
-    KrsFrame  *frame;
+    KrsState  *frame;
     KrsOptions options = {.outlines = true};
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &o->scene),
                      KRS_OK);
-    assert_int_equal(krs_frame_new(o->scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(o->scene, &frame), KRS_OK);
     o->memory       = o->scene->memory;
     o->memory.used  = 0;
     o->memory.limit = (size_t)1 << 30;
@@ -53,7 +53,7 @@ static void close_field(Opened *o)
 {
     arena_free(&o->arena);
     free(o->solid.roots);
-    krs_frame_free(o->field.frame);
+    krs_state_free(o->field.frame);
     krs_scene_free(o->scene);
     free(o);
 }

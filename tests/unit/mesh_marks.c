@@ -69,10 +69,10 @@ static void marks_touch_what_is_set(void **context)
 static Mesher *open_mesher(const char *text, double error, KrsMeshOptions *options,
                            MeshSolid *solid, KrsScene **scene)
 {
-    KrsFrame *frame;
+    KrsState *frame;
     Mesher   *m = calloc(1, sizeof *m);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
-    assert_int_equal(krs_frame_new(*scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(*scene, &frame), KRS_OK);
     solid->roots = malloc(solid_root_bytes(*scene));
     solid_of_components(*scene, NULL, solid);
     *options       = (KrsMeshOptions){.error = error};
@@ -93,7 +93,7 @@ static Mesher *open_mesher(const char *text, double error, KrsMeshOptions *optio
         frame_refresh_points(m->fields[i].frame);
         field_open(&m->fields[i], &m->arena);
     }
-    krs_frame_free(frame);
+    krs_state_free(frame);
     return m;
 }
 

@@ -29,7 +29,7 @@ static double uniform(double low, double high) { return random_between(&chance, 
 typedef struct Trial {
     const Subject *subject;
     KrsScene      *scene;
-    KrsFrame      *frame;
+    KrsState      *frame;
     Memory         memory;
     Arena          arena;
     Node          *roots;
@@ -126,7 +126,7 @@ static void close_trial(Trial *t)
         frame_free(t->fields[i].frame);
     arena_free(&t->arena);
     free(t->roots);
-    krs_frame_free(t->frame);
+    krs_state_free(t->frame);
     krs_scene_free(t->scene);
 }
 

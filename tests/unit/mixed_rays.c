@@ -56,7 +56,7 @@ static int close_renderer(void **state)
 
 typedef struct Fixture {
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
 } Fixture;
 
@@ -64,7 +64,7 @@ static Fixture open_fixture(const char *text, KrsPurpose purpose)
 {
     Fixture fixture;
     assert_int_equal(krs_compile_text(text, strlen(text), "mixed", NULL, &fixture.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
     assert_int_equal(krs_rendering_new_for(renderer, fixture.scene, purpose, &fixture.rendering),
                      KRS_OK);
     return fixture;
@@ -73,7 +73,7 @@ static Fixture open_fixture(const char *text, KrsPurpose purpose)
 static void close_fixture(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_frame_free(fixture->frame);
+    krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
 }
 

@@ -132,13 +132,13 @@ static uint8_t *render(const Fixture *fixture, const char *text, double r)
     const KrsOptions with    = {.specialize = KRS_SPECIALIZE_STRUCTURE};
     uint8_t         *pixels  = malloc(BYTES);
     KrsScene        *scene;
-    KrsFrame        *frame;
+    KrsState        *frame;
     KrsRendering    *rendering;
     KrsFilm         *film;
     KrsPicture      *picture;
     assert_int_equal(krs_compile_text(text, strlen(text), "a", &with, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_frame_set(frame, "r", &r, 1), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "r", &r, 1), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
     assert_int_equal(krs_film_new(rendering, &options, &film), KRS_OK);
     assert_int_equal(krs_film_add(film, frame, &fixture->view.camera, 1), KRS_OK);
@@ -147,7 +147,7 @@ static uint8_t *render(const Fixture *fixture, const char *text, double r)
     krs_picture_free(picture);
     krs_film_free(film);
     krs_rendering_free(rendering);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
     return pixels;
 }

@@ -38,7 +38,7 @@ enum { WIDTH = 160, HEIGHT = 100, PIXELS = WIDTH * HEIGHT };
 typedef struct Scene {
     const char   *name, *text;
     KrsScene     *scene;
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *plain, *early; /* of renderers without and with early-outs */
 } Scene;
 
@@ -106,9 +106,9 @@ static int open_scenes(void **state)
         const double zone[4] = {-4.5, 0, 0, 0.8};
         status = krs_compile_text(s->text, strlen(s->text), s->name, &with, &s->scene);
         if (status == KRS_OK)
-            status = krs_frame_new(s->scene, &s->frame);
+            status = krs_state_new(s->scene, &s->frame);
         if (status == KRS_OK && i == ZONED)
-            status = krs_frame_set_zones(s->frame, &zone, 1);
+            status = krs_state_set_zones(s->frame, &zone, 1);
         if (status == KRS_OK)
             status = krs_rendering_new(plain, s->scene, &s->plain);
         if (status == KRS_OK)
@@ -123,7 +123,7 @@ static int close_scenes(void **state)
     for (int i = 0; i < SCENES; i++) {
         krs_rendering_free(scenes[i].plain);
         krs_rendering_free(scenes[i].early);
-        krs_frame_free(scenes[i].frame);
+        krs_state_free(scenes[i].frame);
         krs_scene_free(scenes[i].scene);
     }
     uint64_t validation_messages = krs_renderer_complaints(plain) + krs_renderer_complaints(early);
@@ -296,7 +296,7 @@ static void spiral_is_the_union(int count, double far, const char *more, const c
     write_spiral(&text, count, far, more);
     KrsOptions with = {.diagnostic = print_diagnostic};
     assert_int_equal(krs_compile_text(text.bytes, text.length, name, &with, &scene.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene.scene, &scene.frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene.scene, &scene.frame), KRS_OK);
     assert_int_equal(krs_rendering_new(plain, scene.scene, &scene.plain), KRS_OK);
     assert_int_equal(krs_scene_program(scene.scene)->camera_relative, far > 0);
     KrsPicture *whole = render(&scene, false, together), *turns = render(&scene, false, packed);
@@ -306,7 +306,7 @@ static void spiral_is_the_union(int count, double far, const char *more, const c
     krs_picture_free(whole);
     krs_picture_free(turns);
     krs_rendering_free(scene.plain);
-    krs_frame_free(scene.frame);
+    krs_state_free(scene.frame);
     krs_scene_free(scene.scene);
     arena_free(&arena);
 }

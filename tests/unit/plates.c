@@ -114,7 +114,7 @@ static KrsRenderOptions on_floor(int camera)
 
 static void set(Fixture *fixture, const char *name, double value)
 {
-    assert_int_equal(krs_frame_set(fixture->frame, name, &value, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->frame, name, &value, 1), KRS_OK);
 }
 
 /* The direction from the floor to a light. */

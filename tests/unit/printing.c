@@ -413,7 +413,7 @@ static void texts_are_short(void **state)
 enum { POINTS = 4096 };
 
 /* What is at the points, by the shader of questions in another variant. */
-static void probe_by(KrsRendering *rendering, KrsFrame *frame, const KrsVariant *variant,
+static void probe_by(KrsRendering *rendering, KrsState *frame, const KrsVariant *variant,
                      const double (*points)[3], KrsHit *hits)
 {
     ShaderVariant other = variant_of_point_query(rendering);
@@ -456,10 +456,10 @@ static void compare_variants(const char *path)
     static double points[POINTS][3];
     static KrsHit right[POINTS], found[POINTS];
     KrsScene     *scene = open_file(path, false);
-    KrsFrame     *frame;
+    KrsState     *frame;
     KrsRendering *rendering;
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_frame_set_time(frame, 0.7), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_set_time(frame, 0.7), KRS_OK);
     assert_int_equal(krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
     for (int i = 0; i < POINTS; i++)
         for (int k = 0; k < 3; k++)
@@ -473,7 +473,7 @@ static void compare_variants(const char *path)
             fail_msg("%s: %d of %d points differ in variant %zu", path, different, POINTS, v);
     }
     krs_rendering_free(rendering);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 

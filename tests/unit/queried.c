@@ -18,13 +18,13 @@ Scene scene_of(const char *text)
 {
     Scene s;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &s.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(s.scene, &s.frame), KRS_OK);
+    assert_int_equal(krs_state_new(s.scene, &s.frame), KRS_OK);
     return s;
 }
 
 void scene_close(Scene s)
 {
-    krs_frame_free(s.frame);
+    krs_state_free(s.frame);
     krs_scene_free(s.scene);
 }
 
@@ -40,7 +40,7 @@ double apart(const double a[3], const double b[3])
     return length3(v);
 }
 
-KrsHit cast(KrsFrame *frame, const double origin[3], const double direction[3], double farthest,
+KrsHit cast(KrsState *frame, const double origin[3], const double direction[3], double farthest,
             double tolerance)
 {
     KrsHit hit;

@@ -314,7 +314,7 @@ static void every_sun_is_in_the_sky(void **state)
     for (int i = 0; i < PICTURES; i++) {
         for (int sun = 0; sun < 3; sun++) {
             double intensity = i == ALL || i == sun + 1 ? 2 + sun : 0;
-            assert_int_equal(krs_frame_set(fixture.frame, names[sun], &intensity, 1), KRS_OK);
+            assert_int_equal(krs_state_set(fixture.frame, names[sun], &intensity, 1), KRS_OK);
         }
         pictures[i] = fixture_render(&fixture,
                                      (KrsRenderOptions){.samples = 2, .no_occlusion = true});

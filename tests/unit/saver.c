@@ -34,7 +34,7 @@ static struct {
     Saver        *saver;
     SaveOrder     order;
     KrsRendering *rendering;
-    KrsFrame     *frame;
+    KrsState     *frame;
 } stage;
 
 static void nothing_is_told(void *user) { (void)user; }
@@ -61,11 +61,11 @@ static int set_up(void **state)
     view->time            = 0.25;
     view->integrator      = KRS_INTEGRATOR_PREVIEW;
     const KrsScene *scene = version_scene(view->version);
-    krs_frame_new(scene, &stage.frame);
-    krs_frame_set(stage.frame, "r", values[0], 1);
+    krs_state_new(scene, &stage.frame);
+    krs_state_set(stage.frame, "r", values[0], 1);
     krs_rendering_new(renderer, scene, &stage.rendering);
-    krs_frame_set_time(stage.frame, view->time);
-    krs_frame_camera(stage.frame, 0, &view->camera);
+    krs_state_set_time(stage.frame, view->time);
+    krs_state_camera(stage.frame, 0, &view->camera);
     stage.saver = saver_new(&with, nothing_is_told, NULL);
     return 0;
 }
@@ -74,7 +74,7 @@ static int tear_down(void **state)
 {
     saver_free(stage.saver);
     krs_rendering_free(stage.rendering);
-    krs_frame_free(stage.frame);
+    krs_state_free(stage.frame);
     version_release(stage.order.view.version);
     document_free(stage.document);
     return leave_folder(state) + renderer_close(state);
@@ -108,8 +108,8 @@ static KrsPicture *render(const KrsCamera *camera, double time)
     KrsFilm               *film;
     KrsPicture            *picture;
     KrsCamera              own;
-    assert_int_equal(krs_frame_set_time(stage.frame, time), KRS_OK);
-    assert_int_equal(krs_frame_camera(stage.frame, 0, &own), KRS_OK);
+    assert_int_equal(krs_state_set_time(stage.frame, time), KRS_OK);
+    assert_int_equal(krs_state_camera(stage.frame, 0, &own), KRS_OK);
     assert_int_equal(krs_film_new(stage.rendering, &options, &film), KRS_OK);
     assert_int_equal(krs_film_add(film, stage.frame, camera ? camera : &own, SAMPLES), KRS_OK);
     assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);

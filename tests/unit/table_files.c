@@ -1,6 +1,6 @@
 /*
  * table_files.c: what `krs compile` writes for those who bind the tables of a scene by themselves: the
- * files have what krs_frame_tables gives, the description names them, and the text compiles.
+ * files have what krs_state_tables gives, the description names them, and the text compiles.
  */
 #include <endian.h>
 #include <setjmp.h>
@@ -92,17 +92,17 @@ static void assert_in_description(const char *wanted)
 static void files_have_the_tables(void **state)
 {
     KrsScene *scene;
-    KrsFrame *frame;
+    KrsState *frame;
     char      wanted[512];
     (void)state;
     compile_files(parts);
     assert_int_equal(krs_compile_file("parts.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     size_t row_count = krs_table_rows(scene), cell_count = krs_table_cells(scene);
     assert_true(row_count >= 310 && cell_count > 16);
     float(*rows)[4]     = calloc(row_count, sizeof *rows);
     uint32_t(*cells)[2] = calloc(cell_count, sizeof *cells);
-    krs_frame_tables(frame, rows, cells);
+    krs_state_tables(frame, rows, cells);
     assert_words("out/parts.rows.bin", rows, row_count * sizeof *rows);
     assert_words("out/parts.cells.bin", cells, cell_count * sizeof *cells);
     snprintf(wanted, sizeof wanted,
@@ -118,7 +118,7 @@ static void files_have_the_tables(void **state)
     assert_in_description(wanted);
     free(rows);
     free(cells);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 
@@ -126,21 +126,21 @@ static void files_have_the_tables(void **state)
 static void tables_are_equal_in_all_frames(void **state)
 {
     KrsScene *scene;
-    KrsFrame *frame;
+    KrsState *frame;
     (void)state;
     compile_files(parts);
     assert_int_equal(krs_compile_text(parts, strlen(parts), "parts.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_frame_set(frame, "height", (double[]){2}, 1), KRS_OK);
-    assert_int_equal(krs_frame_set_time(frame, 7), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "height", (double[]){2}, 1), KRS_OK);
+    assert_int_equal(krs_state_set_time(frame, 7), KRS_OK);
     float(*rows)[4]     = calloc(krs_table_rows(scene), sizeof *rows);
     uint32_t(*cells)[2] = calloc(krs_table_cells(scene), sizeof *cells);
-    krs_frame_tables(frame, rows, cells);
+    krs_state_tables(frame, rows, cells);
     assert_words("out/parts.rows.bin", rows, krs_table_rows(scene) * sizeof *rows);
     assert_words("out/parts.cells.bin", cells, krs_table_cells(scene) * sizeof *cells);
     free(rows);
     free(cells);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(scene);
 }
 

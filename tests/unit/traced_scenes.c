@@ -95,7 +95,7 @@ KrsStatus open_scene(Scene *scene)
     KrsStatus status = krs_compile_text(scene->text, strlen(scene->text), scene->name, NULL,
                                         &scene->scene);
     if (status == KRS_OK)
-        status = krs_frame_new(scene->scene, &scene->frame);
+        status = krs_state_new(scene->scene, &scene->frame);
     if (status == KRS_OK)
         status = krs_rendering_new(watched_renderer, scene->scene, &scene->rendering);
     return status;
@@ -104,7 +104,7 @@ KrsStatus open_scene(Scene *scene)
 void close_scene(Scene *scene)
 {
     krs_rendering_free(scene->rendering);
-    krs_frame_free(scene->frame);
+    krs_state_free(scene->frame);
     krs_scene_free(scene->scene);
 }
 

@@ -330,22 +330,22 @@ static void mistakes_leave_the_scene(void **state)
     Heard       heard = {0};
     KrsChanges  changes;
     KrsScene   *updated;
-    KrsFrame   *frame;
+    KrsState   *frame;
     const char *wrong = "show sphere(rr);";
     KrsScene   *scene = compile_with(
           BEFORE,
           &(KrsOptions){.diagnostic = hear, .user = &heard, .specialize = KRS_SPECIALIZE_STRUCTURE});
     KrsScene *alone = compile(BEFORE, KRS_SPECIALIZE_STRUCTURE);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_scene_update(scene, wrong, strlen(wrong), &updated, &changes),
                      KRS_BAD_SCENE);
     assert_null(updated);
     assert_int_equal(heard.errors, 1);
     assert_string_equal(heard.code, "E0201");
     assert_string_equal(heard.source, "edited.krs");
-    assert_int_equal(krs_frame_set(frame, "r", (double[]){2}, 1), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "r", (double[]){2}, 1), KRS_OK);
     assert_same_scene(scene, alone);
-    krs_frame_free(frame);
+    krs_state_free(frame);
     krs_scene_free(alone);
     krs_scene_free(scene);
 }
@@ -417,17 +417,17 @@ static void memory_may_run_out(void **state)
 
 /* ---- frames ---- */
 
-static double distance_at(KrsFrame *frame, double x)
+static double distance_at(KrsState *frame, double x)
 {
     double point[1][3] = {{x, 0, 0}}, distance;
     assert_int_equal(krs_distance(frame, (const double(*)[3])point, 1, &distance), KRS_OK);
     return distance;
 }
 
-static KrsFrame *frame_of(const KrsScene *scene)
+static KrsState *frame_of(const KrsScene *scene)
 {
-    KrsFrame *frame;
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    KrsState *frame;
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     return frame;
 }
 
@@ -437,35 +437,35 @@ static void frames_follow(void **state)
     KrsScene *scene = compile("param r = 1 in [0.5, 4]; param at = 2; param gone = 1;"
                               "show sphere(r).move([at + time + 0 * gone, 0, 0]);",
                               KRS_SPECIALIZE_STRUCTURE);
-    KrsFrame *frame = frame_of(scene), *other = frame_of(scene);
-    assert_int_equal(krs_frame_set(frame, "r", (double[]){3}, 1), KRS_OK);
-    assert_int_equal(krs_frame_set(frame, "gone", (double[]){5}, 1), KRS_OK);
-    assert_int_equal(krs_frame_set_time(frame, 10), KRS_OK);
-    assert_int_equal(krs_frame_set_zones(frame, (const double[][4]){{0, 0, 0, 0.5}}, 1), KRS_OK);
+    KrsState *frame = frame_of(scene), *other = frame_of(scene);
+    assert_int_equal(krs_state_set(frame, "r", (double[]){3}, 1), KRS_OK);
+    assert_int_equal(krs_state_set(frame, "gone", (double[]){5}, 1), KRS_OK);
+    assert_int_equal(krs_state_set_time(frame, 10), KRS_OK);
+    assert_int_equal(krs_state_set_zones(frame, (const double[][4]){{0, 0, 0, 0.5}}, 1), KRS_OK);
     const double before = distance_at(other, 9);
 
     /* The radius was set; the place was not, so that it is the new default. */
     const char *text    = "param at = 4; param r = 1 in [0.5, 4];"
                           "show sphere(r).move([at + time, 0, 0]);";
     KrsScene   *updated = update(scene, text, NULL);
-    assert_int_equal(krs_frame_update(frame, updated), KRS_OK);
+    assert_int_equal(krs_state_update(frame, updated), KRS_OK);
     assert_true(distance_at(other, 9) == before);
     assert_true(fabs(distance_at(frame, 20) - (20 - 14 - 3)) < 1e-12);
 
     /* A value that the other scene does not permit is left out. */
     text = "param r = 1 in [0.5, 2]; param at = 4; show sphere(r).move([at + time, 0, 0]);";
     KrsScene *third = update(updated, text, NULL);
-    assert_int_equal(krs_frame_update(frame, third), KRS_OK);
+    assert_int_equal(krs_state_update(frame, third), KRS_OK);
     krs_scene_free(updated);
     assert_true(fabs(distance_at(frame, 20) - (20 - 14 - 1)) < 1e-12);
 
     /* The zone is there still. */
-    assert_int_equal(krs_frame_set_time(frame, -4), KRS_OK);
+    assert_int_equal(krs_state_set_time(frame, -4), KRS_OK);
     assert_true(distance_at(frame, 0) > 0);
-    assert_int_equal(krs_frame_set_zones(frame, NULL, 0), KRS_OK);
+    assert_int_equal(krs_state_set_zones(frame, NULL, 0), KRS_OK);
     assert_true(distance_at(frame, 0) < 0);
-    krs_frame_free(frame);
-    krs_frame_free(other);
+    krs_state_free(frame);
+    krs_state_free(other);
     krs_scene_free(third);
     krs_scene_free(scene);
 }

@@ -42,7 +42,7 @@ static double ball(const double point[3])
     return distance * (distance > 0 ? exaggeration : inside_factor);
 }
 
-KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)
+KrsStatus krs_distance(KrsState *frame, const double (*points)[3], size_t count, double *distances)
 {
     (void)frame;
     for (size_t i = 0; i < count; i++)
@@ -57,13 +57,13 @@ size_t krs_table_cells(const KrsScene *scene)
     return 0;
 }
 
-KrsStatus krs_distance_bound(KrsFrame *frame, const double (*points)[3], size_t count,
+KrsStatus krs_distance_bound(KrsState *frame, const double (*points)[3], size_t count,
                              double *distances)
 {
     return krs_distance(frame, points, count, distances);
 }
 
-KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
+KrsStatus krs_probe(KrsState *frame, const double (*points)[3], size_t count, KrsHit *hits)
 {
     (void)frame;
     for (size_t i = 0; i < count; i++) {
@@ -78,7 +78,7 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
     return KRS_OK;
 }
 
-KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+KrsStatus krs_sample(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
                      size_t count, float *distances, KrsSurfacePoint *surfaces)
 {
     (void)rendering, (void)frame, (void)surfaces;
@@ -114,10 +114,10 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
     return KRS_OK;
 }
 
-KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame)
+KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsState **frame)
 {
     (void)options, (void)scene;
-    *frame = (KrsFrame *)&something;
+    *frame = (KrsState *)&something;
     return KRS_OK;
 }
 
@@ -174,7 +174,7 @@ void scene_print_counts(const DiagnosticSink *sink) { (void)sink; }
 void modules_free(Modules *modules) { (void)modules; }
 void krs_rendering_free(KrsRendering *rendering) { (void)rendering; }
 void krs_renderer_free(KrsRenderer *renderer) { (void)renderer; }
-void krs_frame_free(KrsFrame *frame) { (void)frame; }
+void krs_state_free(KrsState *frame) { (void)frame; }
 void krs_scene_free(KrsScene *scene) { (void)scene; }
 void stage_enter(RunStage stage) { (void)stage; }
 
@@ -284,7 +284,7 @@ static void rounding_of_a_device_passes(void **state)
 static double measured(KrsStatus expected)
 {
     static Validation v;
-    v = (Validation){.random = 1, .frame = (KrsFrame *)&something, .scene = (KrsScene *)&something};
+    v = (Validation){.random = 1, .frame = (KrsState *)&something, .scene = (KrsScene *)&something};
     choose_box(&v);
     choose_points(&v);
     assert_int_equal(try_balls(&v), expected);

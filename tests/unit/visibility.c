@@ -45,9 +45,9 @@ static KrsScene *compile_ball(const double ball[3], const char *projection, bool
 /* Whether a ray of a picture with SIDE x SIDE pixels hits the ball. */
 static bool is_hit(const KrsScene *scene, bool flat)
 {
-    KrsFrame *frame;
+    KrsState *frame;
     bool      any = false;
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     for (int i = 0; i < SIDE * SIDE; i++) {
         double half        = flat ? 2.5 : tan(FOV / 2);
         double u           = ASPECT * half * (2.0 * (i % SIDE) / (SIDE - 1) - 1);
@@ -60,7 +60,7 @@ static bool is_hit(const KrsScene *scene, bool flat)
                          KRS_OK);
         any = any || hit.hit;
     }
-    krs_frame_free(frame);
+    krs_state_free(frame);
     return any;
 }
 

@@ -1,0 +1,74 @@
+/*
+ * old_names.c: a program of before 0.3: it has each old name (krs/deprecated.h), and is told the right things.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <krs/camera.h>
+#include <krs/vulkan.h>
+
+static int failures;
+
+static void check(bool good, const char *what)
+{
+    if (!good)
+        printf("FAILED: %s\n", what);
+    failures += !good;
+}
+
+static bool near(double a, double b) { return fabs(a - b) < 1e-6; }
+
+/* The slope of the field depends on the time: no constant bounds it. */
+static const char text[] = "param r = 1 in [0.5, 2];\n"
+                           "let ball = sphere(r);\n"
+                           "show ball;\n"
+                           "show field(y + 9 - sin(x * time));\n";
+
+static void use_values(const KrsScene *scene, KrsFrame *frame)
+{
+    check(krs_frame_set(frame, "r", (double[]){1.5}, 1) == KRS_OK, "a parameter");
+    check(krs_frame_set_time(frame, 0.5) == KRS_OK && krs_frame_time(frame) == 0.5, "the time");
+    float block[32][4] = {{0}}, rows[8][4] = {{0}};
+    check(krs_parameter_slots(scene) <= 16 && krs_value_slots(scene) <= 16, "few slots");
+    krs_frame_parameters(frame, block);
+    check(block[0][0] == 0.5F && block[1][0] == 1.5F, "the parameters");
+    krs_frame_values(frame, block + krs_parameter_slots(scene));
+    check(krs_table_rows(scene) == 0, "no tables");
+    krs_frame_tables(frame, rows, NULL);
+    KrsFrameSlope slope;
+    check(krs_frame_slope_count(scene) == 1 && krs_frame_slope(scene, 0, &slope) == KRS_OK &&
+              slope.slot == 2,
+          "a slope");
+    check(!krs_frame_unbounded(frame), "slopes are bounded");
+}
+
+static void use_places(KrsFrame *frame)
+{
+    double       low[3], high[3];
+    double       distance;
+    const double point[1][3] = {{0, 0, 3}}, zone[1][4] = {{0, 0, 2, 1}};
+    KrsCamera    camera;
+    check(krs_frame_place_camera(frame) == KRS_OK, "a place of the camera");
+    check(krs_frame_camera(frame, 0, &camera) == KRS_OK, "a camera");
+    check(krs_frame_component_box(frame, 0, low, high) && near(high[2], 1.5), "a box");
+    check(krs_frame_box(frame, low, high) && near(high[0], 1.5), "a box around all");
+    check(krs_frame_set_zones(frame, zone, 1) == KRS_OK, "zones");
+    check(krs_distance(frame, point, 1, &distance) == KRS_OK && distance > 0.5 + 1e-6,
+          "a distance");
+}
+
+int main(void)
+{
+    KrsScene *scene;
+    KrsFrame *frame;
+    if (krs_compile_text(text, strlen(text), "a.krs", NULL, &scene) != KRS_OK ||
+        krs_frame_new(scene, &frame) != KRS_OK)
+        return 2;
+    check(krs_frame_update(frame, scene) == KRS_OK, "an update");
+    use_values(scene, frame);
+    use_places(frame);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+    return failures > 0;
+}
