@@ -14,34 +14,34 @@ bench-quick: $(B)/bench/bench $(B)/krs
 	@$(B)/bench/bench --krs $(B)/krs --revision $(REVISION) --quick --folder $(B)/bench/results
 
 # How well one sample shows what is finer than a pixel (bench/README.md).
-STAGE  := $(addprefix $(B)/bench/, stage.o sheet.o measure.o)
+FIXTURE := $(addprefix $(B)/bench/, fixture.o sheet.o measure.o)
 MINIFY := $(addprefix $(B)/bench/, minify/minify.o minify/pixel_filter.o)
-$(B)/bench/minify/minify: $(MINIFY) $(STAGE) $(INTERNAL)
+$(B)/bench/minify/minify: $(MINIFY) $(FIXTURE) $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
 minify: $(B)/bench/minify/minify
 	@REVISION=$(REVISION) $(B)/bench/minify/minify
 
 # How many evaluations a pixel takes, as pictures in bench/results/.
-$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(STAGE) $(INTERNAL)
+$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(FIXTURE) $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
 iterations: $(B)/bench/iterations/iterations
 	@REVISION=$(REVISION) $(B)/bench/iterations/iterations
 
 # Every way to trace sequences with maps that invert.
-$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(STAGE) $(INTERNAL)
+$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(FIXTURE) $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
 inverted: $(B)/bench/inverted/inverted
 	@REVISION=$(REVISION) $(B)/bench/inverted/inverted
 
 # With and without each method of the enhanced-sphere-tracing paper.
 ENHANCED := $(addprefix $(B)/bench/, enhanced/enhanced.o enhanced/convex.o)
-$(B)/bench/enhanced/enhanced: $(ENHANCED) $(STAGE) $(INTERNAL)
+$(B)/bench/enhanced/enhanced: $(ENHANCED) $(FIXTURE) $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-enhanced: $(B)/bench/enhanced/enhanced
 	@REVISION=$(REVISION) $(B)/bench/enhanced/enhanced
 
 # How well and how fast normals are found (bench/README.md).
-$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(STAGE) $(INTERNAL)
+$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(FIXTURE) $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-normals: $(B)/bench/normals/normals
 	@REVISION=$(REVISION) $(B)/bench/normals/normals
@@ -74,7 +74,7 @@ bench-algebraic: $(B)/bench/algebraic/algebraic $(B)/krs
 # What one wants to know of a device first, in ten minutes (bench/README.md).
 DEVICES := $(addprefix $(B)/bench/device/, device.o limits.o accuracy.o examples.o methods.o \
              kernels.o)
-$(B)/bench/device/device: $(DEVICES) $(STAGE) $(B)/tests/support/support.a $(INTERNAL)
+$(B)/bench/device/device: $(DEVICES) $(FIXTURE) $(B)/tests/support/support.a $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS) -lcmocka
 CHECKED := $(addprefix tests/, unit/methods unit/schedules oracle/device property/ops \
              oracle/coverage oracle/chords)
@@ -83,7 +83,7 @@ check-device: test-deps
 	@B=$(B) KRS_DEVICE="$(DEVICE)" REVISION=$(REVISION) tools/check-device.sh $(CHECKED:%=$(B)/%)
 
 # Registers of each kernel, as a compiler for a graphics card that is not there has them.
-$(B)/bench/registers/registers: $(B)/bench/registers/registers.o $(STAGE) $(INTERNAL)
+$(B)/bench/registers/registers: $(B)/bench/registers/registers.o $(FIXTURE) $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-registers: $(B)/bench/registers/registers $(B)/krs
 	@B=$(B) REVISION=$(REVISION) tools/bench-registers.sh
@@ -101,13 +101,13 @@ bench-large: deps
 
 # How fast the viewer follows edits, sliders and the camera (bench/README.md).
 NUMBER_EDIT := $(B)/bench/view/number_edit.o
-$(B)/bench/view/view: $(B)/bench/view/view.o $(NUMBER_EDIT) $(STAGE) $(B)/live.a $(INTERNAL)
+$(B)/bench/view/view: $(B)/bench/view/view.o $(NUMBER_EDIT) $(FIXTURE) $(B)/live.a $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-view: $(B)/bench/view/view $(B)/krs
 	@REVISION=$(REVISION) bench/view/view.sh $(B) $(SCENES)
 
 # From a saved number to a written picture.
-$(B)/bench/edits/edits: $(B)/bench/edits/edits.o $(NUMBER_EDIT) $(STAGE) $(B)/live.a $(INTERNAL)
+$(B)/bench/edits/edits: $(B)/bench/edits/edits.o $(NUMBER_EDIT) $(FIXTURE) $(B)/live.a $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-edits: $(B)/bench/edits/edits $(B)/krs
 	@REVISION=$(REVISION) bench/edits/edits.sh $(B) $(SCENES)
@@ -128,7 +128,7 @@ bench-mesh: $(B)/krs $(PEER) $(MESH_JUDGE)
 # For `make test`.
 ALONE += tests/bench.sh
 test-programs: $(B)/bench/bench
-clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
+clang-objects: $(BENCH:%.c=$(B)/%.o) $(FIXTURE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o \
