@@ -14,7 +14,7 @@ static const double USUAL_CELLS = 128, USUAL_BAND = 3;
 /* Samples of a file that has all, and bricks of those that are looked at for one that has those near the surface. */
 static const double MAX_SAMPLES = 2147483648.0, MAX_BRICKS = 1073741824.0;
 /* Along the longest side; the library takes twice as many. */
-static const double MAX_CELLS = 0.5 * KRS_MOST_CELLS;
+static const double MAX_CELLS = 0.5 * KRS_MAX_CELLS;
 
 typedef struct GridOutput {
     const char       *path;

@@ -27,8 +27,8 @@ static bool add_output(Options *options, const char *file)
 /* What its row takes, and yet cannot be. */
 static KrsStatus check_number(const Options *options, OptionId id)
 {
-    if (id == OPTION_ZONE && options->zone_count == KRS_MOST_ZONES)
-        return say_usage(options, "there are at most %d zones", KRS_MOST_ZONES);
+    if (id == OPTION_ZONE && options->zone_count == KRS_MAX_ZONES)
+        return say_usage(options, "there are at most %d zones", KRS_MAX_ZONES);
     return KRS_OK;
 }
 
@@ -235,7 +235,7 @@ static KrsStatus check_combinations(Options *options)
         return say_usage(options, "compile needs one folder to write to: -o DIR");
     if (options->stereo >= 0 && options->light_groups)
         return say_usage(options, "--light-groups are of one picture; --stereo has two");
-    if (options->light_groups && options->how.most_radiance > 0)
+    if (options->light_groups && options->how.max_radiance > 0)
         return say_usage(options,
                          "--light-groups add up to the picture; with --clamp-radiance they "
                          "do not");

@@ -235,7 +235,7 @@ static KrsStatus find_pixels(Slicing *slicing)
         pixels[1] = options->how.height;
     }
     double all = pixels[0] * pixels[1];
-    if (fmax(pixels[0], pixels[1]) > KRS_MOST_SIDE || all > MAX_PIXELS)
+    if (fmax(pixels[0], pixels[1]) > KRS_MAX_SIDE || all > MAX_PIXELS)
         return say_usage(options,
                          "pictures of %.0f x %.0f pixels are too large; a smaller --resolution "
                          "has fewer",

@@ -61,8 +61,8 @@ static bool find_samples(KrsGrid *grid)
     for (int k = 0; k < 3; k++) {
         double first = floor(grid->low[k] / shape->cell) - margin;
         double last  = ceil(grid->high[k] / shape->cell) + margin;
-        if (!(fabs(first) < KRS_MOST_CELLS && fabs(last) < KRS_MOST_CELLS &&
-              last - first < KRS_MOST_CELLS))
+        if (!(fabs(first) < KRS_MAX_CELLS && fabs(last) < KRS_MAX_CELLS &&
+              last - first < KRS_MAX_CELLS))
             return false;
         if (options->aligned)
             first = floor(first / BRICK) * BRICK;

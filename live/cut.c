@@ -52,12 +52,12 @@ void cut_drag(Cut *cut, const KrsCamera *camera, double right, double up)
 size_t cut_zones(const Cut *cut, double (*zones)[4], size_t count)
 {
     const double radius = ROUNDNESS * cut->size;
-    if (cut->plane && count < KRS_MOST_ZONES) {
+    if (cut->plane && count < KRS_MAX_ZONES) {
         for (int i = 0; i < 3; i++)
             zones[count][i] = cut->point[i] + radius * cut->normal[i];
         zones[count++][3] = radius;
     }
-    if (cut->ball && count < KRS_MOST_ZONES) {
+    if (cut->ball && count < KRS_MAX_ZONES) {
         memcpy(zones[count], cut->center, sizeof cut->center);
         zones[count++][3] = cut->radius;
     }

@@ -180,9 +180,9 @@ static void draw_save(Viewing *viewing)
         viewing->save.kind = (SaveKind)kind;
     if (gui_choice("form", &form, forms, 2))
         viewing->save.exr = form == 1;
-    draw_count("width", &viewing->save.width, 1, KRS_MOST_SIDE, view->width);
-    draw_count("height", &viewing->save.height, 1, KRS_MOST_SIDE, view->height);
-    draw_count("samples", &viewing->save.samples, 1, KRS_MOST_SAMPLES, view->samples);
+    draw_count("width", &viewing->save.width, 1, KRS_MAX_SIDE, view->width);
+    draw_count("height", &viewing->save.height, 1, KRS_MAX_SIDE, view->height);
+    draw_count("samples", &viewing->save.samples, 1, KRS_MAX_SAMPLES, view->samples);
     if (viewing->save.kind != SAVE_PICTURE)
         draw_count("frames", &viewing->save.frames, 1, 9999, 1);
     if (gui_button(saving.busy ? "Give up##save" : "Save##save", saving.busy))
@@ -315,7 +315,7 @@ static void draw_numbers_of_shot(const Viewing *viewing)
              "%llu unresolved, %.1f MB",
              stats->total_ms, stats->wall_ms, (unsigned long long)stats->rays,
              (unsigned long long)stats->evaluations, stats->evaluations_per_ray,
-             stats->most_evaluations_per_ray, stats->flops_per_evaluation, stats->gflops,
+             stats->max_evaluations_per_ray, stats->flops_per_evaluation, stats->gflops,
              (unsigned long long)stats->unresolved, (double)stats->peak_memory_bytes / 1e6);
     gui_source(GUI_PLAIN, line);
 }

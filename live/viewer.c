@@ -103,8 +103,8 @@ static void send_view(Viewing *viewing)
         return; /* minimised */
     if (width != viewing->view.width || height != viewing->view.height)
         viewing->view_changed = true;
-    viewing->view.width  = width < KRS_MOST_SIDE ? width : KRS_MOST_SIDE;
-    viewing->view.height = height < KRS_MOST_SIDE ? height : KRS_MOST_SIDE;
+    viewing->view.width  = width < KRS_MAX_SIDE ? width : KRS_MAX_SIDE;
+    viewing->view.height = height < KRS_MAX_SIDE ? height : KRS_MAX_SIDE;
     if (viewing->view_changed) {
         painter_show(viewing->painter, &viewing->view);
         if (!viewing->playing && !viewing->undoing)

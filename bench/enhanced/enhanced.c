@@ -315,10 +315,10 @@ static void compare_few_steps(KrsRenderer *renderer)
                                     .samples      = 1,
                                     .no_beams     = true,
                                     .no_occlusion = true,
-                                    .most_steps   = FEW,
+                                    .max_steps    = FEW,
                                     .trace        = methods[i]};
         KrsPicture      *few     = fixture_render(&fixture, &options);
-        options.most_steps       = FEWER;
+        options.max_steps        = FEWER;
         KrsPicture *fewer        = fixture_render(&fixture, &options);
         sheet_print(&sheet, "| %s | %llu | %llu |\n", krs_trace_names[methods[i]],
                     (unsigned long long)few->stats.unresolved,

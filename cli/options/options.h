@@ -150,7 +150,7 @@ typedef struct Options {
         ExitPair *items;
         size_t    count, capacity;
     } exit_map;
-    double zones[KRS_MOST_ZONES][4];
+    double zones[KRS_MAX_ZONES][4];
     size_t zone_count;
 
     bool     animated; /* --frames */

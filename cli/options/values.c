@@ -142,7 +142,7 @@ static bool read_six(const char *word, double first[3], double second[3])
 {
     for (int i = 0; i < 6; i++) {
         double *number = i < 3 ? &first[i] : &second[i - 3];
-        if (!read_number_prefix(word, &word, number) || fabs(*number) > KRS_MOST_COORDINATE ||
+        if (!read_number_prefix(word, &word, number) || fabs(*number) > KRS_MAX_COORDINATE ||
             *word != (i < 5 ? ',' : '\0'))
             return false;
         word += i < 5;
@@ -171,7 +171,7 @@ bool read_zone(Options *options, const char *word)
 {
     double *zone = options->zones[options->zone_count];
     for (int i = 0; i < 4; i++) {
-        if (!read_number_prefix(word, &word, &zone[i]) || fabs(zone[i]) > KRS_MOST_COORDINATE ||
+        if (!read_number_prefix(word, &word, &zone[i]) || fabs(zone[i]) > KRS_MAX_COORDINATE ||
             *word != (i < 3 ? ',' : '\0'))
             return false;
         word += i < 3;
@@ -312,7 +312,7 @@ bool read_frames(Options *options, const char *word)
 bool read_size(const char *word, KrsRenderOptions *how)
 {
     uint32_t size[2];
-    if (!read_wholes(word, 'x', 1, KRS_MOST_SIDE, size, 2))
+    if (!read_wholes(word, 'x', 1, KRS_MAX_SIDE, size, 2))
         return false;
     how->width  = size[0];
     how->height = size[1];
@@ -322,7 +322,7 @@ bool read_size(const char *word, KrsRenderOptions *how)
 bool read_crop(const char *word, KrsWindow *crop)
 {
     uint32_t numbers[4];
-    if (!read_wholes(word, ',', 0, KRS_MOST_SIDE, numbers, 4))
+    if (!read_wholes(word, ',', 0, KRS_MAX_SIDE, numbers, 4))
         return false;
     *crop = (KrsWindow){numbers[0], numbers[1], numbers[2], numbers[3]};
     return crop->width > 0 && crop->height > 0;

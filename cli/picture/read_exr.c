@@ -135,7 +135,7 @@ static KrsStatus check_layout(const Options *options, Reading *r, float otherwis
         return say_unusable(r, "its windows are missing");
     int64_t width  = (int64_t)r->display.max.x - r->display.min.x + 1;
     int64_t height = (int64_t)r->display.max.y - r->display.min.y + 1;
-    if ((int64_t)r->data.max.x - r->data.min.x >= 4 * KRS_MOST_SIDE)
+    if ((int64_t)r->data.max.x - r->data.min.x >= 4 * KRS_MAX_SIDE)
         return say_unusable(r, "its lines are too long");
     if (width != r->width || height != r->height)
         return say_usage(options, "`%s` has %lldx%lld pixels, and the picture %ux%u: give --size",

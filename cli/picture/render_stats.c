@@ -23,7 +23,7 @@ static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsPro
                 "\"unresolved\": %llu, \"clamped\": %llu, \"submissions\": %llu, \"device\": ",
                 stats->total_ms, stats->wall_ms, stats->device_time ? "true" : "false",
                 (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
-                stats->evaluations_per_ray, stats->most_evaluations_per_ray,
+                stats->evaluations_per_ray, stats->max_evaluations_per_ray,
                 stats->flops_per_evaluation, stats->gflops, (unsigned long long)stats->unresolved,
                 (unsigned long long)stats->clamped, (unsigned long long)stats->submissions);
     text_json(json, stats->device);
@@ -81,7 +81,7 @@ static void print_stats(const KrsRenderStats *stats, const KrsProgram *program)
         printf(" %s %.1f", krs_phase_names[phase], stats->phase_ms[phase]);
     printf("\nrays           %llu, %llu evaluations, %.1f per ray, at most %u\n",
            (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
-           stats->evaluations_per_ray, stats->most_evaluations_per_ray);
+           stats->evaluations_per_ray, stats->max_evaluations_per_ray);
     printf("arithmetic     %.0f flops per evaluation, %.2f Gflop/s\n", stats->flops_per_evaluation,
            stats->gflops);
     printf(

@@ -11,7 +11,7 @@
 /* The same in the text of shaders. */
 #define NOWHERE_TEXT "1e30"
 /* Coordinates, and the sides of boxes without an end, are no larger: single precision can square
-   them.  KRS_MOST_COORDINATE is the same for callers. */
+   them.  KRS_MAX_COORDINATE is the same for callers. */
 #define FAR_SIDE 1e18
 
 #endif

@@ -24,7 +24,7 @@ static LaneTape make_tape(const MeshField *field, Arena *arena)
 static size_t bytes_of_region(const LaneTape *tape)
 {
     return 65536 +
-           2 * (lane_most_steps(tape) + tape->scalar_count) *
+           2 * (lane_max_steps(tape) + tape->scalar_count) *
                (sizeof(LaneStep) + sizeof(LaneCode) + 4 * sizeof(LaneScalar)) +
            tape->call_count * (2 * sizeof(LaneCall) + LANE_BYTES_OF_INSTANCES);
 }

@@ -76,7 +76,7 @@ KrsStatus pass_emit(Compilation *c)
                              .is_subsurface   = program->subsurface ? c->is_subsurface : NULL,
                              .has_slopes      = scene->slope_count > 0,
                              .derives         = program->gradients};
-    module_lay_out(&scene->module, KRS_MOST_ZONES, arena, &c->scratch);
+    module_lay_out(&scene->module, KRS_MAX_ZONES, arena, &c->scratch);
     program->value_slots           = scene->module.slots.plain.slots;
     program->camera_relative_slots = scene->module.slots.camera_relative.slots;
     program->glsl_length           = print_entry_points(c, false).length;

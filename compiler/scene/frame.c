@@ -236,14 +236,14 @@ KrsStatus krs_state_update(KrsState *frame, const KrsScene *scene)
 static bool zone_is_valid(const double zone[4])
 {
     for (int k = 0; k < 4; k++)
-        if (!(fabs(zone[k]) <= KRS_MOST_COORDINATE))
+        if (!(fabs(zone[k]) <= KRS_MAX_COORDINATE))
             return false;
     return zone[3] >= 0;
 }
 
 KrsStatus krs_state_set_zones(KrsState *frame, const double (*zones)[4], size_t count)
 {
-    if (count > KRS_MOST_ZONES || (!zones && count > 0))
+    if (count > KRS_MAX_ZONES || (!zones && count > 0))
         return KRS_BAD_ARGUMENT;
     for (size_t i = 0; i < count; i++)
         if (!zone_is_valid(zones[i]))

@@ -209,7 +209,7 @@ struct KrsState {
     uint64_t            ran; /* operations that marching rays has taken; one for many points at once
                                    counts as one */
     bool                fresh; /* the frame values in `values` belong to the parameters */
-    double              zones[KRS_MOST_ZONES][4];
+    double              zones[KRS_MAX_ZONES][4];
     size_t              zone_count; /* zones of the caller */
 };
 

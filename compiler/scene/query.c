@@ -583,5 +583,5 @@ KrsStatus krs_raycast(KrsState *frame, const double (*origins)[3], const double 
                       size_t count, double farthest, double tolerance, KrsHit *hits)
 {
     return frame_raycast(frame, origins, directions, count, farthest, tolerance,
-                         (RayLimits){KRS_MOST_STEPS, UINT64_MAX}, hits);
+                         (RayLimits){KRS_MAX_STEPS, UINT64_MAX}, hits);
 }

@@ -13,7 +13,7 @@ extern "C" {
 #endif
 
 /* Names stand in arrays of this size, whose last elements are NULL: there will be more choices. */
-#define KRS_MOST_CHOICES 32
+#define KRS_MAX_CHOICES 32
 
 /* How light is found: KRS_INTEGRATOR_PREVIEW and so on. */
 typedef enum KrsIntegrator {
@@ -22,7 +22,7 @@ typedef enum KrsIntegrator {
 #include "krs/choices.def"
     KRS_INTEGRATOR_COUNT
 } KrsIntegrator;
-extern const char *const krs_integrator_names[KRS_MOST_CHOICES]; /* "default", "preview", ... */
+extern const char *const krs_integrator_names[KRS_MAX_CHOICES]; /* "default", "preview", ... */
 
 /* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on. */
 typedef enum KrsTrace {
@@ -30,7 +30,7 @@ typedef enum KrsTrace {
 #include "krs/choices.def"
     KRS_TRACE_COUNT
 } KrsTrace;
-extern const char *const krs_trace_names[KRS_MOST_CHOICES]; /* "default", "plain", ... */
+extern const char *const krs_trace_names[KRS_MAX_CHOICES]; /* "default", "plain", ... */
 
 /* How rays are assigned to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
 typedef enum KrsSchedule {
@@ -38,7 +38,7 @@ typedef enum KrsSchedule {
 #include "krs/choices.def"
     KRS_SCHEDULE_COUNT
 } KrsSchedule;
-extern const char *const krs_schedule_names[KRS_MOST_CHOICES];
+extern const char *const krs_schedule_names[KRS_MAX_CHOICES];
 
 /* Whether heavy components of a scene are marched by one distance, or each by itself:
    KRS_COMPONENTS_TOGETHER and so on. */
@@ -47,7 +47,7 @@ typedef enum KrsComponents {
 #include "krs/choices.def"
     KRS_COMPONENTS_COUNT
 } KrsComponents;
-extern const char *const krs_components_names[KRS_MOST_CHOICES];
+extern const char *const krs_components_names[KRS_MAX_CHOICES];
 
 /* Where the distance is looked at around a hit for its normal: KRS_NORMALS_FORWARD and so on.
    KRS_NORMALS_ANALYTIC wants a scene that was compiled with `gradients`; where points are relative
@@ -58,7 +58,7 @@ typedef enum KrsNormals {
 #include "krs/choices.def"
     KRS_NORMALS_COUNT
 } KrsNormals;
-extern const char *const krs_normals_names[KRS_MOST_CHOICES];
+extern const char *const krs_normals_names[KRS_MAX_CHOICES];
 
 /* The shadows of lights that have a size: KRS_SHADOWS_SOFT, KRS_SHADOWS_AREA. */
 typedef enum KrsShadows {
@@ -66,7 +66,7 @@ typedef enum KrsShadows {
 #include "krs/choices.def"
     KRS_SHADOWS_COUNT
 } KrsShadows;
-extern const char *const krs_shadows_names[KRS_MOST_CHOICES];
+extern const char *const krs_shadows_names[KRS_MAX_CHOICES];
 
 /* How far above surfaces rays of paths begin: KRS_STARTS_PRECISION, KRS_STARTS_DISTANCE. */
 typedef enum KrsStarts {
@@ -74,7 +74,7 @@ typedef enum KrsStarts {
 #include "krs/choices.def"
     KRS_STARTS_COUNT
 } KrsStarts;
-extern const char *const krs_starts_names[KRS_MOST_CHOICES];
+extern const char *const krs_starts_names[KRS_MAX_CHOICES];
 
 /* How the rays of a pixel are weighed by their place: KRS_PIXEL_FILTER_BOX and so on. */
 typedef enum KrsPixelFilter {
@@ -82,7 +82,7 @@ typedef enum KrsPixelFilter {
 #include "krs/choices.def"
     KRS_PIXEL_FILTER_COUNT
 } KrsPixelFilter;
-extern const char *const krs_pixel_filter_names[KRS_MOST_CHOICES];
+extern const char *const krs_pixel_filter_names[KRS_MAX_CHOICES];
 
 /* What falls on a plate: KRS_CATCHER_DEFAULT, KRS_CATCHER_SHADOWS and so on. */
 typedef enum KrsCatcher {
@@ -90,7 +90,7 @@ typedef enum KrsCatcher {
 #include "krs/choices.def"
     KRS_CATCHER_COUNT
 } KrsCatcher;
-extern const char *const krs_catcher_names[KRS_MOST_CHOICES];
+extern const char *const krs_catcher_names[KRS_MAX_CHOICES];
 
 #ifdef __GNUC__
 #pragma GCC visibility pop

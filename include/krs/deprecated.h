@@ -16,6 +16,10 @@ extern "C" {
     KRS_DEPRECATED(#is) static inline void was parameters; \
     static inline void was                     parameters { is arguments; }
 
+#define KRS_MOST_ZONES      KRS_MAX_ZONES
+#define KRS_MOST_COORDINATE KRS_MAX_COORDINATE
+#define KRS_MOST_STEPS      KRS_MAX_STEPS
+
 typedef KrsState KrsFrame           KRS_DEPRECATED("KrsState");
 typedef KrsStateSlope KrsFrameSlope KRS_DEPRECATED("KrsStateSlope");
 KRS_RENAMED(KrsStatus, krs_frame_new, krs_state_new, (const KrsScene *scene, KrsState **state),

@@ -43,7 +43,7 @@ typedef struct KrsGridOptions {
 #define KRS_BRICK_SIDE    8
 #define KRS_BRICK_SAMPLES 512
 /* Along an axis. */
-#define KRS_MOST_CELLS 1e9
+#define KRS_MAX_CELLS 1e9
 
 /* Sample i, j, k is at (first[0] + i, first[1] + j, first[2] + k) times the cell. */
 typedef struct KrsGridShape {
@@ -76,7 +76,7 @@ typedef struct KrsGrid KrsGrid;
  * Prepares a grid of what a state shows, which must stay as it is until the grid is freed.  The grid reaches beyond
  * what is solid by the band, or without one by 3 cells; with `fog` by one.  With `exact` this takes most of the time.
  * KRS_BAD_ARGUMENT: there is no such component; what is sampled has no end, or is no solid (surfaces without
- * thickness); the grid is longer than KRS_MOST_CELLS along an axis, or that far from the origin; or the error is below
+ * thickness); the grid is longer than KRS_MAX_CELLS along an axis, or that far from the origin; or the error is below
  * what krs_mesh takes.
  */
 KRS_SIZED KrsStatus    krs_grid_new(KrsState *state, const KrsGridOptions *options, KrsGrid **grid);

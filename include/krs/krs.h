@@ -53,6 +53,23 @@ extern "C" {
 #define KRS_DEPRECATED(instead)
 #endif
 
+/* A member, and the name that it had. */
+#ifdef KRS_NO_DEPRECATED
+#define KRS_WAS(member, old, instead) member
+#elif defined __GNUC__
+#define KRS_WAS(member, old, instead) \
+    __extension__ union {             \
+        member;                       \
+        old KRS_DEPRECATED(instead);  \
+    }
+#else
+#define KRS_WAS(member, old, instead) \
+    union {                           \
+        member;                       \
+        old;                          \
+    }
+#endif
+
 /* The version of the library that a program runs with, as KRS_VERSION has it. */
 const char *krs_version(void);
 
@@ -327,11 +344,11 @@ KRS_SIZED KrsStatus krs_state_slope(const KrsScene *scene, size_t index, KrsStat
  * put its own things there.  The spheres are subtracted from all solids; a cut surface has the
  * component and material of its solid.  These zones replace those of the previous call.  Zones that
  * the scene declares stay.
- * KRS_BAD_ARGUMENT, and the state is unchanged: there are more than KRS_MOST_ZONES, a radius is
- * negative, or a number is not finite or beyond KRS_MOST_COORDINATE.
+ * KRS_BAD_ARGUMENT, and the state is unchanged: there are more than KRS_MAX_ZONES, a radius is
+ * negative, or a number is not finite or beyond KRS_MAX_COORDINATE.
  */
-#define KRS_MOST_ZONES      16
-#define KRS_MOST_COORDINATE 1e18 /* single precision can square it */
+#define KRS_MAX_ZONES      16
+#define KRS_MAX_COORDINATE 1e18 /* single precision can square it */
 KrsStatus krs_state_set_zones(KrsState *state, const double (*zones)[4], size_t count);
 
 typedef enum KrsProjection {
@@ -443,7 +460,7 @@ KrsStatus krs_normal(KrsState *state, const double (*points)[3], size_t count,
 /* What is known at a point, or where a ray ends. */
 typedef struct KrsHit {
     bool   hit;        /* for rays; always true for points */
-    bool   unresolved; /* for rays: ended after KRS_MOST_STEPS steps; nothing before `t` */
+    bool   unresolved; /* for rays: ended after KRS_MAX_STEPS steps; nothing before `t` */
     double t;          /* for rays: world units along the unit direction */
     double point[3];
     double distance;   /* at that point */
@@ -476,11 +493,11 @@ KRS_SIZED KrsStatus krs_probe(KrsState *state, const double (*points)[3], size_t
  * inside of a solid hits the solid's surface from inside; one that begins on a surface hits it at
  * 0.
  *
- * A ray that has not ended after KRS_MOST_STEPS steps is neither a hit nor a miss.  It is
+ * A ray that has not ended after KRS_MAX_STEPS steps is neither a hit nor a miss.  It is
  * `unresolved`, and no surface is before `t`.  This happens to rays that stay very near to a
  * surface, for example along an infinite plane.
  */
-#define KRS_MOST_STEPS 100000
+#define KRS_MAX_STEPS 100000
 KRS_SIZED KrsStatus krs_raycast(KrsState *state, const double (*origins)[3],
                                 const double (*directions)[3], size_t count, double farthest,
                                 double tolerance, KrsHit *hits);

@@ -183,19 +183,19 @@ typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEy
 #define KRS_DEFAULT_HEIGHT        720
 #define KRS_DEFAULT_SAMPLES       1
 #define KRS_DEFAULT_NOISY_SAMPLES 1024 /* where they end by noise, */
-#define KRS_LEAST_NOISY_SAMPLES   16   /* but not before */
+#define KRS_MIN_NOISY_SAMPLES     16   /* but not before */
 #define KRS_DEFAULT_NOISE_FLOOR   0.05
 #define KRS_DEFAULT_ERROR         0.25
-#define KRS_MOST_SIDE             16384 /* pixels along a side of a picture */
-#define KRS_MOST_SAMPLES          65536
-#define KRS_MOST_ERROR            1000
+#define KRS_MAX_SIDE              16384 /* pixels along a side of a picture */
+#define KRS_MAX_SAMPLES           65536
+#define KRS_MAX_ERROR             1000
 #define KRS_DEFAULT_BOUNCES       10
-#define KRS_MOST_BOUNCES          1000
-#define KRS_MOST_EVEN_HITS        16
+#define KRS_MAX_BOUNCES           1000
+#define KRS_MAX_EVEN_HITS         16
 #define KRS_DEFAULT_REFLECTANCE   0.04
-#define KRS_MOST_REFLECTANCE      0.99
+#define KRS_MAX_REFLECTANCE       0.99
 #define KRS_NO_LIGHT              UINT32_MAX
-#define KRS_MOST_LIGHT_GROUPS     240
+#define KRS_MAX_LIGHT_GROUPS      240
 
 /* Zero asks for the defaults. */
 typedef struct KrsRenderOptions {
@@ -211,7 +211,7 @@ typedef struct KrsRenderOptions {
     double        error; /* permitted distance from the surface, pixels; 0: likewise */
     /* Light of a ray is clamped to this, by its largest component; 0: no limit.  Each pass is
        clamped by itself: the light of three lamps, and every further sun. */
-    double most_radiance;
+    KRS_WAS(double max_radiance, double most_radiance, "max_radiance");
     /* Samples of a pixel end where the estimated error of its colour is below this, but not before
        16, and at `samples` at the latest: 0.02 is 2 %.  The error is the standard deviation of the
        mean of R, G and B, relative to their mean plus `noise_floor`.  0: as the scene says, or all
@@ -221,7 +221,7 @@ typedef struct KrsRenderOptions {
     /* 0: all light.  A number from 1 on: that light alone, without sky and fog's color; KRS_NO_LIGHT: none.
        What things emit is there in any case.  So pictures of lights, less the one without, add up. */
     uint32_t light;
-    bool     light_groups; /* makes KrsPicture.lights; neither with most_radiance nor with noise */
+    bool     light_groups; /* makes KrsPicture.lights; neither with max_radiance nor with noise */
     bool     mattes;       /* count what the rays of each pixel hit: KrsPicture.mattes */
     /* Of another renderer, a number and a colour for each pixel of the whole picture, from the top;
        NULL: none.  Rays end at the depths, which are as those of the depth plane; what is not a number
@@ -231,12 +231,13 @@ typedef struct KrsRenderOptions {
        lie in its shadow, where a camera that is no panorama shows what rays meet of it. */
     const float *depth;
     const float (*plate)[4];
-    KrsCatcher    catcher;             /* anything but KRS_CATCHER_NONE needs depths */
-    double        catcher_roughness;   /* of a glossy one, from 0 to 1; 0: as a mirror */
-    double        catcher_reflectance; /* head on, from 0 to KRS_MOST_REFLECTANCE; 0: 0.04 */
-    uint32_t      planes;        /* bits of KrsPlane; 0: all but noise, which is there where samples
+    KrsCatcher catcher;             /* anything but KRS_CATCHER_NONE needs depths */
+    double     catcher_roughness;   /* of a glossy one, from 0 to 1; 0: as a mirror */
+    double     catcher_reflectance; /* head on, from 0 to KRS_MAX_REFLECTANCE; 0: 0.04 */
+    uint32_t   planes; /* bits of KrsPlane; 0: all but noise, which is there where samples
                                     end by it */
-    uint32_t      most_steps;    /* of a primary ray; 0: 16384, which is also the most */
+    KRS_WAS(uint32_t max_steps, uint32_t most_steps,
+            "max_steps");        /* of a primary ray; 0: 16384, which is also the most */
     uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
     KrsTrace      trace;
     KrsSchedule   schedule;
@@ -245,7 +246,7 @@ typedef struct KrsRenderOptions {
     KrsNormals    normals;
     KrsStarts     starts;
     uint32_t      even_hits; /* iterations that even hits out along their rays (Keinert et al. 2014,
-                                 3.4); 0: none; at most KRS_MOST_EVEN_HITS */
+                                 3.4); 0: none; at most KRS_MAX_EVEN_HITS */
     KrsPixelFilter pixel_filter;  /* not of rays of a list, which stand where the caller has them */
     bool           no_beams;      /* rays of a tile do not share the marching of empty space */
     bool           no_upsampling; /* neighbours do not share rays to lights, and such rays are sent
@@ -262,22 +263,23 @@ typedef enum KrsPhase {
 #include "krs/choices.def"
     KRS_PHASE_COUNT
 } KrsPhase;
-extern const char *const krs_phase_names[KRS_MOST_CHOICES]; /* "beams", ... */
+extern const char *const krs_phase_names[KRS_MAX_CHOICES]; /* "beams", ... */
 
 typedef struct KrsRenderStats {
-    double   spirv_ms, pipeline_ms;      /* compiling shaders: to SPIR-V, by the driver */
-    double   phase_ms[KRS_MOST_CHOICES]; /* on the device */
-    double   total_ms;                   /* their sum */
-    double   wall_ms;                    /* of krs_render, without compiling */
+    double   spirv_ms, pipeline_ms;     /* compiling shaders: to SPIR-V, by the driver */
+    double   phase_ms[KRS_MAX_CHOICES]; /* on the device */
+    double   total_ms;                  /* their sum */
+    double   wall_ms;                   /* of krs_render, without compiling */
     bool     device_time;         /* phases by timestamps of the device, else by the host's clock */
     uint64_t rays;                /* primary rays */
     uint64_t evaluations;         /* of the distance, spent on them */
     double   evaluations_per_ray; /* the mean */
-    uint32_t most_evaluations_per_ray;
+    KRS_WAS(uint32_t max_evaluations_per_ray, uint32_t most_evaluations_per_ray,
+            "max_evaluations_per_ray");
     double   flops_per_evaluation;
     double   gflops;            /* of the primary phase */
     uint64_t unresolved;        /* primary and shadow rays that ran out of steps */
-    uint64_t clamped;           /* rays whose light was clamped to most_radiance */
+    uint64_t clamped;           /* rays whose light was clamped to max_radiance */
     uint64_t submissions;       /* of work to the device; the host waits for each */
     uint64_t kernels;           /* that the renderer has made since it was opened, for all scenes */
     uint64_t peak_memory_bytes; /* the most held at once on the device, and the picture */
@@ -459,4 +461,7 @@ KRS_SIZED KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *state,
 
 #include "krs/film.h"
 #include "krs/sized_vulkan.h"
+#ifndef KRS_NO_DEPRECATED
+#include "krs/deprecated_vulkan.h"
+#endif
 #endif

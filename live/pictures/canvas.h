@@ -16,7 +16,7 @@ typedef struct View {
     KrsCamera camera;
     double    time;
     double (*values)[4]; /* of each parameter of the version */
-    double        zones[KRS_MOST_ZONES][4];
+    double        zones[KRS_MAX_ZONES][4];
     size_t        zone_count;
     uint32_t      width, height;
     KrsIntegrator integrator;

@@ -261,7 +261,7 @@ static int cut(Finding *f, int solid)
 
 FlatWork flat_work_new(const MeshField *field, Arena *arena)
 {
-    size_t most = LANE_INPUTS + lane_most_steps(&field->tape);
+    size_t most = LANE_INPUTS + lane_max_steps(&field->tape);
     return (FlatWork){arena_new_array(arena, Form, most), arena_new_array(arena, int, most)};
 }
 

@@ -139,8 +139,8 @@ static void take_counters(Job *job)
     stats->unresolved += control->unresolved;
     stats->clamped += control->clamped;
     stats->evaluations += control->evaluations;
-    if (control->max_evaluations > stats->most_evaluations_per_ray)
-        stats->most_evaluations_per_ray = control->max_evaluations;
+    if (control->max_evaluations > stats->max_evaluations_per_ray)
+        stats->max_evaluations_per_ray = control->max_evaluations;
     control->unresolved = control->evaluations = control->max_evaluations = 0;
     control->clamped                                                      = 0;
 }
@@ -204,8 +204,7 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
         .seed          = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
         .no_occlusion  = job->options.no_occlusion,
         .no_background = job->options.plate != NULL,
-        .most_radiance = job->options.most_radiance > 0 ? (float)job->options.most_radiance
-                                                        : INFINITY,
+        .max_radiance = job->options.max_radiance > 0 ? (float)job->options.max_radiance : INFINITY,
     };
     plate_tell(film, control);
     job->later_rows = 1u << ROW_COLORS | (job->options.mattes ? MATTE_ROWS : 0);
@@ -381,7 +380,7 @@ static KrsStatus add(KrsFilm *film, const Addition *a)
     renderer_clear(film->rendering->renderer);
     if (!follow_rendering(film))
         return gpu->status;
-    if (a->samples == 0 || a->samples > KRS_MOST_SAMPLES - film->samples) {
+    if (a->samples == 0 || a->samples > KRS_MAX_SAMPLES - film->samples) {
         gpu_refuse(gpu, KRS_BAD_ARGUMENT, "%s", "a film has 1 to 65536 samples per pixel");
         return gpu->status;
     }

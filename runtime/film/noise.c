@@ -9,7 +9,7 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
-static_assert((int)MIN_NOISE_SAMPLES == KRS_LEAST_NOISY_SAMPLES, "noise.comp");
+static_assert((int)MIN_NOISE_SAMPLES == KRS_MIN_NOISY_SAMPLES, "noise.comp");
 
 bool noise_is_wanted(const KrsRenderOptions *options)
 {

@@ -234,8 +234,8 @@ static KrsRenderStats sum_of(const KrsRenderStats *a, const KrsRenderStats *b)
     sum.unresolved += b->unresolved;
     sum.clamped += b->clamped;
     sum.submissions += b->submissions;
-    if (b->most_evaluations_per_ray > sum.most_evaluations_per_ray)
-        sum.most_evaluations_per_ray = b->most_evaluations_per_ray;
+    if (b->max_evaluations_per_ray > sum.max_evaluations_per_ray)
+        sum.max_evaluations_per_ray = b->max_evaluations_per_ray;
     if (b->peak_memory_bytes > sum.peak_memory_bytes)
         sum.peak_memory_bytes = b->peak_memory_bytes;
     sum.gflops = 0.5 * (a->gflops + b->gflops);

@@ -72,7 +72,7 @@ static Header header_of(const KrsFilm *film)
     header.clamped         = stats->clamped;
     header.submissions     = stats->submissions;
     header.samples         = film->samples;
-    header.max_evaluations = stats->most_evaluations_per_ray;
+    header.max_evaluations = stats->max_evaluations_per_ray;
     return header;
 }
 
@@ -83,13 +83,13 @@ static void take_header(KrsFilm *film, const Header *header)
     memcpy(film->sums->world_to_camera, header->world_to_camera, sizeof header->world_to_camera);
     memcpy(film->sums->world_to_ndc, header->world_to_ndc, sizeof header->world_to_ndc);
     memcpy(stats->phase_ms, header->phase_ms, sizeof header->phase_ms);
-    stats->wall_ms                  = header->wall_ms;
-    stats->evaluations              = header->evaluations;
-    stats->unresolved               = header->unresolved;
-    stats->clamped                  = header->clamped;
-    stats->submissions              = header->submissions;
-    stats->most_evaluations_per_ray = header->max_evaluations;
-    film->samples                   = header->samples;
+    stats->wall_ms                 = header->wall_ms;
+    stats->evaluations             = header->evaluations;
+    stats->unresolved              = header->unresolved;
+    stats->clamped                 = header->clamped;
+    stats->submissions             = header->submissions;
+    stats->max_evaluations_per_ray = header->max_evaluations;
+    film->samples                  = header->samples;
 }
 
 static bool fits(const KrsFilm *film, const Header *header)
@@ -101,7 +101,7 @@ static bool fits(const KrsFilm *film, const Header *header)
            memcmp(&own.window, &header->window, sizeof own.window) == 0 &&
            own.width == header->width && own.height == header->height &&
            own.planes == header->planes && own.mattes == header->mattes && header->samples > 0 &&
-           header->samples <= KRS_MOST_SAMPLES;
+           header->samples <= KRS_MAX_SAMPLES;
 }
 
 /* All arrays of the film. */

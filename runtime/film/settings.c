@@ -46,7 +46,7 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
         (unsigned)o->normals >= KRS_NORMALS_COUNT ||
         (unsigned)o->pixel_filter >= KRS_PIXEL_FILTER_COUNT ||
         (unsigned)o->starts >= KRS_STARTS_COUNT || (unsigned)o->catcher >= KRS_CATCHER_COUNT ||
-        o->even_hits > KRS_MOST_EVEN_HITS || (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
+        o->even_hits > KRS_MAX_EVEN_HITS || (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
         return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow, "
                                  "filter or integrator");
     if (o->normals == KRS_NORMALS_ANALYTIC && !rendering->program->gradients)
@@ -79,7 +79,7 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     o->bounces = first_nonzero(o->bounces, image->bounces, KRS_DEFAULT_BOUNCES);
     o->planes  = first_nonzero(o->planes, 0, KRS_PLANE_ALL & ~KRS_PLANE_NOISE) |
                 (o->noise > 0 ? KRS_PLANE_NOISE : 0);
-    o->most_steps    = first_nonzero(o->most_steps, 0, MAX_STEPS);
+    o->max_steps     = first_nonzero(o->max_steps, 0, MAX_STEPS);
     o->steps_at_once = first_nonzero(o->steps_at_once, 0,
                                      o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
@@ -100,33 +100,33 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
 
 static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
 {
-    if (o->width > KRS_MOST_SIDE || o->height > KRS_MOST_SIDE)
+    if (o->width > KRS_MAX_SIDE || o->height > KRS_MAX_SIDE)
         return refuse(rendering, "a picture has at most 16384 pixels a side");
     if (o->crop.height == 0 || o->crop.x >= o->width || o->crop.width > o->width - o->crop.x ||
         o->crop.y >= o->height || o->crop.height > o->height - o->crop.y)
         return refuse(rendering, "the crop is not inside of the picture");
-    if (o->samples > KRS_MOST_SAMPLES)
+    if (o->samples > KRS_MAX_SAMPLES)
         return refuse(rendering, "there are at most 65536 samples per pixel");
-    if (o->bounces > KRS_MOST_BOUNCES)
+    if (o->bounces > KRS_MAX_BOUNCES)
         return refuse(rendering, "a path has at most 1000 bounces");
-    if (!(o->error > 0) || !(o->error <= KRS_MOST_ERROR))
+    if (!(o->error > 0) || !(o->error <= KRS_MAX_ERROR))
         return refuse(rendering, "the permitted error must be above 0 and at most 1000 pixels");
     if (!(o->noise >= 0) || !(o->noise_floor > 0))
         return refuse(rendering, "noise at which samples end, and its floor, must be above 0");
-    if (o->light_groups && (o->most_radiance > 0 || noise_is_wanted(o)))
+    if (o->light_groups && (o->max_radiance > 0 || noise_is_wanted(o)))
         return refuse(rendering, "what is clamped, or ends by noise, has no groups of lights");
-    if (o->light_groups && krs_light_count(rendering->scene) > KRS_MOST_LIGHT_GROUPS)
+    if (o->light_groups && krs_light_count(rendering->scene) > KRS_MAX_LIGHT_GROUPS)
         return refuse(rendering, "there are groups for at most 240 lights");
     if (o->catcher != KRS_CATCHER_NONE && !o->depth)
         return refuse(rendering, "shadows fall on a plate whose depths are known");
     if (o->catcher == KRS_CATCHER_GLOSSY && o->integrator == KRS_INTEGRATOR_PREVIEW)
         return refuse(rendering, "a plate is glossy with the integrators direct and path");
     if (!(o->catcher_roughness >= 0) || !(o->catcher_roughness <= 1) ||
-        !(o->catcher_reflectance > 0) || !(o->catcher_reflectance <= KRS_MOST_REFLECTANCE))
+        !(o->catcher_reflectance > 0) || !(o->catcher_reflectance <= KRS_MAX_REFLECTANCE))
         return refuse(rendering, "the roughness of a plate is at most 1, its reflectance 0.99");
-    if (!(o->most_radiance >= 0))
+    if (!(o->max_radiance >= 0))
         return refuse(rendering, "the most radiance of a ray must be above 0");
-    if (!(o->slice_ms > 0) || o->most_steps > MAX_STEPS || o->steps_at_once > MAX_STEPS_AT_ONCE)
+    if (!(o->slice_ms > 0) || o->max_steps > MAX_STEPS || o->steps_at_once > MAX_STEPS_AT_ONCE)
         return refuse(rendering,
                       "slices must be longer than nothing, and rays have at most 16384 steps");
     return true;

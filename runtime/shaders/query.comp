@@ -65,7 +65,7 @@ void begin_item(uint number, bool saved)
 
 bool item_needs_step()
 {
-    return (state == STATE_MARCHING || state == STATE_REFINING) && steps < frame.most_steps;
+    return (state == STATE_MARCHING || state == STATE_REFINING) && steps < frame.max_steps;
 }
 
 // Where branches save work, components that are far away for their size are left out.

@@ -47,7 +47,7 @@ vec3 finite_or_black(vec3 radiance)
 float clamp_factor(vec3 radiance)
 {
     float most = max(max(radiance.r, radiance.g), radiance.b);
-    return most > control.most_radiance ? control.most_radiance / most : 1.0;
+    return most > control.max_radiance ? control.max_radiance / most : 1.0;
 }
 
 // The same light, within that limit; counts where it was beyond.

@@ -117,7 +117,7 @@ float tolerance_in_pixels;     // length that may stay unverified, in pixels
 vec3  aside;                   // from the start to where the first distance is taken, then 0
 float cosine;                  // of the angle between that and the ray
 #endif
-uint  most_steps;              // of a ray of this lane
+uint  max_steps;              // of a ray of this lane
 uint  found_tiles;             // bits of this lane's beams that find something
 
 uint  first_tile; // of the workgroup
@@ -130,7 +130,7 @@ vec4  kept_starts, more_starts; // starts of the first tile, and of the second
 
 void begin_group(uint first)
 {
-    most_steps = found_tiles = 0u;
+    max_steps = found_tiles = 0u;
     tolerance_in_pixels = min(TOLERANCE * frame.error, MAX_TOLERANCE);
     find_tiles(8u, first_8, count_8);
     find_tiles(32u, first_32, count_32);
@@ -388,7 +388,7 @@ void begin_item(uint number, bool saved)
 
 bool item_needs_step()
 {
-    uint most = control.phase == TRACE_RAYS ? frame.most_steps : MAX_BEAM_STEPS;
+    uint most = control.phase == TRACE_RAYS ? frame.max_steps : MAX_BEAM_STEPS;
     return exists && (march.state == STATE_MARCHING || march.state == STATE_REFINING) &&
            march.steps < most;
 }
@@ -492,7 +492,7 @@ void end_item()
         RayEnd(march.t, march.side, march.steps, march.state, unresolved, march_group));
     if (exists) {
         ends[march.index] = uvec2(floatBitsToUint(march.t), bits);
-        most_steps = max(most_steps, is_ray ? march.steps : 0u);
+        max_steps = max(max_steps, is_ray ? march.steps : 0u);
     }
 }
 
@@ -504,7 +504,7 @@ void end_group(uint steps)
                                       uint(findLSB(found_tiles)));
             tiles[atomicAdd(counts.tiles, 1u)] = cell.y * count_8.x + cell.x;
         }
-    uint sum = steps, most = most_steps;
+    uint sum = steps, most = max_steps;
 #ifdef SUBGROUPS
     sum = subgroupAdd(sum);
     most = subgroupMax(most);

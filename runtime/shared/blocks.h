@@ -95,7 +95,7 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
     /* paths use. */                                                                                   \
     FLOATS(13, error, occlusion_reach, normal_reach, sky_power)                                        \
     /* Most steps of a ray; balls around what emits light; 1: hits are snapped (march_step.glsl). */   \
-    UINTS(14, most_steps, emissive_count, snaps, gap_a)                                                \
+    UINTS(14, max_steps, emissive_count, snaps, gap_a)                                                 \
     /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp, */ \
     /* corners of the aperture; 0: it is round. */                                                     \
     ONE(15, lens)                                                                                      \
@@ -207,11 +207,11 @@ static_assert(sizeof(PointWorkBlock) == 12, "std430");
     /* plate_planes: where planes of the plate begin in the inputs (plate.glsl) */         \
     /* plate_map: where its map begins there (plate_rays.glsl); 0: there is none */        \
     UINTS(7, count, caught, plate_planes, plate_map)                                       \
-    /* most_radiance: of a ray: more is clamped */                                         \
+    /* max_radiance: of a ray: more is clamped */                                          \
     /* noise: error at which samples of a pixel end */                                     \
     /* noise_floor: light to which the error of black pixels is relative */                \
     /* plate_roughness, plate_reflectance: of the plate; head on, 0: it mirrors nothing */ \
-    FLOATS(8, most_radiance, noise, noise_floor, plate_roughness)                          \
+    FLOATS(8, max_radiance, noise, noise_floor, plate_roughness)                           \
     FLOATS(9, plate_reflectance, gap_a, gap_b, gap_c)
 
 /* What the shaders count, and what next_dispatch.comp says of the next dispatch. */

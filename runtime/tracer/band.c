@@ -30,7 +30,7 @@ static void band_destroy(Gpu *gpu, Band *band)
    for every tile of 8x8 pixels, for each of its quarters, and for every tile of 32x32. */
 static VkDeviceSize max_beams(uint64_t pixels)
 {
-    return 2 * (pixels / TILE + 2 * KRS_MOST_SIDE / TILE);
+    return 2 * (pixels / TILE + 2 * KRS_MAX_SIDE / TILE);
 }
 
 /* The last rows are for noise.comp, and behind them those of lights. */

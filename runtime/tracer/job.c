@@ -103,7 +103,7 @@ static bool prepare_frame_block(Job *job)
     if (view.sky.map)
         job->frame.sky_power = (float)(view.sky.intensity * sky_table_irradiance(job->rendering));
     job->frame.error        = (float)job->options.error;
-    job->frame.most_steps   = job->options.most_steps;
+    job->frame.max_steps    = job->options.max_steps;
     job->frame.normal_reach = normal_reach(&job->options);
     job->frame.snaps        = job->options.integrator != KRS_INTEGRATOR_PREVIEW;
     return true;

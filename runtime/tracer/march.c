@@ -165,8 +165,8 @@ static LaneBudget ray_budget(const Job *job)
     LaneBudget     budget = lane_budget(job);
     const uint32_t most   = rendering_steps_within(job->rendering, UINT32_MAX);
     if (!rendering_saves_rays(job->rendering, job->schedule) &&
-        budget.steps > most - job->options.most_steps)
-        budget.steps = most - job->options.most_steps;
+        budget.steps > most - job->options.max_steps)
+        budget.steps = most - job->options.max_steps;
     return budget;
 }
 

@@ -29,7 +29,7 @@ static bool is_in_reach(const double (*vectors)[3], size_t count)
         return count == 0;
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++)
-            if (!(fabs(vectors[i][k]) <= KRS_MOST_COORDINATE))
+            if (!(fabs(vectors[i][k]) <= KRS_MAX_COORDINATE))
                 return false;
     return true;
 }
@@ -180,14 +180,14 @@ static bool prepare(KrsRendering *rendering)
 
 static void set_frame(KrsRendering *rendering, double tolerance)
 {
-    const FrameBlock frame = {.error = (float)tolerance, .most_steps = MAX_STEPS};
+    const FrameBlock frame = {.error = (float)tolerance, .max_steps = MAX_STEPS};
     memcpy(rendering->frame.bytes, &frame, sizeof frame);
 }
 
 /* A ray of the device begins where the box around the scene does. */
 static QueryRayBlock query_ray_block(const KrsRay *ray, const double base[3])
 {
-    QueryRayBlock query_ray = {.end  = (float)fmin(ray->end - ray->start, KRS_MOST_COORDINATE),
+    QueryRayBlock query_ray = {.end  = (float)fmin(ray->end - ray->start, KRS_MAX_COORDINATE),
                                .kind = ray->start > 0 ? BEGINS_OUTSIDE
                                        : ray->walls   ? ENDS_AT_WALLS
                                                       : ENDS_ANYWHERE};
@@ -337,7 +337,7 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *frame, const dou
     Asker asker = {rendering, frame, {0}, POINT_QUERY_STEP};
     renderer_clear(rendering->renderer);
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance) ||
-        !is_in_reach(origins, count) || tolerance > KRS_MOST_COORDINATE)
+        !is_in_reach(origins, count) || tolerance > KRS_MAX_COORDINATE)
         return refuse(rendering, "rays have finite origins below 1e18, directions that are not 0, "
                                  "and neither end nor tolerance below 0");
     if (!prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))

@@ -300,7 +300,7 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsState *frame,
     Gpu   *gpu         = &rendering->renderer->gpu;
     size_t first_value = rendering->program->parameter_slots;
     size_t values = rendering_value_slots(rendering), slots = first_value + values;
-    float(*block)[4] = gpu_alloc(gpu, slots + KRS_MOST_ZONES, sizeof *block,
+    float(*block)[4] = gpu_alloc(gpu, slots + KRS_MAX_ZONES, sizeof *block,
                                  "set the scene's parameters");
     if (!block)
         return false;
@@ -308,9 +308,9 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsState *frame,
     if (values > 0)
         krs_state_values(frame, block + first_value);
     size_t zones = krs_state_zones(frame, rebase_origin, block + slots);
-    for (size_t i = zones; i < KRS_MOST_ZONES; i++)
+    for (size_t i = zones; i < KRS_MAX_ZONES; i++)
         block[slots + i][3] = NO_ZONE;
-    memcpy(rendering->parameters.bytes, block, (slots + KRS_MOST_ZONES) * sizeof *block);
+    memcpy(rendering->parameters.bytes, block, (slots + KRS_MAX_ZONES) * sizeof *block);
     gpu_release(gpu, block);
     rendering->rays = rendering->scene_rays;
     return choose_zones(rendering, zones);
@@ -320,7 +320,7 @@ bool rendering_rebase(KrsRendering *rendering, KrsState *frame, const double reb
 {
     Gpu   *gpu   = &rendering->renderer->gpu;
     size_t first = rendering->program->parameter_slots + rendering->program->value_slots +
-                   KRS_MOST_ZONES;
+                   KRS_MAX_ZONES;
     size_t slots     = rendering->program->camera_relative_slots;
     float(*block)[4] = gpu_alloc(gpu, slots + 1, sizeof *block,
                                  "move the scene's origin to the camera");

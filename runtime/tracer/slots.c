@@ -6,7 +6,7 @@
 /* All slots but those of values that the host computes and shaders can compute by themselves. */
 static uint32_t slots_without_values(const KrsProgram *program)
 {
-    return program->parameter_slots + KRS_MOST_ZONES + 1;
+    return program->parameter_slots + KRS_MAX_ZONES + 1;
 }
 
 static uint32_t max_slots(const KrsRendering *rendering)

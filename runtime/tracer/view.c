@@ -14,7 +14,7 @@ static const double PI = 3.14159265358979323846;
 
 /* Stands for infinity in the boxes of shaders: divided by 1e-18 it is still a float (clip_to in
    frame.glsl). */
-#define UNBOUNDED KRS_MOST_COORDINATE
+#define UNBOUNDED KRS_MAX_COORDINATE
 /* Rays in a scene without bounds end this many times its size from the camera: far beyond where its
    horizon is a pixel high. */
 #define HORIZON 1e4

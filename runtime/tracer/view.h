@@ -8,7 +8,7 @@
 #include "krs/vulkan.h"
 #include "runtime/shared/blocks.h"
 
-/* Fills in all of `block` but error and most_steps.  False when the camera cannot be used: an
+/* Fills in all of `block` but error and max_steps.  False when the camera cannot be used: an
    eye at its target, an angle or a height that is not positive, or anything not finite. */
 bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
                   uint32_t height, FrameBlock *block);

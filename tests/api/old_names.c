@@ -58,8 +58,30 @@ static void use_places(KrsFrame *frame)
           "a distance");
 }
 
+static void use_limits(void)
+{
+    check(KRS_MOST_ZONES == 16 && KRS_MOST_STEPS == 100000, "limits of questions");
+    check(KRS_MOST_COORDINATE == 1e18, "the farthest coordinate");
+    check(KRS_MOST_SIDE == 16384 && KRS_MOST_SAMPLES == 65536 && KRS_MOST_ERROR == 1000,
+          "limits of pictures");
+    check(KRS_MOST_BOUNCES == 1000 && KRS_MOST_EVEN_HITS == 16, "limits of paths");
+    check(KRS_MOST_REFLECTANCE == 0.99 && KRS_MOST_LIGHT_GROUPS == 240, "limits of light");
+    check(KRS_LEAST_NOISY_SAMPLES == 16, "samples at least");
+}
+
+/* Members have the places that they have by their new names. */
+static void use_members(void)
+{
+    const KrsRenderOptions options = {.most_radiance = 2, .most_steps = 99};
+    check(options.max_radiance == 2 && options.max_steps == 99, "options of pictures");
+    const KrsRenderStats stats = {.most_evaluations_per_ray = 5};
+    check(stats.max_evaluations_per_ray == 5, "statistics");
+}
+
 int main(void)
 {
+    use_limits();
+    use_members();
     KrsScene *scene;
     KrsFrame *frame;
     if (krs_compile_text(text, strlen(text), "a.krs", NULL, &scene) != KRS_OK ||

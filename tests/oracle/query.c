@@ -94,8 +94,8 @@ static double ball_less_zones(const double point[3], const double (*zones)[4], s
 /* More zones than before, fewer, none: kernels with room for them are made and kept. */
 static void zones_come_and_go(void **context)
 {
-    static const size_t counts[] = {0, 1, 3, 2, KRS_MOST_ZONES, 0, 5};
-    double              zones[KRS_MOST_ZONES][4];
+    static const size_t counts[] = {0, 1, 3, 2, KRS_MAX_ZONES, 0, 5};
+    double              zones[KRS_MAX_ZONES][4];
     (void)context;
     Scene s = scene_of("show sphere(1);", KRS_FOR_QUESTIONS);
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {

@@ -231,7 +231,7 @@ static void try_box(Bench *b, Pair *pair, Box known, Box looked, Tally *tally)
     lane_ranges_run(&pair->lanes, &ranges, known);
     LaneTape shorter = lane_prune(&pair->lanes, &ranges, outputs, &b->arena);
     assert_true(shorter.rows <= lane_most_rows(&pair->lanes));
-    assert_true(shorter.count <= lane_most_steps(&pair->lanes));
+    assert_true(shorter.count <= lane_max_steps(&pair->lanes));
     points_in(b, looked, points);
     LanePoints all = {.points = (const double(*)[3])points, .count = POINTS};
     lane_run(&pair->lanes, &pair->work, LANE_DOUBLE, all, 0, outputs, whole);

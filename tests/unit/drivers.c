@@ -110,7 +110,7 @@ static size_t difference_but_color(const KrsPicture *a, const KrsPicture *b)
            differing_bytes(a->instance, b->instance, pixels * sizeof(uint32_t)) +
            differing_bytes(a->steps, b->steps, pixels * sizeof(uint32_t)) +
            (is_one_band && a->stats.evaluations != b->stats.evaluations) +
-           (a->stats.most_evaluations_per_ray != b->stats.most_evaluations_per_ray) +
+           (a->stats.max_evaluations_per_ray != b->stats.max_evaluations_per_ray) +
            (a->stats.unresolved != b->stats.unresolved);
 }
 
@@ -180,7 +180,7 @@ static const Case cases[] = {
     {"few steps",
      "camera { eye: [3, 4, 7], fov: 0.6 }"
      "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
-     {.width = 160, .height = 100, .most_steps = 9, .schedule = KRS_SCHEDULE_QUEUE}},
+     {.width = 160, .height = 100, .max_steps = 9, .schedule = KRS_SCHEDULE_QUEUE}},
     {"a polynomial",
      "camera { eye: [3, 2, 3], fov: 0.6 }"
      "show algebraic(x ^ 4 + y ^ 4 + z ^ 4 == 1).within(sphere(1.5));",

@@ -276,9 +276,9 @@ static void bright_rays_are_clamped(void **state)
     size_t           count   = 0;
     (void)state;
     fixture_open_as(&fixture, landscape_text, 0); /* all of its light comes in one pass */
-    KrsPicture *plain     = fixture_render(&fixture, options);
-    options.most_radiance = most;
-    KrsPicture *clamped   = fixture_render(&fixture, options);
+    KrsPicture *plain    = fixture_render(&fixture, options);
+    options.max_radiance = most;
+    KrsPicture *clamped  = fixture_render(&fixture, options);
     for (size_t k = 0; k < (size_t)WIDTH * HEIGHT; k++) {
         const float *from = &plain->color[4 * k], *to = &clamped->color[4 * k];
         const double bright = (double)fmaxf(fmaxf(from[0], from[1]), from[2]);
@@ -394,10 +394,10 @@ static void wrong_use_is_refused(void **state)
     }
     film = new_film(fixture, &depths);
     assert_int_equal(krs_film_add(film, fixture->frame, NULL, 0), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_film_add(film, fixture->frame, NULL, KRS_MOST_SAMPLES + 1),
+    assert_int_equal(krs_film_add(film, fixture->frame, NULL, KRS_MAX_SAMPLES + 1),
                      KRS_BAD_ARGUMENT);
     add(fixture, film, NULL, 1);
-    assert_int_equal(krs_film_add(film, fixture->frame, NULL, KRS_MOST_SAMPLES), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, fixture->frame, NULL, KRS_MAX_SAMPLES), KRS_BAD_ARGUMENT);
     assert_int_equal(krs_film_add(film, fixture->frame, &(KrsCamera){.fov = 1}, 1),
                      KRS_BAD_ARGUMENT); /* its eye is at its target */
     assert_int_equal(krs_film_samples(film), 1);

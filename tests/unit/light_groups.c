@@ -177,8 +177,8 @@ static void what_does_not_add_up_is_refused(void **state)
     (void)state;
     KrsRenderOptions clamped = usual(KRS_INTEGRATOR_PREVIEW, 1), noisy = clamped;
     KrsPicture      *picture;
-    clamped.most_radiance = 1;
-    noisy.noise           = 0.1;
+    clamped.max_radiance = 1;
+    noisy.noise          = 0.1;
     assert_int_equal(krs_render(lit.rendering, lit.frame, &clamped, &picture), KRS_BAD_ARGUMENT);
     assert_int_equal(krs_render(lit.rendering, lit.frame, &noisy, &picture), KRS_BAD_ARGUMENT);
 }

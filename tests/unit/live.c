@@ -266,7 +266,7 @@ static void mistakes_leave_the_version(void **state)
 
 static bool is_cut(const Cut *cut, const double point[3])
 {
-    double       zones[KRS_MOST_ZONES][4];
+    double       zones[KRS_MAX_ZONES][4];
     const size_t count = cut_zones(cut, zones, 0);
     bool         empty = false;
     for (size_t i = 0; i < count; i++)
@@ -311,8 +311,8 @@ static void balls_follow_the_mouse(void **state)
         assert_true(fabs(after[0] - before[0] - 0.2) < 1e-9);
         assert_true(fabs(after[1] - before[1] + 0.1) < 1e-9);
     }
-    double zones[KRS_MOST_ZONES][4];
-    assert_int_equal(cut_zones(&cut, zones, KRS_MOST_ZONES), KRS_MOST_ZONES); /* no room */
+    double zones[KRS_MAX_ZONES][4];
+    assert_int_equal(cut_zones(&cut, zones, KRS_MAX_ZONES), KRS_MAX_ZONES); /* no room */
 }
 
 /* ---- textures ---- */

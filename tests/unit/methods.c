@@ -152,7 +152,7 @@ static void rays_that_run_out_show_nothing(void **state)
                                         .no_beams = variant % 2,
                                         .schedule = KRS_SCHEDULE_PIXEL};
             KrsPicture      *full    = render_scene(scene, options);
-            options.most_steps       = FEW_STEPS;
+            options.max_steps        = FEW_STEPS;
             KrsPicture *whole        = render_scene(scene, options);
             wrong += !ends_are_hits(scene, full, whole, words(&options));
             for (KrsSchedule i = KRS_SCHEDULE_REFILL; i < KRS_SCHEDULE_COUNT; i++) {
@@ -188,7 +188,7 @@ static void rays_with_early_outs_that_run_out_show_nothing(void **state)
                                           .components = k / 2,
                                           .schedule   = KRS_SCHEDULE_PIXEL};
             KrsPicture      *full      = render_scene(&scene, rendering);
-            rendering.most_steps       = FEW_STEPS;
+            rendering.max_steps        = FEW_STEPS;
             KrsPicture *picture        = render_scene(&scene, rendering);
             wrong += !ends_are_hits(&scene, full, picture, words(&rendering));
             krs_picture_free(picture);

@@ -160,7 +160,7 @@ static Errors find_errors(const KrsPicture *picture, const KrsPicture *truth)
     for (size_t k = 0; k < (size_t)picture->width * picture->height; k++) {
         const uint32_t samples = picture->pixel_samples[k];
         errors.samples += samples;
-        errors.at_least += samples == KRS_LEAST_NOISY_SAMPLES;
+        errors.at_least += samples == KRS_MIN_NOISY_SAMPLES;
         if (samples == picture->samples)
             continue; /* it may not have reached the bound */
         errors.true_squares += error_of(&picture->color[4 * k], &truth->color[4 * k]);
@@ -214,7 +214,7 @@ static void sky_ends_first(void **state)
     options.crop             = (KrsWindow){0, 0, SMALL_WIDTH, 8};
     KrsPicture *picture      = render_scene(&lit, options);
     for (size_t k = 0; k < (size_t)SMALL_WIDTH * 8; k++) {
-        assert_int_equal(picture->pixel_samples[k], KRS_LEAST_NOISY_SAMPLES);
+        assert_int_equal(picture->pixel_samples[k], KRS_MIN_NOISY_SAMPLES);
         assert_near(picture->noise[k], 0.0f, 1e-6f);
         assert_near(picture->color[4 * k + 2], 0.5f, 1e-5f);
     }
@@ -257,7 +257,7 @@ static void scenes_may_ask_for_it(void **state)
     same.noise          = 0.1;
     same.noise_floor    = KRS_DEFAULT_NOISE_FLOOR / 4;
     same.samples        = 32;
-    assert_int_equal(picture->pixel_samples[0], KRS_LEAST_NOISY_SAMPLES);
+    assert_int_equal(picture->pixel_samples[0], KRS_MIN_NOISY_SAMPLES);
     assert_true(is_part_of(&scene, picture, render_scene(&scene, same), "the scene's noise"));
     krs_picture_free(picture);
     wrong.noise = -1;

@@ -406,7 +406,7 @@ static void wrong_choices_are_refused(void **state)
 {
     (void)state;
     const KrsRenderOptions wrong[] = {{.integrator = KRS_INTEGRATOR_COUNT},
-                                      {.bounces = KRS_MOST_BOUNCES + 1}};
+                                      {.bounces = KRS_MAX_BOUNCES + 1}};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
         assert_int_equal(krs_render(still.rendering, still.frame, &wrong[i], &picture),

@@ -203,7 +203,7 @@ static void rays_that_run_out_are_told(void **context)
     KrsHit hit = cast(s.frame, near, along, 1e9, 0);
     assert_true(hit.unresolved);
     assert_false(hit.hit);
-    assert_true(hit.t > 1e-4 * KRS_MOST_STEPS && hit.t < 1e8);
+    assert_true(hit.t > 1e-4 * KRS_MAX_STEPS && hit.t < 1e8);
     assert_true(fabs(hit.point[0] - hit.t) < 1e-6 && hit.component == 1);
     hit = cast(s.frame, high, along, 1e5, 0);
     assert_false(hit.hit || hit.unresolved);

@@ -139,7 +139,7 @@ static void shaders_are_made_ahead(void **state)
 static void exhausted_rays_are_counted(void **state)
 {
     Fixture    *fixture  = *state;
-    KrsPicture *picture  = fixture_render(fixture, (KrsRenderOptions){.most_steps = 3});
+    KrsPicture *picture  = fixture_render(fixture, (KrsRenderOptions){.max_steps = 3});
     size_t      creeping = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         assert_true(picture->steps[i] <= 3 + 3); /* a ray that is there may finish */
@@ -169,7 +169,7 @@ static void wrong_use_is_refused(void **state)
         {.starts = KRS_STARTS_COUNT},
         {.catcher = KRS_CATCHER_COUNT},
         {.catcher = KRS_CATCHER_SHADOWS}, /* on what? */
-        {.even_hits = KRS_MOST_EVEN_HITS + 1},
+        {.even_hits = KRS_MAX_EVEN_HITS + 1},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
@@ -241,7 +241,7 @@ static void evaluations_are_counted(void **state)
         most = picture->steps[i] > most ? picture->steps[i] : most;
     }
     assert_int_equal(picture->stats.evaluations, sum);
-    assert_int_equal(picture->stats.most_evaluations_per_ray, most);
+    assert_int_equal(picture->stats.max_evaluations_per_ray, most);
     krs_picture_free(picture);
 }
 

@@ -166,7 +166,7 @@ KrsPicture *render_scene(const Scene *scene, KrsRenderOptions options)
     }
     if (krs_render(scene->rendering, scene->frame, &options, &picture) != KRS_OK)
         fail_msg("%s: %s", scene->name, krs_renderer_message(watched_renderer));
-    if (options.most_steps == 0)
+    if (options.max_steps == 0)
         assert_int_equal(picture->stats.unresolved, 0);
     return picture;
 }

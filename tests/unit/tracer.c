@@ -275,7 +275,7 @@ static void slices_are_not_seen(void **state)
                                         (KrsRenderOptions){.slice_ms = 1e6, .steps_at_once = 8192});
     KrsPicture *sliced = fixture_render(&fixture,
                                         (KrsRenderOptions){.slice_ms = 0.001, .steps_at_once = 3});
-    assert_true(whole->stats.most_evaluations_per_ray > 30);
+    assert_true(whole->stats.max_evaluations_per_ray > 30);
     assert_same_pictures(whole, sliced, (size_t)WIDTH * HEIGHT);
     assert_int_equal(whole->stats.evaluations, sliced->stats.evaluations);
     for (size_t i = 0; i < (size_t)4 * WIDTH * HEIGHT; i++)

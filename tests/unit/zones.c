@@ -198,19 +198,18 @@ static void zones_are_differences(void **context)
 static void bad_zones_change_nothing(void **context)
 {
     (void)context;
-    Scene        s        = scene_of("show sphere(1);");
-    const double bad[][4] = {{0, 0, 0, -1},  {NAN, 0, 0, 1},  {0, INFINITY, 0, 1},
-                             {0, 0, 0, NAN}, {0, 0, 1e19, 1}, {0, 0, 0, INFINITY}};
-    double       many[KRS_MOST_ZONES + 1][4] = {{0}}, point[1][3] = {{0.9, 0.1, 0}}, distance;
+    Scene        s                          = scene_of("show sphere(1);");
+    const double bad[][4]                   = {{0, 0, 0, -1},  {NAN, 0, 0, 1},  {0, INFINITY, 0, 1},
+                                               {0, 0, 0, NAN}, {0, 0, 1e19, 1}, {0, 0, 0, INFINITY}};
+    double       many[KRS_MAX_ZONES + 1][4] = {{0}}, point[1][3] = {{0.9, 0.1, 0}}, distance;
     assert_int_equal(krs_state_set_zones(s.frame, ZONES, 1), KRS_OK);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_int_equal(krs_state_set_zones(s.frame, &bad[i], 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])many, KRS_MOST_ZONES + 1),
+    assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])many, KRS_MAX_ZONES + 1),
                      KRS_BAD_ARGUMENT);
     krs_distance(s.frame, (const double(*)[3])point, 1, &distance);
     assert_true(fabs(distance - 0.5) < 1e-12);
-    assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])many, KRS_MOST_ZONES),
-                     KRS_OK);
+    assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])many, KRS_MAX_ZONES), KRS_OK);
     krs_distance(s.frame, (const double(*)[3])point, 1, &distance);
     assert_true(fabs(distance - (sqrt(0.82) - 1)) < 1e-12);
     scene_close(s);

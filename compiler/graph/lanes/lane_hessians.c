@@ -32,7 +32,7 @@ static const int         ROW[6] = {0, 1, 2, 1, 0, 0}, COLUMN[6] = {0, 1, 2, 2, 2
 
 LaneHessian *lane_hessians_new(const LaneTape *tape, Arena *arena)
 {
-    return arena_new_array(arena, LaneHessian, LANE_INPUTS + lane_most_steps(tape));
+    return arena_new_array(arena, LaneHessian, LANE_INPUTS + lane_max_steps(tape));
 }
 
 /* ---- operands ---- */

@@ -465,7 +465,7 @@ static void prune_calls(Pruning *p)
 static void reserve(Pruning *p)
 {
     Arena *arena           = p->to.arena;
-    p->to.steps.capacity   = lane_most_steps(p->from) + 1;
+    p->to.steps.capacity   = lane_max_steps(p->from) + 1;
     p->to.steps.items      = arena_new_array(arena, LaneStep, p->to.steps.capacity);
     p->to.sources.capacity = p->from->scalar_count + p->from->count + 2 * p->from->call_count + 1;
     p->to.sources.items    = arena_new_array(arena, LaneScalar, p->to.sources.capacity);

@@ -18,12 +18,11 @@
 
 LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)
 {
-    return (LaneRanges){
-        .ranges  = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
-        .sure    = arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape)),
-        .middle  = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
-        .stretch = 1,
-        .longest = 1};
+    return (LaneRanges){.ranges = arena_new_array(arena, Range, LANE_INPUTS + lane_max_steps(tape)),
+                        .sure   = arena_new_array(arena, bool, LANE_INPUTS + lane_max_steps(tape)),
+                        .middle = arena_new_array(arena, Range, LANE_INPUTS + lane_max_steps(tape)),
+                        .stretch = 1,
+                        .longest = 1};
 }
 
 /* ---- operands ---- */

@@ -32,7 +32,7 @@ typedef struct Run {
 
 LaneSlope *lane_slopes_new(const LaneTape *tape, Arena *arena)
 {
-    return arena_new_array(arena, LaneSlope, LANE_INPUTS + lane_most_steps(tape));
+    return arena_new_array(arena, LaneSlope, LANE_INPUTS + lane_max_steps(tape));
 }
 
 /* ---- operands ---- */

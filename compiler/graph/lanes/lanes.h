@@ -151,7 +151,7 @@ static inline size_t lane_steps_of_calls(const LaneTape *tape)
     return steps;
 }
 /* The most steps of a lane tape and of all that it is pruned to, and the most rows. */
-static inline size_t lane_most_steps(const LaneTape *tape)
+static inline size_t lane_max_steps(const LaneTape *tape)
 {
     return tape->count + lane_steps_of_calls(tape);
 }
