@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* What a picture is asked for: what a hand-written shader writes as well. */
-enum { PLANES = KRS_PLANE_COLOR | KRS_PLANE_DEPTH };
+enum { AOVS = KRS_AOV_COLOR | KRS_AOV_DEPTH };
 
 static void complain(void *user, const KrsDiagnostic *diagnostic)
 {
@@ -63,7 +63,7 @@ static KrsPicture *render(Bench *bench, Subject *subject, KrsRenderOptions optio
     KrsPicture *picture;
     options.width  = bench->width;
     options.height = bench->height;
-    options.planes = PLANES;
+    options.aovs   = AOVS;
     if (krs_render(subject->rendering, subject->frame, &options, &picture) != KRS_OK)
         fail("cannot render: %s", krs_renderer_message(bench->renderer));
     return picture;

@@ -90,11 +90,11 @@ static KrsIntegrator find_integrator(KrsIntegrator asked, const char *scene)
     return found > 0 ? (KrsIntegrator)found : KRS_INTEGRATOR_PREVIEW;
 }
 
-/* All planes but the noise, unless that is asked for by its name: samples must not be compared for
+/* All AOVs but the noise, unless that is asked for by its name: samples must not be compared for
    nothing. */
-static uint32_t known_planes(const Options *options)
+static uint32_t known_aovs(const Options *options)
 {
-    return options->aovs == KRS_PLANE_ALL ? KRS_PLANE_ALL & ~KRS_PLANE_NOISE : KRS_PLANE_ALL;
+    return options->aovs == KRS_AOV_ALL ? KRS_AOV_ALL & ~KRS_AOV_NOISE : KRS_AOV_ALL;
 }
 
 /* The size of the picture and its samples, which --limit may be too few for. */
@@ -115,7 +115,7 @@ static KrsStatus choose_size(Render *render, const KrsImage *image)
     return status;
 }
 
-/* What does not go together; the size and the planes are chosen. */
+/* What does not go together; the size and the AOVs are chosen. */
 static KrsStatus check_how(const Render *render)
 {
     const Options          *options = render->options;
@@ -128,7 +128,7 @@ static KrsStatus check_how(const Render *render)
         return say_usage(options,
                          "--light-groups add up to the picture; where samples end by noise "
                          "they do not");
-    if (options->light_groups && how->planes & KRS_PLANE_NOISE)
+    if (options->light_groups && how->aovs & KRS_AOV_NOISE)
         return say_usage(options, "--light-groups have no estimate of their noise");
     return KRS_OK;
 }
@@ -161,9 +161,9 @@ static KrsStatus choose_how(Render *render)
     how->camera        = camera;
     how->seed          = options->seed;
     how->frame_seconds = 1 / options->fps;
-    how->planes        = picture_planes(options, writes_exr(render));
+    how->aovs          = picture_aovs(options, writes_exr(render));
     if (render->noise <= 0)
-        how->planes &= known_planes(options);
+        how->aovs &= known_aovs(options);
     if (!isnan(options->exposure))
         how->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-options->exposure);
     how->light_groups = options->light_groups;

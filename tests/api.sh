@@ -86,7 +86,7 @@ headers() { # older or later
 headers older
 awk '/^KRS_MATERIAL/ { last = NR } { line[NR] = $0 } END { for (i = 1; i <= NR; i++) if (i != last) print line[i] }' \
     include/krs/surface.def >"$work/older/krs/surface.def"
-sed '/^KRS_PLANE(NOISE/,$d' include/krs/planes.def >"$work/older/krs/planes.def"
+sed '/^KRS_AOV(NOISE/,$d' include/krs/aovs.def >"$work/older/krs/aovs.def"
 sed '/^KRS_CAMERA(eyes/d' include/krs/camera.def >"$work/older/krs/camera.def"
 headers later
 sed 's/^KRS_IDENTITY(component/KRS_MATERIAL(later, FLOAT, 0, 0, 0, 1, LIMITED, MIXED)\n&/' include/krs/surface.def \

@@ -154,7 +154,7 @@ static KrsPicture *shoot(const Fixture *fixture, const struct Variant *variant)
                                 .trace        = variant->trace,
                                 .normals      = variant->normals,
                                 .no_occlusion = true,
-                                .planes       = KRS_PLANE_COLOR};
+                                .aovs         = KRS_AOV_COLOR};
     if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
         give_up(variant->name, krs_renderer_message(fixture->renderer));
     return picture;

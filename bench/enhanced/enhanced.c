@@ -58,7 +58,7 @@ static KrsRenderOptions of_path(KrsTrace trace, KrsStarts starts)
                               .height     = HEIGHT,
                               .samples    = PATH_SAMPLES,
                               .integrator = KRS_INTEGRATOR_PATH,
-                              .planes     = KRS_PLANE_COLOR,
+                              .aovs       = KRS_AOV_COLOR,
                               .trace      = trace,
                               .starts     = starts};
 }
@@ -71,7 +71,7 @@ static void compare_steps(const Fixture *fixture)
                                     .height   = HEIGHT,
                                     .samples  = 1,
                                     .no_beams = true,
-                                    .planes   = KRS_PLANE_DEPTH,
+                                    .aovs     = KRS_AOV_DEPTH,
                                     .trace    = methods[i],
                                     .schedule = KRS_SCHEDULE_PIXEL};
         KrsRenderOptions paths   = of_path(methods[i], KRS_STARTS_PRECISION);
@@ -124,7 +124,7 @@ static double corner_light(const Fixture *fixture, uint32_t side, KrsStarts star
                                 .height     = side,
                                 .samples    = 65536 * 16 / side / side,
                                 .integrator = KRS_INTEGRATOR_PATH,
-                                .planes     = KRS_PLANE_COLOR,
+                                .aovs       = KRS_AOV_COLOR,
                                 .starts     = starts};
     KrsPicture      *picture = fixture_render(fixture, &options);
     double           sum     = 0;

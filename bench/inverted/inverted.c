@@ -51,7 +51,7 @@ static KrsPicture *shoot(const Fixture *fixture, KrsTrace trace, bool beams, dou
                                                        .no_beams      = !beams,
                                                        .error         = error,
                                                        .no_upsampling = true,
-                                                       .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS});
+                                                       .aovs = KRS_AOV_DEPTH | KRS_AOV_IDS});
 }
 
 /* Where only one of two pictures shows something, or its depth is off by a hundredth. */

@@ -77,7 +77,7 @@ static void shoot(const Fixture *fixture, KrsTrace method, int place)
                                 .height   = HEIGHT,
                                 .samples  = 1,
                                 .no_beams = true,
-                                .planes   = KRS_PLANE_COLOR | KRS_PLANE_STEPS,
+                                .aovs     = KRS_AOV_COLOR | KRS_AOV_STEPS,
                                 .trace    = method,
                                 .schedule = KRS_SCHEDULE_PIXEL};
     KrsPicture      *picture = fixture_render(fixture, &options);

@@ -76,7 +76,7 @@ static void shoot(const Fixture *fixture, int frame, uint32_t samples, bool plai
     KrsRenderOptions options = {.width     = WIDTH,
                                 .height    = HEIGHT,
                                 .samples   = samples,
-                                .planes    = KRS_PLANE_COLOR,
+                                .aovs      = KRS_AOV_COLOR,
                                 .no_filter = plain,
                                 .seed      = samples > 16 ? 7 : 0};
     krs_state_set_time(fixture->frame, frame);
@@ -206,7 +206,7 @@ static void time_once(const Fixture *fixture, bool plain, double *normals, doubl
     KrsRenderOptions options = {.width     = LARGE_WIDTH,
                                 .height    = LARGE_HEIGHT,
                                 .samples   = 1,
-                                .planes    = KRS_PLANE_COLOR,
+                                .aovs      = KRS_AOV_COLOR,
                                 .no_filter = plain};
     KrsPicture      *picture = fixture_render(fixture, &options);
     *normals                 = picture->stats.phase_ms[KRS_PHASE_NORMALS];
@@ -239,7 +239,7 @@ static void widen(KrsRenderer *renderer, const struct Flight *flight)
     KrsRenderOptions options = {.width     = FINE * WIDTH,
                                 .height    = FINE * HEIGHT,
                                 .samples   = 1,
-                                .planes    = KRS_PLANE_COLOR,
+                                .aovs      = KRS_AOV_COLOR,
                                 .no_filter = true};
     krs_state_set_time(fixture.frame, 0);
     KrsPicture *fine = fixture_render(&fixture, &options);

@@ -48,9 +48,9 @@ const Choice pixel_filter_choices[] = {
 #include "krs/choices.def"
     LAST};
 const Choice plane_choices[] = {
-#define KRS_PLANE(id, bit, aov, about, arrays) {aov, about},
-#include "krs/planes.def"
-#undef KRS_PLANE
+#define KRS_AOV(id, bit, aov, about, arrays) {aov, about},
+#include "krs/aovs.def"
+#undef KRS_AOV
     LAST};
 const Choice tone_map_choices[] = {
 #define KRS_TONE_MAP(id, name, about) {#name, about},

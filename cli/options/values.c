@@ -188,34 +188,34 @@ bool read_white_balance(const char *word, WhiteBalance *balance)
            (*word == '\0' || (*word == ',' && read_number(word + 1, -150, 150, &balance->tint)));
 }
 
-/* The plane of which a part of a list is the name; 0: none is. */
+/* The AOV of which a part of a list is the name; 0: none is. */
 static uint32_t find_aov(const char *word, size_t length)
 {
     static const struct {
         const char *name;
-        KrsPlane    plane;
+        KrsAov      aov;
     } aovs[] = {
-#define KRS_PLANE(id, bit, aov, about, arrays) {aov, KRS_PLANE_##id},
-#include "krs/planes.def"
-#undef KRS_PLANE
+#define KRS_AOV(id, bit, aov, about, arrays) {aov, KRS_AOV_##id},
+#include "krs/aovs.def"
+#undef KRS_AOV
     };
     for (size_t i = 0; length > 0 && i < sizeof aovs / sizeof *aovs; i++)
         if (strlen(aovs[i].name) == length && strncmp(aovs[i].name, word, length) == 0)
-            return aovs[i].plane;
+            return aovs[i].aov;
     return 0;
 }
 
 bool read_aovs(const char *word, uint32_t *aovs)
 {
-    *aovs = strcmp(word, "all") == 0 ? KRS_PLANE_ALL : 0;
+    *aovs = strcmp(word, "all") == 0 ? KRS_AOV_ALL : 0;
     if (*aovs || strcmp(word, "none") == 0)
         return true;
     for (;; word++) {
         size_t   length = strcspn(word, ",");
-        uint32_t plane  = find_aov(word, length);
-        if (plane == 0)
+        uint32_t aov    = find_aov(word, length);
+        if (aov == 0)
             return false;
-        *aovs |= plane;
+        *aovs |= aov;
         word += length;
         if (*word == '\0')
             return true;

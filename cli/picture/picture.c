@@ -1,5 +1,5 @@
 /*
- * picture.c: which plane of a rendered frame is which channel of a file, and the words beside.
+ * picture.c: which AOV of a rendered frame is which channel of a file, and the words beside.
  */
 #include "cli/picture/picture.h"
 
@@ -20,20 +20,20 @@
 
 /* An array of KrsPicture: how many numbers it has per pixel, and the channel of an EXR for each. */
 typedef struct PlaneArray {
-    KrsPlane    plane;
+    KrsAov      aov;
     size_t      offset, numbers;
     SampleType  type;
     const char *channels[4];
 } PlaneArray;
 
 static const PlaneArray plane_arrays[] = {
-#define KRS_PLANE(id, bit, aov, about, arrays) arrays
-#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
-    {KRS_PLANE_##plane, offsetof(KrsPicture, member), numbers, SAMPLE_##sample, {__VA_ARGS__}},
-#include "krs/planes.def"
+#define KRS_AOV(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(aov, member, type, numbers, row, first, sample, ...) \
+    {KRS_AOV_##aov, offsetof(KrsPicture, member), numbers, SAMPLE_##sample, {__VA_ARGS__}},
+#include "krs/aovs.def"
 #undef KRS_ARRAY
 };
-#undef KRS_PLANE
+#undef KRS_AOV
 enum {
     PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays,
     CHANNELS     = 4 * PLANE_ARRAYS + MATTE_CHANNELS, /* at most */
@@ -50,9 +50,9 @@ FileForm file_form(const char *path)
     return dot && strcasecmp(dot, ".png") == 0 ? FORM_PNG : FORM_UNKNOWN;
 }
 
-uint32_t picture_planes(const Options *options, bool exr)
+uint32_t picture_aovs(const Options *options, bool exr)
 {
-    return KRS_PLANE_COLOR | (exr ? options->aovs : 0);
+    return KRS_AOV_COLOR | (exr ? options->aovs : 0);
 }
 
 /* "radius=0.5 tint=[1, 0.5, 0]": every param of the scene, in its order. */
@@ -129,7 +129,7 @@ static size_t collect_channels(const Options *options, const KrsPicture *source,
     size_t count = 0;
     for (size_t i = 0; i < PLANE_ARRAYS; i++) {
         const PlaneArray *array = &plane_arrays[i];
-        if (!(array->plane & picture_planes(options, true)))
+        if (!(array->aov & picture_aovs(options, true)))
             continue;
         const char *samples; /* floats and integers alike: the pointer is taken as bytes */
         memcpy(&samples, (const char *)source + array->offset, sizeof samples);

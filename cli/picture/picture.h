@@ -12,8 +12,8 @@ typedef enum FileForm { FORM_UNKNOWN, FORM_EXR, FORM_PNG } FileForm;
 /* By the ending of the name, in any case. */
 FileForm file_form(const char *path);
 
-/* The planes (bits of KrsPlane) that writing these forms takes. */
-uint32_t picture_planes(const Options *options, bool exr);
+/* The AOVs (bits of KrsAov) that writing these forms takes. */
+uint32_t picture_aovs(const Options *options, bool exr);
 
 /* What stands in the files beside the pixels. */
 typedef struct PictureNotes {

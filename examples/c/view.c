@@ -101,7 +101,7 @@ static void draw(GLFWwindow *window, int width, int height)
     const KrsRenderOptions *size   = &shown->size;
     uint8_t                *pixels = malloc((size_t)size->width * size->height * 4);
     KrsPicture             *picture;
-    if (pixels && krs_film_read(shown->film, KRS_PLANE_COLOR, &picture) == KRS_OK) {
+    if (pixels && krs_film_read(shown->film, KRS_AOV_COLOR, &picture) == KRS_OK) {
         krs_picture_to_srgb8(picture, shown->scene, 0, 4, pixels);
         krs_picture_free(picture);
         glViewport(0, 0, width, height);
@@ -164,7 +164,7 @@ static void on_button(GLFWwindow *window, int button, int action, int modifiers)
     (void)window, (void)button, (void)modifiers;
     dragged = dragged && action != GLFW_PRESS;
     if (action == GLFW_PRESS || dragged || !shown->film ||
-        krs_film_read(shown->film, KRS_PLANE_IDS | KRS_PLANE_POSITION, &picture) != KRS_OK)
+        krs_film_read(shown->film, KRS_AOV_IDS | KRS_AOV_POSITION, &picture) != KRS_OK)
         return;
     const size_t pixel = (size_t)mouse_y * picture->width + (size_t)mouse_x;
     const float *at    = &picture->position[3 * pixel];

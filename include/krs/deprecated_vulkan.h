@@ -17,6 +17,8 @@ extern "C" {
 #define KRS_MOST_REFLECTANCE    KRS_MAX_REFLECTANCE
 #define KRS_MOST_LIGHT_GROUPS   KRS_MAX_LIGHT_GROUPS
 
+typedef KrsAov KrsPlane KRS_DEPRECATED("KrsAov");
+
 #ifdef __cplusplus
 }
 #endif

@@ -30,7 +30,7 @@ KrsStatus krs_film_save(KrsFilm *film, KrsWriteCallback *write, void *user);
  * those that were written, by a sum of them as in a file of `krs render --resume`.
  *
  * On any status but KRS_OK the film has no sample.  KRS_IO_ERROR: `read` returned false;
- * KRS_BAD_ARGUMENT: what was saved is of a krs of other sources, or of a film with other planes, size
+ * KRS_BAD_ARGUMENT: what was saved is of a krs of other sources, or of a film with other AOVs, size
  * or crop.
  */
 KrsStatus krs_film_load(KrsFilm *film, KrsReadCallback *read, void *user);

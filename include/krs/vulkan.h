@@ -157,16 +157,24 @@ KRS_SIZED size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelS
  */
 KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene);
 
-/* The parts of a picture, as bits: KRS_PLANE_COLOR and so on, a row of planes.def each. */
-typedef enum KrsPlane {
-#define KRS_PLANE(id, bit, aov, about, arrays) KRS_PLANE_##id = 1 << bit,
-#include "krs/planes.def"
-#undef KRS_PLANE
-    KRS_PLANE_ALL = 0
-#define KRS_PLANE(id, bit, aov, about, arrays) | 1 << bit
-#include "krs/planes.def"
-#undef KRS_PLANE
-} KrsPlane;
+/* The parts of a picture, as bits: KRS_AOV_COLOR and so on, a row of aovs.def each. */
+typedef enum KrsAov {
+#define KRS_AOV(id, bit, aov, about, arrays) KRS_AOV_##id = 1 << bit,
+#include "krs/aovs.def"
+#undef KRS_AOV
+    KRS_AOV_ALL = 0
+#define KRS_AOV(id, bit, aov, about, arrays) | 1 << bit
+#include "krs/aovs.def"
+#undef KRS_AOV
+#ifndef KRS_NO_DEPRECATED
+#define KRS_AOV(id, bit, aov, about, arrays) \
+    , KRS_PLANE_##id KRS_DEPRECATED("KRS_AOV_" #id) = 1 << bit
+#include "krs/aovs.def"
+#undef KRS_AOV
+    ,
+    KRS_PLANE_ALL KRS_DEPRECATED("KRS_AOV_ALL") = KRS_AOV_ALL
+#endif
+} KrsAov;
 
 typedef struct KrsWindow {
     uint32_t x, y, width, height; /* of pixels; row 0 is the top */
@@ -224,7 +232,7 @@ typedef struct KrsRenderOptions {
     bool     light_groups; /* makes KrsPicture.lights; neither with max_radiance nor with noise */
     bool     mattes;       /* count what the rays of each pixel hit: KrsPicture.mattes */
     /* Of another renderer, a number and a colour for each pixel of the whole picture, from the top;
-       NULL: none.  Rays end at the depths, which are as those of the depth plane; what is not a number
+       NULL: none.  Rays end at the depths, which are as those of the depth AOV; what is not a number
        is no limit.  What rays do not hit shows the plate: premultiplied light and alpha.  Both must
        live as long as the film.  Where both are known, the plate catches shadows of the scene, as a
        surface whose normals follow from the depths: see KrsPicture.caught.  Shapes mirror the plate, and
@@ -234,8 +242,8 @@ typedef struct KrsRenderOptions {
     KrsCatcher catcher;             /* anything but KRS_CATCHER_NONE needs depths */
     double     catcher_roughness;   /* of a glossy one, from 0 to 1; 0: as a mirror */
     double     catcher_reflectance; /* head on, from 0 to KRS_MAX_REFLECTANCE; 0: 0.04 */
-    uint32_t   planes; /* bits of KrsPlane; 0: all but noise, which is there where samples
-                                    end by it */
+    KRS_WAS(uint32_t aovs, uint32_t planes, "aovs"); /* bits of KrsAov; 0: all but noise, which is
+                                    there where samples end by it */
     KRS_WAS(uint32_t max_steps, uint32_t most_steps,
             "max_steps");        /* of a primary ray; 0: 16384, which is also the most */
     uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
@@ -301,9 +309,9 @@ typedef enum KrsMatteKind {
 #define KRS_MATTE_RANKS 6 /* of each pixel; what comes later is not counted */
 
 /*
- * A picture.  The planes hold the pixels of `window` only, row by row from the top, and
+ * A picture.  The AOVs hold the pixels of `window` only, row by row from the top, and
  * are NULL when they were not asked for.  Where a pixel's centre hits nothing, the depth is
- * +infinity and all planes but colour and steps are 0.
+ * +infinity and all AOVs but colour and steps are 0.
  */
 typedef struct KrsPicture {
     uint32_t  width, height; /* of the whole picture */
@@ -326,13 +334,13 @@ typedef struct KrsPicture {
     float          world_to_camera[4][4], world_to_ndc[4][4];
     KrsRenderStats stats;
     KrsAllocator   allocator; /* where the memory came from */
-    /* color, depth, position, normal, albedo, component, level, instance and steps: planes.def says
+    /* color, depth, position, normal, albedo, component, level, instance and steps: aovs.def says
        what they are, and how many numbers a pixel has.  They are last, as there will be more. */
-#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) type *member;
-#define KRS_PLANE(id, bit, aov, about, arrays)                           arrays
-#include "krs/planes.def"
+#define KRS_ARRAY(aov, member, type, numbers, row, first, sample, ...) type *member;
+#define KRS_AOV(id, bit, aov, about, arrays)                           arrays
+#include "krs/aovs.def"
 #undef KRS_ARRAY
-#undef KRS_PLANE
+#undef KRS_AOV
 } KrsPicture;
 
 /* Renders a state of the rendering's own scene.  On KRS_OK the caller owns *picture; on any
@@ -351,7 +359,7 @@ void                krs_picture_free(KrsPicture *picture);
 KrsStatus krs_picture_to_srgb8(const KrsPicture *picture, const KrsScene *scene, double stops,
                                uint32_t channels, uint8_t *pixels);
 
-/* Two pictures of the same size and planes, without `lights`, as one: the second to the right of the
+/* Two pictures of the same size and AOVs, without `lights`, as one: the second to the right of the
    first, or below it.  Its statistics are the sums.  It has no camera, so its matrices change
    nothing.  On KRS_OK the caller owns *joined.  KRS_BAD_ARGUMENT: they differ, or have a crop; KRS_OUT_OF_MEMORY. */
 KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bool below,
@@ -361,7 +369,7 @@ KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bo
  * Films: pictures that grow.
  *
  * A film begins without samples.  Each call that adds some may have another state and camera: the
- * mean of all is what is read, so equal ones refine the picture, and others blur it.  The planes
+ * mean of all is what is read, so equal ones refine the picture, and others blur it.  The AOVs
  * other than colour, and the matrices, are those of the first sample.  As many samples as
  * `options->samples` says, added in whatever portions, give the picture of krs_render bit by bit;
  * more may be added.  Samples stay on the device until the film is read, or until another film of
@@ -403,10 +411,10 @@ typedef struct KrsRays {
    along the ray.  The first time it compiles shaders. */
 KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsRays *rays);
 
-/* The mean of the samples so far, with planes of the options (bits; 0: all of these).  The film
+/* The mean of the samples so far, with AOVs of the options (bits; 0: all of these).  The film
    stays as it is.  On KRS_OK the caller owns *picture; its statistics are sums over the samples.
-   KRS_BAD_ARGUMENT: there is no sample, or no such plane; KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
-KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture);
+   KRS_BAD_ARGUMENT: there is no sample, or no such AOV; KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
+KrsStatus krs_film_read(KrsFilm *film, uint32_t aovs, KrsPicture **picture);
 
 /* The material and surface at a point, as the device computes them: the members of KrsHit that
    surface.def has, and these. */

@@ -347,9 +347,9 @@ uint32_t canvas_samples(const Canvas *canvas, FilmKind kind)
     return canvas->films[kind].film ? krs_film_samples(canvas->films[kind].film) : 0;
 }
 
-KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t planes, KrsPicture **picture)
+KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t aovs, KrsPicture **picture)
 {
-    return krs_film_read(canvas->films[kind].film, planes, picture);
+    return krs_film_read(canvas->films[kind].film, aovs, picture);
 }
 
 /* Where slopes are measured, before and behind the surface, in parts of the depth. */

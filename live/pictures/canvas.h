@@ -80,8 +80,8 @@ KrsStatus canvas_add(Canvas *canvas, FilmKind kind, const View *view, uint32_t w
                      uint32_t height, uint32_t samples, bool again, KrsProgressCallback *progress,
                      void *user);
 uint32_t  canvas_samples(const Canvas *canvas, FilmKind kind);
-/* The picture of a film, with these planes (0: all that it has); the caller frees it. */
-KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t planes, KrsPicture **picture);
+/* The picture of a film, with these AOVs (0: all that it has); the caller frees it. */
+KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t aovs, KrsPicture **picture);
 
 /* Tells how fast the distance changes along the normal of each pixel of a picture, of how fast it may; 0
    where nothing is hit.  The caller frees the numbers; NULL: it failed. */

@@ -14,7 +14,7 @@ typedef enum ShadingMode {
 } ShadingMode;
 extern const char *const shading_mode_names[SHADING_COUNT];
 
-/* Four bytes for each pixel of a picture with all planes; `shading` is not SHADING_LIGHT.  `slopes` has a
+/* Four bytes for each pixel of a picture with all AOVs; `shading` is not SHADING_LIGHT.  `slopes` has a
    number for each pixel, for SHADING_SLOPE alone. */
 void false_color(const KrsPicture *picture, ShadingMode shading, const float *slopes,
                  uint8_t *pixels);

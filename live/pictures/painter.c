@@ -38,7 +38,7 @@ struct Painter {
     double          budget;
     View            wanted;
     Shot            shot; /* not taken yet; without pixels: none */
-    KrsPicture     *planes;
+    KrsPicture     *aovs;
     PainterState    state;
     atomic_uint     number;   /* of the wanted view */
     atomic_bool     told;     /* the builder has something to say */
@@ -127,19 +127,18 @@ Found painter_find(Painter *painter, double x, double y)
 {
     Found found = {0};
     pthread_mutex_lock(&painter->lock);
-    const KrsPicture *planes = painter->planes;
-    if (planes && x >= 0 && x < 1 && y >= 0 && y < 1) {
-        const size_t at = (size_t)(y * planes->height) * planes->width +
-                          (size_t)(x * planes->width);
-        found = (Found){.hit       = planes->component[at] != 0,
-                        .depth     = planes->depth[at],
-                        .component = planes->component[at],
-                        .level     = planes->level[at],
-                        .instance  = planes->instance[at],
-                        .steps     = planes->steps[at]};
+    const KrsPicture *aovs = painter->aovs;
+    if (aovs && x >= 0 && x < 1 && y >= 0 && y < 1) {
+        const size_t at = (size_t)(y * aovs->height) * aovs->width + (size_t)(x * aovs->width);
+        found           = (Found){.hit       = aovs->component[at] != 0,
+                                  .depth     = aovs->depth[at],
+                                  .component = aovs->component[at],
+                                  .level     = aovs->level[at],
+                                  .instance  = aovs->instance[at],
+                                  .steps     = aovs->steps[at]};
         for (int i = 0; i < 3; i++) {
-            found.position[i] = planes->position[3 * at + i];
-            found.normal[i]   = planes->normal[3 * at + i];
+            found.position[i] = aovs->position[3 * at + i];
+            found.normal[i]   = aovs->normal[3 * at + i];
         }
     }
     pthread_mutex_unlock(&painter->lock);
@@ -185,7 +184,7 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
 {
     const uint32_t samples = canvas_samples(painter->canvas, kind);
     KrsPicture    *picture = NULL;
-    KrsStatus      status  = canvas_read(painter->canvas, kind, samples == 1 ? 0 : KRS_PLANE_COLOR,
+    KrsStatus      status  = canvas_read(painter->canvas, kind, samples == 1 ? 0 : KRS_AOV_COLOR,
                                          &picture);
     if (status != KRS_OK)
         return status;
@@ -217,8 +216,8 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
     painter->shot          = shot;
     painter->state.version = version_number(painter->view.version);
     if (samples == 1) {
-        KrsPicture *old = painter->planes;
-        painter->planes = picture;
+        KrsPicture *old = painter->aovs;
+        painter->aovs   = picture;
         picture         = old;
     }
     pthread_mutex_unlock(&painter->lock);
@@ -486,7 +485,7 @@ void painter_free(Painter *painter)
     view_free(&painter->view);
     view_free(&painter->wanted);
     free(painter->shot.pixels);
-    krs_picture_free(painter->planes);
+    krs_picture_free(painter->aovs);
     pthread_mutex_destroy(&painter->lock);
     pthread_cond_destroy(&painter->changed);
     free(painter);

@@ -20,12 +20,12 @@ typedef struct PlaneArray {
 } PlaneArray;
 
 static const PlaneArray plane_arrays[] = {
-#define KRS_PLANE(id, bit, aov, about, arrays) arrays
-#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
+#define KRS_AOV(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(aov, member, type, numbers, row, first, sample, ...) \
     {offsetof(KrsPicture, member), numbers, SAMPLE_##sample, {__VA_ARGS__}},
-#include "krs/planes.def"
+#include "krs/aovs.def"
 #undef KRS_ARRAY
-#undef KRS_PLANE
+#undef KRS_AOV
 };
 enum { PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays, CHANNELS = 4 * PLANE_ARRAYS };
 

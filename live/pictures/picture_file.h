@@ -6,7 +6,7 @@
 
 #include "live/pictures/canvas.h"
 
-/* Writes the picture of a view: as EXR with all its planes where the name ends in .exr, else as PNG.
+/* Writes the picture of a view: as EXR with all its AOVs where the name ends in .exr, else as PNG.
    The file appears whole or not at all.  On any status but KRS_OK `why` is one line. */
 KrsStatus picture_file_write(const KrsPicture *picture, const View *view, const char *path,
                              char why[300]);

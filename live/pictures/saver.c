@@ -106,7 +106,7 @@ static KrsStatus save_frame(Saver *saver, char message[300])
         status = canvas_add(saver->canvas, FILM_FULL, &view, view.width, view.height, view.samples,
                             true, go_on, saver);
     if (status == KRS_OK)
-        status = canvas_read(saver->canvas, FILM_FULL, order->exr ? 0 : KRS_PLANE_COLOR, &picture);
+        status = canvas_read(saver->canvas, FILM_FULL, order->exr ? 0 : KRS_AOV_COLOR, &picture);
     if (status != KRS_OK) {
         snprintf(message, 300, "%.299s", canvas_message(saver->canvas));
         return status;

@@ -34,11 +34,11 @@ static IntegratorPlan *const integrators[KRS_INTEGRATOR_COUNT] = {
 /* Makes room for the sums of all samples; false with the failure noted. */
 static bool make_sums(KrsFilm *film)
 {
-    Gpu                    *gpu    = &film->rendering->renderer->gpu;
-    const KrsRenderOptions *o      = &film->options;
-    const bool              noise  = noise_is_wanted(o);
-    const uint32_t          planes = o->planes | KRS_PLANE_COLOR | (noise ? KRS_PLANE_NOISE : 0);
-    film->sums                     = picture_new(gpu, o->width, o->height, o->crop, planes);
+    Gpu                    *gpu   = &film->rendering->renderer->gpu;
+    const KrsRenderOptions *o     = &film->options;
+    const bool              noise = noise_is_wanted(o);
+    const uint32_t          aovs  = o->aovs | KRS_AOV_COLOR | (noise ? KRS_AOV_NOISE : 0);
+    film->sums                    = picture_new(gpu, o->width, o->height, o->crop, aovs);
     if (!film->sums || (o->mattes && !mattes_new(gpu, film->sums)))
         return false;
     if (noise)
@@ -152,8 +152,8 @@ static bool spares_first(const Job *job)
     return !job->rays && job->view.camera.aperture > 0 && job->options.samples > 1;
 }
 
-/* Finds the planes other than colour by that ray. */
-static bool find_planes(Job *job, const Plan *plan, WorkBlock *work)
+/* Finds the AOVs other than colour by that ray. */
+static bool find_aovs(Job *job, const Plan *plan, WorkBlock *work)
 {
     if (job->first_rows == 1u << ROW_COLORS)
         return true;
@@ -164,10 +164,10 @@ static bool find_planes(Job *job, const Plan *plan, WorkBlock *work)
     return resident_clear(job->rendering, 1u << ROW_COLORS);
 }
 
-/* The planes of the first ray are copied to the film before others write to their rows. */
-static bool keep_planes(KrsRendering *rendering)
+/* The AOVs of the first ray are copied to the film before others write to their rows. */
+static bool keep_aovs(KrsRendering *rendering)
 {
-    if (rendering->resident.has_planes && !resident_store(rendering))
+    if (rendering->resident.has_aovs && !resident_store(rendering))
         return false;
     rendering->resident.has_colors = true;
     return true;
@@ -178,7 +178,7 @@ static bool add_ray(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
 {
     KrsRendering *rendering = job->rendering;
     const bool    mattes    = job->options.mattes;
-    if (mattes && index > 0 && !keep_planes(rendering))
+    if (mattes && index > 0 && !keep_aovs(rendering))
         return false;
     if ((mattes && !resident_clear(rendering, MATTE_ROWS)) || !plan_run(job, plan, work, index))
         return false;
@@ -211,7 +211,7 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
     job->first_rows = (picture_rows(film->sums) & ~(1u << ROW_NOISE)) | job->later_rows;
     inputs_upload(job, traced);
     const bool spares = spares_first(job);
-    if (spares && film->samples == 0 && !find_planes(job, plan, &work))
+    if (spares && film->samples == 0 && !find_aovs(job, plan, &work))
         return false;
     const bool noise   = film->kept != NULL;
     bool       goes_on = true;
@@ -349,7 +349,7 @@ static bool find_shutter(const KrsFilm *film, const Addition *a, double seconds[
 }
 
 /* Adds each sample at a time of its own while the shutter is open.  Its times are multiples of the
-   golden ratio, modulo 1, which fill it evenly; the first, whose planes are kept, is the middle. */
+   golden ratio, modulo 1, which fill it evenly; the first, whose AOVs are kept, is the middle. */
 static KrsStatus add_moments(KrsFilm *film, const Addition *a, const double shutter[2])
 {
     const double golden = 0.61803398874989485, begin = krs_state_time(a->frame);
@@ -452,16 +452,16 @@ static bool finish(const KrsFilm *film, KrsPicture *picture)
     return true;
 }
 
-KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture)
+KrsStatus krs_film_read(KrsFilm *film, uint32_t aovs, KrsPicture **picture)
 {
     Gpu           *gpu    = &film->rendering->renderer->gpu;
-    const uint32_t wanted = planes ? planes : film->options.planes;
+    const uint32_t wanted = aovs ? aovs : film->options.aovs;
     *picture              = NULL;
     renderer_clear(film->rendering->renderer);
-    if (krs_film_samples(film) == 0 || wanted & ~film->options.planes) {
+    if (krs_film_samples(film) == 0 || wanted & ~film->options.aovs) {
         gpu_refuse(gpu, KRS_BAD_ARGUMENT, "%s",
                    krs_film_samples(film) == 0 ? "the film has no samples yet"
-                                               : "the film was made without some of these planes");
+                                               : "the film was made without some of these AOVs");
         return gpu->status;
     }
     if (store_all(film))
@@ -485,7 +485,7 @@ KrsStatus krs_render(KrsRendering *rendering, KrsState *frame, const KrsRenderOp
     if (status == KRS_OK && !(store_all(film) && finish(film, film->sums)))
         status = rendering->renderer->gpu.status;
     if (status == KRS_OK) {
-        picture_drop(film->sums, ~film->options.planes);
+        picture_drop(film->sums, ~film->options.aovs);
         *picture   = film->sums;
         film->sums = NULL;
     }

@@ -13,7 +13,7 @@ static_assert((int)MIN_NOISE_SAMPLES == KRS_MIN_NOISY_SAMPLES, "noise.comp");
 
 bool noise_is_wanted(const KrsRenderOptions *options)
 {
-    return options->noise > 0 || options->planes & KRS_PLANE_NOISE;
+    return options->noise > 0 || options->aovs & KRS_AOV_NOISE;
 }
 
 /* Runs a phase of the shader over all quarters of tiles of the band. */

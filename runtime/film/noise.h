@@ -18,7 +18,7 @@ bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samp
 /* After all samples: gives pixels that have ended their colours back. */
 bool noise_restore(Job *job, const WorkBlock *work, uint32_t samples);
 
-/* Completes the planes of noise of a picture for pixels that have not ended. */
+/* Completes the AOVs of noise of a picture for pixels that have not ended. */
 void noise_finish(KrsPicture *picture);
 
 #endif

@@ -9,59 +9,57 @@
 #include <math.h>
 #include <string.h>
 
-/* The arrays of all planes; all numbers have 32 bits. */
+/* The arrays of all AOVs; all numbers have 32 bits. */
 static const struct Plane {
     size_t   member; /* offset of its pointer in a KrsPicture */
     uint32_t bit;
     size_t   bytes;  /* per pixel */
     uint32_t row;    /* the row of results that it comes from: ROW_... */
     size_t   number; /* the first of its numbers in that row */
-} planes[] = {
-#define KRS_PLANE(id, bit, aov, about, arrays) arrays
-#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
-    {offsetof(KrsPicture, member), KRS_PLANE_##plane, sizeof(type[numbers]), row, first},
-#include "krs/planes.def"
+} aovs[] = {
+#define KRS_AOV(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(aov, member, type, numbers, row, first, sample, ...) \
+    {offsetof(KrsPicture, member), KRS_AOV_##aov, sizeof(type[numbers]), row, first},
+#include "krs/aovs.def"
 #undef KRS_ARRAY
-#undef KRS_PLANE
+#undef KRS_AOV
 };
-enum { PLANE_COUNT = sizeof planes / sizeof planes[0] };
+enum { ARRAY_COUNT = sizeof aovs / sizeof aovs[0] };
 
 /* Checks that no number of a row is in two arrays: only then the sum of their bits equals the
    union. */
-#define KRS_PLANE(id, bit, aov, about, arrays) arrays
-#define BITS(row, first, numbers)              ((UINT64_C(1) << (numbers)) - 1) << (4 * (row) + (first))
+#define KRS_AOV(id, bit, aov, about, arrays) arrays
+#define BITS(row, first, numbers)            ((UINT64_C(1) << (numbers)) - 1) << (4 * (row) + (first))
 static_assert((0
-#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
-    +(BITS(row, first, numbers))
-#include "krs/planes.def"
+#define KRS_ARRAY(aov, member, type, numbers, row, first, sample, ...) +(BITS(row, first, numbers))
+#include "krs/aovs.def"
 #undef KRS_ARRAY
                ) == (0
-#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
-    | (BITS(row, first, numbers))
-#include "krs/planes.def"
+#define KRS_ARRAY(aov, member, type, numbers, row, first, sample, ...) | (BITS(row, first, numbers))
+#include "krs/aovs.def"
 #undef KRS_ARRAY
                      ),
-              "planes.def");
+              "aovs.def");
 #undef BITS
-#undef KRS_PLANE
+#undef KRS_AOV
 
 /* The members point to different types, so pointers are copied as bytes, not converted. */
-static void *plane_get(const KrsPicture *picture, int plane)
+static void *aov_get(const KrsPicture *picture, int aov)
 {
     void *values;
-    memcpy(&values, (const char *)picture + planes[plane].member, sizeof values);
+    memcpy(&values, (const char *)picture + aovs[aov].member, sizeof values);
     return values;
 }
 
-static void plane_set(KrsPicture *picture, int plane, void *values)
+static void aov_set(KrsPicture *picture, int aov, void *values)
 {
-    memcpy((char *)picture + planes[plane].member, &values, sizeof values);
+    memcpy((char *)picture + aovs[aov].member, &values, sizeof values);
 }
 
 size_t picture_plane(const KrsPicture *picture, int index, void **numbers)
 {
-    *numbers = index < PLANE_COUNT ? plane_get(picture, index) : NULL;
-    return index < PLANE_COUNT ? planes[index].bytes : 0;
+    *numbers = index < ARRAY_COUNT ? aov_get(picture, index) : NULL;
+    return index < ARRAY_COUNT ? aovs[index].bytes : 0;
 }
 
 KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window,
@@ -76,16 +74,16 @@ KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow win
     picture->allocator = gpu->allocator;
 
     size_t pixels = (size_t)window.width * window.height;
-    for (int i = 0; i < PLANE_COUNT; i++) {
-        if (!(wanted & planes[i].bit))
+    for (int i = 0; i < ARRAY_COUNT; i++) {
+        if (!(wanted & aovs[i].bit))
             continue;
-        void *values = gpu_alloc(gpu, pixels, planes[i].bytes, "make a picture of this size");
+        void *values = gpu_alloc(gpu, pixels, aovs[i].bytes, "make a picture of this size");
         if (!values) {
             krs_picture_free(picture);
             return NULL;
         }
-        plane_set(picture, i, values);
-        picture->stats.peak_memory_bytes += pixels * planes[i].bytes;
+        aov_set(picture, i, values);
+        picture->stats.peak_memory_bytes += pixels * aovs[i].bytes;
     }
     return picture;
 }
@@ -93,19 +91,19 @@ KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow win
 uint32_t picture_rows(const KrsPicture *picture)
 {
     uint32_t rows = 1u << ROW_COLORS;
-    for (int i = 0; i < PLANE_COUNT; i++)
-        if (plane_get(picture, i))
-            rows |= 1u << planes[i].row;
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        if (aov_get(picture, i))
+            rows |= 1u << aovs[i].row;
     return rows;
 }
 
-/* Copies one plane from a row of results.  Some planes are no floats, so bytes are copied.  Where
-   the plane is the whole row one copy is enough.  Where the size is a constant the compiler needs
+/* Copies one AOV from a row of results.  Some AOVs are no floats, so bytes are copied.  Where
+   the AOV is the whole row one copy is enough.  Where the size is a constant the compiler needs
    no call. */
-static void take_plane(void *plane, const float *from, size_t first, size_t count, size_t bytes)
+static void take_aov(void *aov, const float *from, size_t first, size_t count, size_t bytes)
 {
     enum { NUMBER = 4, VECTOR = 12 };
-    char *to = (char *)plane + first * bytes;
+    char *to = (char *)aov + first * bytes;
     if (bytes == RESULT_BYTES) {
         memcpy(to, from, count * RESULT_BYTES);
         return;
@@ -121,11 +119,11 @@ void picture_take(KrsPicture *picture, uint32_t wanted, const float *results, si
                   size_t first, size_t count)
 {
     const size_t row = row_pixels * RESULT_NUMBERS;
-    for (int i = 0; i < PLANE_COUNT; i++) {
-        void *plane = wanted & planes[i].bit ? plane_get(picture, i) : NULL;
-        if (plane)
-            take_plane(plane, results + planes[i].row * row + planes[i].number, first, count,
-                       planes[i].bytes);
+    for (int i = 0; i < ARRAY_COUNT; i++) {
+        void *aov = wanted & aovs[i].bit ? aov_get(picture, i) : NULL;
+        if (aov)
+            take_aov(aov, results + aovs[i].row * row + aovs[i].number, first, count,
+                     aovs[i].bytes);
     }
 }
 
@@ -160,19 +158,19 @@ KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t wanted)
     const uint64_t own_bytes = copy->stats.peak_memory_bytes;
     copy->stats              = picture->stats;
     copy->stats.peak_memory_bytes += own_bytes;
-    for (int i = 0; i < PLANE_COUNT; i++)
-        if (plane_get(copy, i))
-            memcpy(plane_get(copy, i), plane_get(picture, i), pixels_of(copy) * planes[i].bytes);
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        if (aov_get(copy, i))
+            memcpy(aov_get(copy, i), aov_get(picture, i), pixels_of(copy) * aovs[i].bytes);
     return copy;
 }
 
 void picture_drop(KrsPicture *picture, uint32_t unwanted)
 {
     Gpu allocating = {.allocator = picture->allocator};
-    for (int i = 0; i < PLANE_COUNT; i++)
-        if (unwanted & planes[i].bit) {
-            gpu_release(&allocating, plane_get(picture, i));
-            plane_set(picture, i, NULL);
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        if (unwanted & aovs[i].bit) {
+            gpu_release(&allocating, aov_get(picture, i));
+            aov_set(picture, i, NULL);
         }
 }
 
@@ -216,8 +214,8 @@ static bool can_join(const KrsPicture *a, const KrsPicture *b)
     bool same = is_whole(a) && is_whole(b) && a->width == b->width && a->height == b->height &&
                 a->samples == b->samples && !a->mattes[0] == !b->mattes[0] && !a->lights &&
                 !b->lights && !a->caught && !b->caught;
-    for (int i = 0; i < PLANE_COUNT; i++)
-        same = same && !plane_get(a, i) == !plane_get(b, i);
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        same = same && !aov_get(a, i) == !aov_get(b, i);
     return same;
 }
 
@@ -254,8 +252,8 @@ static void place_rows(const KrsPicture *from, const char *rows, KrsPicture *to,
 /* Copies all that a picture has to a place in the joined one. */
 static void place_picture(const KrsPicture *from, KrsPicture *to, size_t column, size_t row)
 {
-    for (int i = 0; i < PLANE_COUNT; i++)
-        place_rows(from, plane_get(from, i), to, plane_get(to, i), planes[i].bytes, column, row);
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        place_rows(from, aov_get(from, i), to, aov_get(to, i), aovs[i].bytes, column, row);
     for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
         place_rows(from, (const char *)from->mattes[kind], to, (char *)to->mattes[kind],
                    KRS_MATTE_RANKS * sizeof(KrsMatte), column, row);
@@ -270,8 +268,8 @@ KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bo
     *joined         = NULL;
     if (!can_join(first, second))
         return KRS_BAD_ARGUMENT;
-    for (int i = 0; i < PLANE_COUNT; i++)
-        wanted |= plane_get(first, i) ? planes[i].bit : 0;
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        wanted |= aov_get(first, i) ? aovs[i].bit : 0;
     *joined = picture_new(&allocating, width, height, (KrsWindow){0, 0, width, height}, wanted);
     if (*joined && first->mattes[0] && !mattes_new(&allocating, *joined)) {
         krs_picture_free(*joined);
@@ -293,8 +291,8 @@ void krs_picture_free(KrsPicture *picture)
     if (!picture)
         return;
     Gpu allocating = {.allocator = picture->allocator};
-    for (int i = 0; i < PLANE_COUNT; i++)
-        gpu_release(&allocating, plane_get(picture, i));
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        gpu_release(&allocating, aov_get(picture, i));
     for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
         gpu_release(&allocating, picture->mattes[kind]);
     gpu_release(&allocating, picture->lights);

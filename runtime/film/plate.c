@@ -151,13 +151,13 @@ void plate_find_planes(const Job *job, const KrsWindow *traced, float (*planes)[
 /* Light on the plate without the scene is nothing where it is black: nothing is darker than that. */
 static float ratio_of(float caught, float without) { return without > 0 ? caught / without : 1; }
 
-/* Makes a plane of a picture; false with the failure noted. */
-static bool make_plane(const KrsFilm *film, KrsPicture *picture, float (**plane)[3])
+/* Makes an AOV of a picture; false with the failure noted. */
+static bool make_aov(const KrsFilm *film, KrsPicture *picture, float (**aov)[3])
 {
     const size_t pixels = (size_t)picture->window.width * picture->window.height;
-    *plane = gpu_alloc(&film->rendering->renderer->gpu, pixels, sizeof **plane, "make a picture");
-    picture->stats.peak_memory_bytes += *plane ? pixels * sizeof **plane : 0;
-    return *plane != NULL;
+    *aov = gpu_alloc(&film->rendering->renderer->gpu, pixels, sizeof **aov, "make a picture");
+    picture->stats.peak_memory_bytes += *aov ? pixels * sizeof **aov : 0;
+    return *aov != NULL;
 }
 
 /* What a glossy plate mirrors counts for the part of the pixel that shows the plate, as its sums do. */
@@ -181,8 +181,8 @@ bool plate_finish(const KrsFilm *film, KrsPicture *picture)
     const size_t before = film->light_count - plate_rows(film);
     if (!plate_catches(film))
         return true;
-    if (!make_plane(film, picture, &picture->caught) ||
-        (is_glossy(film) && !make_plane(film, picture, &picture->mirrored)))
+    if (!make_aov(film, picture, &picture->caught) ||
+        (is_glossy(film) && !make_aov(film, picture, &picture->mirrored)))
         return false;
     for (size_t k = 0; k < pixels; k++)
         put_pixel(film, picture, (const float(*)[4])film->lights + before * pixels, pixels, k);

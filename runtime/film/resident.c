@@ -167,31 +167,29 @@ bool resident_store(KrsRendering *rendering)
 {
     ResidentBand *resident = &rendering->resident;
     KrsFilm      *film     = resident->film;
-    if (!film || !(resident->has_colors || resident->has_planes))
+    if (!film || !(resident->has_colors || resident->has_aovs))
         return true;
-    const uint32_t planes = resident->has_planes ? KRS_PLANE_ALL
-                                                 : KRS_PLANE_COLOR | KRS_PLANE_NOISE;
-    const uint32_t rows   = rows_of_sums(film) |
-                          (resident->has_planes ? picture_rows(film->sums) : 0);
-    const size_t band    = (size_t)resident->traced.height * resident->traced.width;
-    float       *results = fetch(rendering, rows);
-    uint32_t     y, end;
+    const uint32_t aovs = resident->has_aovs ? KRS_AOV_ALL : KRS_AOV_COLOR | KRS_AOV_NOISE;
+    const uint32_t rows = rows_of_sums(film) | (resident->has_aovs ? picture_rows(film->sums) : 0);
+    const size_t   band = (size_t)resident->traced.height * resident->traced.width;
+    float         *results = fetch(rendering, rows);
+    uint32_t       y, end;
     if (!results)
         return false;
     for (rows_of_resident(film, resident, &y, &end); y < end; y++) {
         size_t in_band, in_film;
         if (!find_row(film, resident, y, &in_band, &in_film))
             continue;
-        picture_take(film->sums, planes, results + in_band * RESULT_NUMBERS, band, in_film,
+        picture_take(film->sums, aovs, results + in_band * RESULT_NUMBERS, band, in_film,
                      film->options.crop.width);
         copy_lights(film, results, band, in_band, in_film, false);
-        if (resident->has_planes)
+        if (resident->has_aovs)
             place_positions(film, results + (ROW_POSITIONS * band + in_band) * RESULT_NUMBERS,
                             in_film, film->options.crop.width);
     }
     if (film->kept)
         copy_kept(film, resident, results, false);
-    resident->has_colors = resident->has_planes = false;
+    resident->has_colors = resident->has_aovs = false;
     return true;
 }
 

@@ -1,7 +1,7 @@
 /*
  * saved.c: a film as bytes, for a later process.
  *
- * They are what the film has in host memory, in the order of the machine: a header, the planes, the
+ * They are what the film has in host memory, in the order of the machine: a header, the AOVs, the
  * mattes, the light of each light, and what is kept for the estimate of errors.
  */
 #include <string.h>
@@ -38,7 +38,7 @@ typedef struct Header {
     uint64_t  evaluations, unresolved, clamped, submissions;
     KrsWindow window;
     uint32_t  width, height;
-    uint32_t  planes, mattes; /* bits of KrsPlane; whether there are mattes */
+    uint32_t  aovs, mattes; /* bits of KrsAov; whether there are mattes */
     uint32_t  samples, max_evaluations;
 } Header;
 
@@ -52,7 +52,7 @@ static Header describe(const KrsFilm *film)
                                 .window = sums->window,
                                 .width  = sums->width,
                                 .height = sums->height,
-                                .planes = film->options.planes,
+                                .aovs   = film->options.aovs,
                                 .mattes = film->options.mattes};
     memcpy(header.sources, fingerprint_film, sizeof header.sources);
     return header;
@@ -99,8 +99,8 @@ static bool fits(const KrsFilm *film, const Header *header)
            memcmp(own.sources, header->sources, sizeof own.sources) == 0 &&
            own.kept == header->kept && own.lights == header->lights &&
            memcmp(&own.window, &header->window, sizeof own.window) == 0 &&
-           own.width == header->width && own.height == header->height &&
-           own.planes == header->planes && own.mattes == header->mattes && header->samples > 0 &&
+           own.width == header->width && own.height == header->height && own.aovs == header->aovs &&
+           own.mattes == header->mattes && header->samples > 0 &&
            header->samples <= KRS_MAX_SAMPLES;
 }
 

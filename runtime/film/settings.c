@@ -77,8 +77,8 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     o->samples = first_nonzero(o->samples, image->samples,
                                o->noise > 0 ? KRS_DEFAULT_NOISY_SAMPLES : KRS_DEFAULT_SAMPLES);
     o->bounces = first_nonzero(o->bounces, image->bounces, KRS_DEFAULT_BOUNCES);
-    o->planes  = first_nonzero(o->planes, 0, KRS_PLANE_ALL & ~KRS_PLANE_NOISE) |
-                (o->noise > 0 ? KRS_PLANE_NOISE : 0);
+    o->aovs    = first_nonzero(o->aovs, 0, KRS_AOV_ALL & ~KRS_AOV_NOISE) |
+              (o->noise > 0 ? KRS_AOV_NOISE : 0);
     o->max_steps     = first_nonzero(o->max_steps, 0, MAX_STEPS);
     o->steps_at_once = first_nonzero(o->steps_at_once, 0,
                                      o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);

@@ -59,7 +59,7 @@ vec3 find_sources(Path path, float end, uint index, vec3 shown)
         vec3  own = shows && density > 0.0 ? share * radiance : vec3(0.0);
         uint apart = path.caught ? 0u : control.apart;
         sum += apart != 0u ? vec3(0.0) : own;
-        for (uint once = 0u; once < apart; once++) // as in planes.glsl
+        for (uint once = 0u; once < apart; once++) // as in aovs.glsl
             add_light_to(ROW_OF_LIGHTS + i, index, finite_or_black(shown * own));
     }
     return sum;
@@ -161,7 +161,7 @@ void add_caught(Path path, vec3 found, bool hits, float plate, uint index)
     if (control.value != 1u)
         return;
     vec3 without = found;
-    for (uint once = 0u; once < uint(hits); once++) // as in planes.glsl
+    for (uint once = 0u; once < uint(hits); once++) // as in aovs.glsl
         without = find_light_with_plate(path, false, false, INFINITE, plate, index);
     add_light_to(row + 1u, index, clamp_factor(without) * without);
 }

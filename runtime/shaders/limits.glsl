@@ -11,7 +11,7 @@ float find_limit(uint index)
     return uintBitsToFloat((index & 2u) == 0u ? low : high);
 }
 
-// The depth of a point, for each unit along its ray: as in store_planes (planes.glsl).
+// The depth of a point, for each unit along its ray: as in store_aovs (aovs.glsl).
 float find_depth_rate(vec3 direction)
 {
     bool along = control.projection == PERSPECTIVE || control.projection == ORTHOGRAPHIC;

@@ -18,7 +18,7 @@
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "results.glsl"
-#include "planes.glsl"
+#include "aovs.glsl"
 #include "light.glsl"
 #ifdef SKY_MAP
 #include "sky_map.glsl"
@@ -291,7 +291,7 @@ void store_seen(uint index, vec3 radiance, HitPoint hit, vec3 normal, KrsSurface
         return;
     }
     vec4 sum = find_color(index) + vec4(radiance, control.value == 0u ? 1.0 : 0.0);
-    store_planes(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, albedo_of(surface),
+    store_aovs(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, albedo_of(surface),
                  surface);
 }
 

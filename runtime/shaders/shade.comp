@@ -18,7 +18,7 @@
 #include "hit_lists.glsl"
 #include "light.glsl"
 #include "results.glsl"
-#include "planes.glsl"
+#include "aovs.glsl"
 #include "sky_means.glsl"
 #include "light_types.glsl"
 #include "optics.glsl"
@@ -337,7 +337,7 @@ void shade_item(HitPoint hit)
     if (are_of_paths())
         add_light(index, added);
     else
-        store_planes(index, rows, sum, hit, hit.side * coat.normal, albedo, surface);
+        store_aovs(index, rows, sum, hit, hit.side * coat.normal, albedo, surface);
 }
 
 void do_item(uint number)

@@ -101,7 +101,7 @@ typedef struct ResidentBand {
     KrsFilm  *film;       /* NULL: none */
     uint32_t  from, rows; /* of pixels, from the first tile of the crop on */
     KrsWindow traced;     /* the band with its halo */
-    bool      has_planes; /* the film still lacks the planes of its first sample */
+    bool      has_aovs;   /* the film still lacks the AOVs of its first sample */
     bool      has_colors; /* the film still lacks some colours */
 } ResidentBand;
 

@@ -69,10 +69,13 @@ static void use_limits(void)
     check(KRS_LEAST_NOISY_SAMPLES == 16, "samples at least");
 }
 
-/* Members have the places that they have by their new names. */
+/* Members and choices are those of the new names. */
 static void use_members(void)
 {
-    const KrsRenderOptions options = {.most_radiance = 2, .most_steps = 99};
+    const KrsRenderOptions options = {
+        .most_radiance = 2, .most_steps = 99, .planes = KRS_PLANE_COLOR | KRS_PLANE_DEPTH};
+    const KrsPlane color = KRS_PLANE_COLOR;
+    check(options.aovs == (KRS_AOV_COLOR | KRS_AOV_DEPTH) && color == KRS_AOV_COLOR, "AOVs");
     check(options.max_radiance == 2 && options.max_steps == 99, "options of pictures");
     const KrsRenderStats stats = {.most_evaluations_per_ray = 5};
     check(stats.max_evaluations_per_ray == 5, "statistics");

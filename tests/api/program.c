@@ -149,7 +149,7 @@ static void render(KrsRendering *rendering, KrsState *frame)
     KrsPicture *picture;
     GUARDED(KrsRenderOptions, options, 1);
     options.is[0] = (KrsRenderOptions){
-        .width = 32, .height = 24, .planes = KRS_PLANE_COLOR | KRS_PLANE_STEPS};
+        .width = 32, .height = 24, .aovs = KRS_AOV_COLOR | KRS_AOV_STEPS};
     check(krs_render(rendering, frame, options.is, &picture) == KRS_OK, "a picture");
     printf("picture %u x %u %.4f, steps %d, rays %d, %s %s\n", picture->width, picture->height,
            sum_of(picture), picture->steps != NULL, (int)picture->stats.rays,

@@ -123,7 +123,7 @@ static void judge_by(const char *name, KrsTrace first, KrsTrace last, double pla
         KrsRenderOptions options = {.width  = WIDTH,
                                     .height = HEIGHT,
                                     .trace  = trace,
-                                    .planes = KRS_PLANE_POSITION | KRS_PLANE_IDS};
+                                    .aovs   = KRS_AOV_POSITION | KRS_AOV_IDS};
         KrsPicture      *picture;
         if (krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
             fail_msg("%s: %s", name, krs_renderer_message(renderer));

@@ -159,7 +159,7 @@ static double look_at_plate(KrsIntegrator integrator)
                                                                    .height       = 8,
                                                                    .samples      = 1,
                                                                    .no_occlusion = true,
-                                                                   .planes       = KRS_PLANE_COLOR,
+                                                                   .aovs         = KRS_AOV_COLOR,
                                                                    .integrator   = integrator});
     const double mean    = mean_of_region(picture, everywhere, 1);
     krs_picture_free(picture);
@@ -300,7 +300,7 @@ static Estimate look_at_ball(const PathFixture *balls, bool glass)
                                                     .height     = 64,
                                                     .samples    = 1,
                                                     .bounces    = glass ? 48 : 2,
-                                                    .planes     = KRS_PLANE_COLOR,
+                                                    .aovs       = KRS_AOV_COLOR,
                                                     .integrator = KRS_INTEGRATOR_PATH},
                                  everywhere, 6);
 }
@@ -314,7 +314,7 @@ static Estimate preview_ball(const PathFixture *balls)
                                                     .height       = 64,
                                                     .samples      = 1,
                                                     .no_occlusion = true,
-                                                    .planes       = KRS_PLANE_COLOR,
+                                                    .aovs         = KRS_AOV_COLOR,
                                                     .integrator   = KRS_INTEGRATOR_PREVIEW},
                                  middle, 1);
 }

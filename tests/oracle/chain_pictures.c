@@ -149,7 +149,7 @@ static void look_at(const Chain *chain, Random *random, Tally *tally)
                 "fov: 0.7 }\n",
                 view.eye.x, view.eye.y, view.eye.z, target.x, target.y, target.z);
     KrsRenderOptions options = {
-        .width = WIDTH, .height = HEIGHT, .samples = 1, .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS};
+        .width = WIDTH, .height = HEIGHT, .samples = 1, .aovs = KRS_AOV_DEPTH | KRS_AOV_IDS};
     KrsPicture *picture = picture_of(text.bytes, &options);
     for (int k = 0; k < PIXELS; k++)
         depths[k] = depth_of(chain, &view, k % WIDTH, k / WIDTH);

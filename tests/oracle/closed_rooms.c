@@ -107,7 +107,7 @@ static KrsRenderOptions options_of(PathFixture *fixture, const View *view, uint3
                               .crop       = {corner, corner, side, side},
                               .samples    = side < MOST ? 16 : 2,
                               .bounces    = bounces,
-                              .planes     = KRS_PLANE_COLOR,
+                              .aovs       = KRS_AOV_COLOR,
                               .integrator = KRS_INTEGRATOR_PATH};
 }
 
@@ -244,7 +244,7 @@ static void previews_of_all_sizes_are_alike(void **state)
         path_fixture_set(&fixture, "power", 4);
         for (size_t k = 0; k < COUNT(sides); k++) {
             KrsRenderOptions options = {
-                .width = sides[k], .height = sides[k], .planes = KRS_PLANE_COLOR};
+                .width = sides[k], .height = sides[k], .aovs = KRS_AOV_COLOR};
             Estimate light = path_fixture_estimate(&fixture, options, everywhere, 1);
             lit            = k ? lit : light.mean;
             print_message("# preview of bare room %zu, %u pixels: %.4f\n", i, sides[k], light.mean);

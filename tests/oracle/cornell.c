@@ -240,7 +240,7 @@ static void take_pictures(PathFixture *fixture, const Lit *lit, Blocks *blocks)
                                          .samples    = SAMPLES,
                                          .seed       = seed,
                                          .bounces    = BOUNCES,
-                                         .planes     = KRS_PLANE_COLOR,
+                                         .aovs       = KRS_AOV_COLOR,
                                          .integrator = KRS_INTEGRATOR_PATH});
         add_picture(picture, blocks);
         krs_picture_free(picture);
@@ -306,7 +306,7 @@ static double find_noise(PathFixture *fixture, uint32_t samples)
     KrsRenderOptions options = {.width      = 48,
                                 .height     = 36,
                                 .samples    = samples,
-                                .planes     = KRS_PLANE_COLOR,
+                                .aovs       = KRS_AOV_COLOR,
                                 .integrator = KRS_INTEGRATOR_PATH};
     for (int i = 0; i < 2; i++) {
         options.seed = (uint64_t)i + 1;

@@ -42,7 +42,7 @@ static KrsPicture *take(const PathFixture *fixture, uint32_t samples, bool filte
                                 .samples      = samples,
                                 .no_filter    = !filters,
                                 .no_occlusion = true,
-                                .planes       = KRS_PLANE_COLOR};
+                                .aovs         = KRS_AOV_COLOR};
     return path_fixture_render(fixture, &options);
 }
 

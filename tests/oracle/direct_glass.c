@@ -38,7 +38,7 @@ static const char scene[] =
 static const KrsRenderOptions direct = {.width      = 24,
                                         .height     = 24,
                                         .samples    = 4,
-                                        .planes     = KRS_PLANE_COLOR,
+                                        .aovs       = KRS_AOV_COLOR,
                                         .integrator = KRS_INTEGRATOR_DIRECT};
 
 static PathFixture fixture;

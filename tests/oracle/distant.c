@@ -222,7 +222,7 @@ static KrsPicture *render(const Subject *subject, const Shot *shot, bool literal
     KrsRenderOptions options  = {.crop    = window_of(shot, &width),
                                  .height  = shot->lines,
                                  .samples = 1,
-                                 .planes  = KRS_PLANE_NORMAL};
+                                 .aovs    = KRS_AOV_NORMAL};
     KrsPicture      *picture  = NULL;
     const double     middle[] = {shot->middle.x, shot->middle.y, shot->middle.z},
                  away[]       = {shot->away.x, shot->away.y, shot->away.z};

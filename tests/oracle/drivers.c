@@ -47,7 +47,7 @@ static KrsPicture *render_on(KrsRenderer *on, const KrsScene *scene)
     KrsRenderOptions options = {
         .width      = WIDTH,
         .height     = HEIGHT,
-        .planes     = AGREEMENT_PLANES,
+        .aovs       = AGREEMENT_AOVS,
         .samples    = 1,
         .integrator = KRS_INTEGRATOR_PREVIEW}; /* the planes are those of any */
     KrsRendering *rendering;
@@ -93,7 +93,7 @@ static void an_example_agrees(void **state)
 static void a_planted_fault_is_seen(void **state)
 {
     (void)state;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .planes = AGREEMENT_PLANES};
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .aovs = AGREEMENT_AOVS};
     KrsPicture      *a       = picture_of("show sphere(1);", &options);
     KrsPicture      *b       = picture_of("show sphere(1);", &options);
     size_t           k       = (size_t)HEIGHT / 2 * WIDTH + WIDTH / 2;

@@ -73,7 +73,7 @@ static Estimate look(KrsIntegrator integrator)
                                       .height     = 32,
                                       .samples    = 16,
                                       .bounces    = 5,
-                                      .planes     = KRS_PLANE_COLOR,
+                                      .aovs       = KRS_AOV_COLOR,
                                       .integrator = integrator};
     return path_fixture_estimate(&fixture, options, everywhere, 6);
 }

@@ -33,7 +33,7 @@ static KrsPicture *find_hits(const PathFixture *fixture, uint32_t iterations)
                                       .height    = HEIGHT,
                                       .samples   = 1,
                                       .error     = 4,
-                                      .planes    = KRS_PLANE_POSITION | KRS_PLANE_DEPTH,
+                                      .aovs      = KRS_AOV_POSITION | KRS_AOV_DEPTH,
                                       .even_hits = iterations};
     return path_fixture_render(fixture, &options);
 }
@@ -95,7 +95,7 @@ static void starts_bring_all_light(void **state)
                                 .height     = 64,
                                 .samples    = 1,
                                 .bounces    = 12,
-                                .planes     = KRS_PLANE_COLOR,
+                                .aovs       = KRS_AOV_COLOR,
                                 .integrator = KRS_INTEGRATOR_PATH,
                                 .starts     = KRS_STARTS_DISTANCE};
     Estimate         found   = path_fixture_estimate(&fixture, options, everywhere, 6);
@@ -118,7 +118,7 @@ static void glass_loses_nothing(void **state)
                                 .height     = 64,
                                 .samples    = 4,
                                 .bounces    = 200,
-                                .planes     = KRS_PLANE_COLOR,
+                                .aovs       = KRS_AOV_COLOR,
                                 .integrator = KRS_INTEGRATOR_PATH,
                                 .starts     = KRS_STARTS_DISTANCE};
     Estimate         found   = path_fixture_estimate(&fixture, options, everywhere, 4);

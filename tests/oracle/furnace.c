@@ -144,7 +144,7 @@ static Estimate look_at(const White *white, uint32_t samples)
                                                     .height     = 64,
                                                     .samples    = samples,
                                                     .bounces    = has_glass(white) ? 64 : 2,
-                                                    .planes     = KRS_PLANE_COLOR,
+                                                    .aovs       = KRS_AOV_COLOR,
                                                     .integrator = KRS_INTEGRATOR_PATH},
                                  everywhere, 6);
 }
@@ -263,11 +263,11 @@ static void nothing_bounces_from_a_ball(void **state)
 
 /* ---- Previews ---- */
 
-#define PREVIEW_OPTIONS                                                                           \
-    (KrsRenderOptions)                                                                            \
-    {                                                                                             \
-        .width = 64, .height = 64, .samples = 1, .no_occlusion = true, .planes = KRS_PLANE_COLOR, \
-        .integrator = KRS_INTEGRATOR_PREVIEW                                                      \
+#define PREVIEW_OPTIONS                                                                       \
+    (KrsRenderOptions)                                                                        \
+    {                                                                                         \
+        .width = 64, .height = 64, .samples = 1, .no_occlusion = true, .aovs = KRS_AOV_COLOR, \
+        .integrator = KRS_INTEGRATOR_PREVIEW                                                  \
     }
 
 /* Where normals do not differ much within a pixel. */

@@ -22,7 +22,7 @@ static const KrsRenderOptions paths = {.width      = 96,
                                        .height     = 96,
                                        .samples    = 1,
                                        .bounces    = 14,
-                                       .planes     = KRS_PLANE_COLOR,
+                                       .aovs       = KRS_AOV_COLOR,
                                        .integrator = KRS_INTEGRATOR_PATH};
 
 /* What a boundary reflects of light that meets it with this sine, by its index of refraction. */
@@ -283,7 +283,7 @@ static double look_below_pane(PathFixture *fixture, double beside)
     KrsRenderOptions preview = {.width      = 32,
                                 .height     = 32,
                                 .samples    = 1,
-                                .planes     = KRS_PLANE_COLOR,
+                                .aovs       = KRS_AOV_COLOR,
                                 .integrator = KRS_INTEGRATOR_PREVIEW};
     path_fixture_set(fixture, "beside", beside);
     KrsPicture *picture = path_fixture_render(fixture, &preview);

@@ -153,8 +153,8 @@ static void judge_picture(const char *name, const Case *c, const Product *produc
                                 .height  = HEIGHT,
                                 .samples = 1,
                                 .trace   = trace,
-                                .planes  = KRS_PLANE_POSITION | KRS_PLANE_IDS | KRS_PLANE_NORMAL |
-                                          KRS_PLANE_ALBEDO};
+                                .aovs    = KRS_AOV_POSITION | KRS_AOV_IDS | KRS_AOV_NORMAL |
+                                        KRS_AOV_ALBEDO};
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
     Verdict          v       = {0};

@@ -40,7 +40,7 @@ static const KrsRenderOptions through = {.width      = 96,
                                          .height     = 96,
                                          .samples    = 1,
                                          .bounces    = 12,
-                                         .planes     = KRS_PLANE_COLOR,
+                                         .aovs       = KRS_AOV_COLOR,
                                          .integrator = KRS_INTEGRATOR_PATH};
 
 /* What a boundary reflects of light that meets it at this angle, by its index of refraction. */
@@ -191,7 +191,7 @@ static const char lit_floor[] =
 static const KrsRenderOptions onto_floor = {.width      = 32,
                                             .height     = 32,
                                             .samples    = 16,
-                                            .planes     = KRS_PLANE_COLOR,
+                                            .aovs       = KRS_AOV_COLOR,
                                             .integrator = KRS_INTEGRATOR_DIRECT};
 
 static Estimate look_at_floor(const PathFixture *fixture)
@@ -371,7 +371,7 @@ static Estimate look_at_ball(const PathFixture *fixture)
                                       .height     = 48,
                                       .samples    = 4,
                                       .bounces    = 3,
-                                      .planes     = KRS_PLANE_COLOR,
+                                      .aovs       = KRS_AOV_COLOR,
                                       .integrator = KRS_INTEGRATOR_PATH};
     return path_fixture_estimate(fixture, options, everywhere, 6);
 }

@@ -44,7 +44,7 @@ static KrsRenderOptions options_of(KrsIntegrator integrator, uint32_t side, uint
                               .samples      = samples,
                               .bounces      = 2,
                               .no_occlusion = true,
-                              .planes       = KRS_PLANE_COLOR,
+                              .aovs         = KRS_AOV_COLOR,
                               .integrator   = integrator};
 }
 

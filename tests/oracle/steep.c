@@ -159,7 +159,7 @@ static KrsPicture *take(const Product *product, KrsTrace trace)
                                 .height  = HEIGHT,
                                 .samples = 1,
                                 .trace   = trace,
-                                .planes  = KRS_PLANE_POSITION | KRS_PLANE_IDS};
+                                .aovs    = KRS_AOV_POSITION | KRS_AOV_IDS};
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
     if (krs_rendering_new(renderer, product->scene, &rendering) != KRS_OK ||

@@ -67,8 +67,8 @@ static KrsPicture *shoot(Fixture *fixture, KrsNormals normals)
                                 .height    = HEIGHT,
                                 .error     = 0.01,
                                 .no_filter = true,
-                                .planes = KRS_PLANE_NORMAL | KRS_PLANE_POSITION | KRS_PLANE_DEPTH |
-                                          KRS_PLANE_IDS,
+                                .aovs      = KRS_AOV_NORMAL | KRS_AOV_POSITION | KRS_AOV_DEPTH |
+                                        KRS_AOV_IDS,
                                 .normals = normals};
     if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));

@@ -152,7 +152,7 @@ static Seen look(int pictures)
                                           .height     = 32,
                                           .samples    = 4,
                                           .seed       = (uint64_t)i + 1,
-                                          .planes     = KRS_PLANE_COLOR,
+                                          .aovs       = KRS_AOV_COLOR,
                                           .integrator = KRS_INTEGRATOR_DIRECT});
         for (int k = 0; k < 3; k++)
             estimate_add(&seen.colors[k], mean_of_region(picture, everywhere, k));
@@ -306,7 +306,7 @@ static Estimate look_at_wax(const PathFixture *furnace_fixture, int bounces)
                                                     .height     = 64,
                                                     .samples    = 1,
                                                     .bounces    = (uint32_t)bounces,
-                                                    .planes     = KRS_PLANE_COLOR,
+                                                    .aovs       = KRS_AOV_COLOR,
                                                     .integrator = KRS_INTEGRATOR_PATH},
                                  everywhere, 6);
 }
@@ -378,7 +378,7 @@ static KrsPicture *preview_wax(PathFixture *s, double much)
     return path_fixture_render(s, &(KrsRenderOptions){.width      = 32,
                                                       .height     = 32,
                                                       .samples    = 1,
-                                                      .planes     = KRS_PLANE_COLOR,
+                                                      .aovs       = KRS_AOV_COLOR,
                                                       .integrator = KRS_INTEGRATOR_PREVIEW});
 }
 

@@ -124,7 +124,7 @@ static void look(KrsIntegrator integrator, uint32_t samples, double found[3])
                                                                   .samples      = samples,
                                                                   .bounces      = 16,
                                                                   .no_occlusion = true,
-                                                                  .planes       = KRS_PLANE_COLOR,
+                                                                  .aovs         = KRS_AOV_COLOR,
                                                                   .integrator   = integrator});
     for (int i = 0; i < 3; i++)
         found[i] = mean_of_region(picture, everywhere, i);

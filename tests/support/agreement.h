@@ -10,7 +10,7 @@
 #include "krs/vulkan.h"
 
 /* Planes that are compared. */
-enum { AGREEMENT_PLANES = KRS_PLANE_DEPTH | KRS_PLANE_IDS };
+enum { AGREEMENT_AOVS = KRS_AOV_DEPTH | KRS_AOV_IDS };
 
 /* Pixels that differ, by what differs, each counted once, in this order.  A pixel at an outline,
    where the first picture shows something else beside it, may show either side. */

@@ -244,7 +244,7 @@ static void pictures_are_those_of_the_frame(void **state)
     (void)state;
     static const char *const still[] = {"-1", "2.5"};
     static const double      times[] = {-1, 2.5};
-    KrsRenderOptions         options = {.width = 192, .height = 96, .planes = AGREEMENT_PLANES};
+    KrsRenderOptions         options = {.width = 192, .height = 96, .aovs = AGREEMENT_AOVS};
     Fixture                  fixture = open_scene(moving, 0);
     KrsRendering            *rendering;
     assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);

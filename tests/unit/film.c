@@ -64,13 +64,13 @@ static size_t difference(const KrsPicture *a, const KrsPicture *b)
     assert_memory_equal(&a->window, &b->window, sizeof a->window);
     assert_memory_equal(a->world_to_camera, b->world_to_camera, sizeof a->world_to_camera);
     assert_memory_equal(a->world_to_ndc, b->world_to_ndc, sizeof a->world_to_ndc);
-#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_AOV(id, bit, aov, about, arrays) arrays
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...)      \
     for (size_t i = 0; a->member && i < pixels * numbers * sizeof(type); i++) \
         differ += ((const unsigned char *)a->member)[i] != ((const unsigned char *)b->member)[i];
-#include "krs/planes.def"
+#include "krs/aovs.def"
 #undef KRS_ARRAY
-#undef KRS_PLANE
+#undef KRS_AOV
     for (int kind = 0; a->mattes[0] && kind < KRS_MATTE_COUNT; kind++)
         differ += memcmp(a->mattes[kind], b->mattes[kind],
                          pixels * KRS_MATTE_RANKS * sizeof(KrsMatte)) != 0;
@@ -384,7 +384,7 @@ static void failures_leave_it_empty(void **state)
 static void wrong_use_is_refused(void **state)
 {
     Fixture               *fixture = *state;
-    const KrsRenderOptions depths  = {.width = 20, .height = 10, .planes = KRS_PLANE_DEPTH};
+    const KrsRenderOptions depths  = {.width = 20, .height = 10, .aovs = KRS_AOV_DEPTH};
     const KrsRenderOptions wrong[] = {{.width = 16385}, {.integrator = KRS_INTEGRATOR_COUNT}};
     KrsFilm               *film;
     KrsPicture            *picture;
@@ -401,7 +401,7 @@ static void wrong_use_is_refused(void **state)
     assert_int_equal(krs_film_add(film, fixture->frame, &(KrsCamera){.fov = 1}, 1),
                      KRS_BAD_ARGUMENT); /* its eye is at its target */
     assert_int_equal(krs_film_samples(film), 1);
-    assert_int_equal(krs_film_read(film, KRS_PLANE_NORMAL, &picture), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_read(film, KRS_AOV_NORMAL, &picture), KRS_BAD_ARGUMENT);
     assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
     assert_non_null(picture->depth);
     assert_null(picture->color);
@@ -417,7 +417,7 @@ static void planes_are_chosen_when_read(void **state)
     KrsFilm    *film    = new_film(fixture, &part);
     KrsPicture *some;
     add(fixture, film, NULL, SAMPLES);
-    assert_int_equal(krs_film_read(film, KRS_PLANE_NORMAL | KRS_PLANE_COLOR, &some), KRS_OK);
+    assert_int_equal(krs_film_read(film, KRS_AOV_NORMAL | KRS_AOV_COLOR, &some), KRS_OK);
     assert_non_null(some->normal);
     assert_non_null(some->color);
     assert_null(some->depth);

@@ -31,7 +31,7 @@ enum {
 };
 
 /* Without colours, there are no shaders for light. */
-enum { SHOWN = KRS_PLANE_DEPTH | KRS_PLANE_NORMAL | KRS_PLANE_ALBEDO | KRS_PLANE_IDS };
+enum { SHOWN = KRS_AOV_DEPTH | KRS_AOV_NORMAL | KRS_AOV_ALBEDO | KRS_AOV_IDS };
 
 typedef struct Seen {
     KrsScene     *scene;
@@ -43,7 +43,7 @@ typedef struct Seen {
 static void look(Seen *seen, const InstanceText *scenes, size_t count, bool apart)
 {
     char            *text    = instance_text(scenes, count, SEED);
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1, .planes = SHOWN};
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1, .aovs = SHOWN};
     KrsStatus status = compile_with_instances(text, strlen(text), apart ? UINT32_MAX : LEAST, NULL,
                                               &seen->scene);
     free(text);

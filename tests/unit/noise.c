@@ -227,9 +227,9 @@ static void estimates_alone_end_nothing(void **state)
     (void)state;
     KrsRenderOptions options = usual(KRS_INTEGRATOR_DIRECT);
     options.noise            = 0;
-    options.planes           = KRS_PLANE_COLOR | KRS_PLANE_NOISE;
+    options.aovs             = KRS_AOV_COLOR | KRS_AOV_NOISE;
     KrsPicture *estimated    = render_scene(&lit, options);
-    options.planes           = KRS_PLANE_COLOR;
+    options.aovs             = KRS_AOV_COLOR;
     KrsPicture *plain        = render_scene(&lit, options);
     assert_memory_equal(estimated->color, plain->color,
                         sizeof(float) * 4 * SMALL_WIDTH * SMALL_HEIGHT);

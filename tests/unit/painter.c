@@ -142,7 +142,7 @@ static uint8_t *render(const Fixture *fixture, const char *text, double r)
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
     assert_int_equal(krs_film_new(rendering, &options, &film), KRS_OK);
     assert_int_equal(krs_film_add(film, frame, &fixture->view.camera, 1), KRS_OK);
-    assert_int_equal(krs_film_read(film, KRS_PLANE_COLOR, &picture), KRS_OK);
+    assert_int_equal(krs_film_read(film, KRS_AOV_COLOR, &picture), KRS_OK);
     assert_int_equal(krs_picture_to_srgb8(picture, scene, 0, 4, pixels), KRS_OK);
     krs_picture_free(picture);
     krs_film_free(film);

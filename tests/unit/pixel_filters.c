@@ -60,14 +60,13 @@ static double part_below(KrsPixelFilter filter, double a, double b, double offse
 
 static KrsPicture *render(Fixture *fixture, KrsPixelFilter filter, size_t camera, uint32_t samples)
 {
-    return fixture_render(fixture,
-                          (KrsRenderOptions){.width        = ACROSS,
-                                             .height       = DOWN,
-                                             .samples      = samples,
-                                             .camera       = camera,
-                                             .no_occlusion = true,
-                                             .pixel_filter = filter,
-                                             .planes       = KRS_PLANE_COLOR | KRS_PLANE_POSITION});
+    return fixture_render(fixture, (KrsRenderOptions){.width        = ACROSS,
+                                                      .height       = DOWN,
+                                                      .samples      = samples,
+                                                      .camera       = camera,
+                                                      .no_occlusion = true,
+                                                      .pixel_filter = filter,
+                                                      .aovs = KRS_AOV_COLOR | KRS_AOV_POSITION});
 }
 
 static void edges_are_the_integral(void **state)

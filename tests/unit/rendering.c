@@ -183,7 +183,7 @@ static void wrong_use_is_refused(void **state)
 static void only_wanted_planes_are_held(void **state)
 {
     Fixture         *fixture = *state;
-    KrsRenderOptions options = {.planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS};
+    KrsRenderOptions options = {.aovs = KRS_AOV_DEPTH | KRS_AOV_IDS};
     KrsPicture      *picture = fixture_render(fixture, options);
     assert_non_null(picture->depth);
     assert_non_null(picture->instance);
@@ -198,23 +198,23 @@ static void planes_do_not_hang_on_others(void **state)
 {
     Fixture         *fixture = *state;
     const size_t     pixels  = (size_t)WIDTH * HEIGHT;
-    KrsRenderOptions options = {.samples = 3, .planes = KRS_PLANE_ALL};
+    KrsRenderOptions options = {.samples = 3, .aovs = KRS_AOV_ALL};
     KrsPicture      *whole   = fixture_render(fixture, options);
-    for (int bit = 0; KRS_PLANE_ALL >> bit; bit++) {
+    for (int bit = 0; KRS_AOV_ALL >> bit; bit++) {
         /* What this leaves in memory is not to be taken for what has not been made. */
         krs_picture_free(fixture_render(fixture, (KrsRenderOptions){.camera = ROUND}));
-        options.planes   = 1u << bit;
+        options.aovs     = 1u << bit;
         KrsPicture *part = fixture_render(fixture, options);
         const struct {
             const void *part, *whole;
             size_t      numbers;
         } planes[] = {
-#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_AOV(id, bit, aov, about, arrays) arrays
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
     {part->member, whole->member, numbers},
-#include "krs/planes.def"
+#include "krs/aovs.def"
 #undef KRS_ARRAY
-#undef KRS_PLANE
+#undef KRS_AOV
         };
         size_t held = 0;
         for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {

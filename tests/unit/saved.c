@@ -66,14 +66,14 @@ static void assert_same(KrsPicture *a, KrsPicture *b)
     assert_memory_equal(a->world_to_camera, b->world_to_camera, sizeof a->world_to_camera);
     assert_memory_equal(a->world_to_ndc, b->world_to_ndc, sizeof a->world_to_ndc);
     assert_int_equal(a->stats.evaluations, b->stats.evaluations);
-#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_AOV(id, bit, aov, about, arrays) arrays
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
     assert_int_equal(a->member != NULL, b->member != NULL);              \
     if (a->member)                                                       \
         assert_memory_equal(a->member, b->member, pixels *numbers * sizeof(type));
-#include "krs/planes.def"
+#include "krs/aovs.def"
 #undef KRS_ARRAY
-#undef KRS_PLANE
+#undef KRS_AOV
     assert_int_equal(a->light_count, b->light_count);
     if (a->light_count > 0)
         assert_memory_equal(a->lights, b->lights, pixels * a->light_count * sizeof *a->lights);
@@ -88,13 +88,13 @@ static void assert_same(KrsPicture *a, KrsPicture *b)
 
 /* Planes and mattes; samples that end by noise; a crop, and the light of each light. */
 static const KrsRenderOptions kinds[] = {
-    {.width = 100, .height = 80, .samples = SAMPLES, .mattes = true, .planes = KRS_PLANE_ALL},
+    {.width = 100, .height = 80, .samples = SAMPLES, .mattes = true, .aovs = KRS_AOV_ALL},
     {.width = 100, .height = 80, .samples = SAMPLES, .noise = 0.03, .seed = 7},
     {.width        = 200,
      .height       = 160,
      .crop         = {33, 41, 90, 71},
      .samples      = SAMPLES,
-     .planes       = KRS_PLANE_DEPTH | KRS_PLANE_IDS,
+     .aovs         = KRS_AOV_DEPTH | KRS_AOV_IDS,
      .light_groups = true}};
 
 static void a_saved_film_goes_on(void **state)
@@ -139,7 +139,7 @@ static void what_is_no_film_is_refused(void **state)
     Fixture              fixture;
     (void)state;
     wider.width += 8;
-    other.planes = KRS_PLANE_DEPTH;
+    other.aovs = KRS_AOV_DEPTH;
     fixture_open_as(&fixture, saved_text, 0);
     KrsFilm *film = film_with(&fixture, &kinds[0], 0);
     assert_int_equal(krs_film_save(film, take, &file), KRS_BAD_ARGUMENT); /* without samples */

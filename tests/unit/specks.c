@@ -58,7 +58,7 @@ static int count_specks(Fixture *fixture, uint32_t x, uint32_t y, uint32_t sampl
                                 .height  = 540,
                                 .crop    = {x, y, ACROSS, DOWN},
                                 .samples = samples,
-                                .planes  = KRS_PLANE_COLOR};
+                                .aovs    = KRS_AOV_COLOR};
     KrsPicture      *picture = fixture_render(fixture, options);
     const float(*color)[4]   = (const float(*)[4])picture->color;
     int count                = 0;

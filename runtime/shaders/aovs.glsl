@@ -1,9 +1,9 @@
 /*
- * planes.glsl: stores the planes of a picture (krs/planes.def) where something is hit.
+ * aovs.glsl: stores the AOVs of a picture (krs/aovs.def) where something is hit.
  */
 // Stores the results of a pixel, one wanted row after the other.  Without the loop lavapipe would
 // take as long for unwanted rows as for wanted ones.
-void store_planes(uint index, uint rows, vec4 color, HitPoint hit, vec3 outward, vec3 albedo,
+void store_aovs(uint index, uint rows, vec4 color, HitPoint hit, vec3 outward, vec3 albedo,
                   KrsSurface surface)
 {
     vec3  difference = hit.position - frame.eye;
