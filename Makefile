@@ -33,7 +33,7 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources by folder, in the order of the pipeline: reading down this list is reading the program.
-ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl target scene passes refute field
+ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower lower/research family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl target scene passes refute field
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Points side by side, once for each instruction set.
@@ -46,7 +46,7 @@ endif
 CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure,$(call sources,$(room)))
 TARGET   := $(call sources,compiler/target)
 BRIDGE   := compiler/target/glslang_bridge.cpp
-RUNTIME  := $(foreach room,device tracer integrators film display writer,$(call sources,runtime/$(room)))
+RUNTIME  := $(foreach room,device tracer/research tracer integrators film display writer,$(call sources,runtime/$(room)))
 # What programs link with of other versions, too (api/README.md).
 API      := $(call sources,api)
 IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
@@ -60,7 +60,7 @@ VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 # Text files that the program carries: the standard library, what scenes and shaders share, shaders.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
-SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl runtime/shared/*.h)) \
+SHADERS  := $(sort $(wildcard $(addprefix runtime/shaders/,*.comp *.glsl research/*.comp research/*.glsl) runtime/shared/*.h)) \
             include/krs/surface.def compiler/shape/light_types.def
 # Shaders without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.

@@ -32,7 +32,7 @@ KrsRenderer *device_open(void)
 Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text, bool gradients)
 {
     Fixture    fixture = {.name = name, .renderer = renderer};
-    KrsOptions options = {.diagnostic = complain, .gradients = gradients};
+    KrsOptions options = {.diagnostic = complain, .gradients = gradients, .research = true};
     KrsStatus  status  = text ? krs_compile_text(text, strlen(text), name, &options, &fixture.scene)
                               : krs_compile_file(name, &options, &fixture.scene);
     if (status != KRS_OK || krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)

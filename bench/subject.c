@@ -38,7 +38,7 @@ void subject_open(Bench *bench, Subject *subject, const char *path, uint32_t lev
     char *text = read_file(bench->arena, path);
     if (levels > 0)
         text = with_levels(bench, text, path, levels);
-    KrsOptions options = {.diagnostic = complain};
+    KrsOptions options = {.diagnostic = complain, .research = true};
     if (krs_compile_text(text, strlen(text), path, &options, &subject->scene) != KRS_OK)
         fail("%s does not compile", path);
     if (krs_state_new(subject->scene, &subject->frame) != KRS_OK ||

@@ -7,7 +7,7 @@ failed=0
 report() { # name, status
     if [ "$2" -eq 0 ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
 }
-for kernel in runtime/shaders/*.comp; do
+for kernel in runtime/shaders/*.comp runtime/shaders/research/*.comp; do
     glslangValidator -V --target-env vulkan1.1 -I. -Iinclude -Iruntime/shaders -Icompiler/print/glsl -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL" $?
     glslangValidator -V --target-env vulkan1.1 -I. -Iinclude -Iruntime/shaders -Icompiler/print/glsl -DNO_TEXELS \

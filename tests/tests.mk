@@ -22,10 +22,10 @@ UNIT        := specks texts watchdog front synonyms arguments visibility diagnos
                instance_shaders instance_ends instance_pictures few_parts tables device_tables table_files printing printers gathered_noises answers structure update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees iteration_boxes instances instances_apart instances_deformed instance_sums blends_of_many fillets moving_instances moving_scenes overlaps lanes lane_instances lane_balls csg_nodes iterations
-ORACLES     := self distant patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
+ORACLES     := research/moebius_images research/enhanced self distant patterns bumps primitives krs_expand folds trees maps moebius operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
-               albedo furnace thin_film anisotropy tangents subsurface paths direct_glass enhanced emissive sky sky_means plate_light detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling closed_rooms \
+               albedo furnace thin_film anisotropy tangents subsurface paths direct_glass emissive sky sky_means plate_light detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling closed_rooms \
                occlusion curves sweeps corners hulls lofts boundaries nothing places underestimates bounds stencils light sides steep scales agree far open_surfaces ray_lists specialize outlines glyphs drawings \
                imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_open_surfaces flat_meshes round_meshes slices grids measures meshes mesh_forms mesh_examples
 FUZZ        := sentences

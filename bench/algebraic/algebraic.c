@@ -129,7 +129,7 @@ typedef struct Fixture {
 static Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text)
 {
     Fixture    fixture = {.renderer = renderer};
-    KrsOptions options = {.gradients = true};
+    KrsOptions options = {.gradients = true, .research = true};
     if (krs_compile_text(text, strlen(text), name, &options, &fixture.scene) != KRS_OK ||
         krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
         give_up(name, "it does not compile");

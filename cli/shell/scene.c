@@ -79,6 +79,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .user         = sink,
                         .specialize   = find_specialize(options),
                         .gradients    = options->how.normals == KRS_NORMALS_ANALYTIC,
+                        .research     = options->how.trace >= KRS_TRACE_TAYLOR,
                         .memory_limit = options->limits.memory,
                         .studio       = shows_pictures(options) && !options->no_studio,
                         .pictures     = shows_pictures(options),

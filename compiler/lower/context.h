@@ -6,7 +6,6 @@
 #ifndef KRS_CONTEXT_H
 #define KRS_CONTEXT_H
 
-#include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
 /* What is known of the surface at a hit (surface.def).  `color` is NODE_NONE while nothing has been
@@ -34,6 +33,10 @@ typedef struct LoweredShapes {
     size_t        count, capacity;
 } LoweredShapes;
 
+/* The t up to which a series, which is not 0 at t = 0, is not 0; it may change the series. */
+struct Series; /* graph/symbolic/series.h */
+typedef Node SeriesStep(Graph *graph, struct Series *series);
+
 typedef struct Nodes {
     Node  *items;
     size_t count, capacity;
@@ -42,9 +45,9 @@ typedef struct Nodes {
 typedef struct Lowering {
     Graph      *graph;
     Arena      *scratch;
-    bool        surfaces; /* lower the surface too, not the distance alone */
-    AlongMethod method;   /* for ray_step.c and ray_images.c */
-    bool        thin;     /* rays_pass for all shapes above: open surfaces have no thickness */
+    bool        surfaces;    /* lower the surface too, not the distance alone */
+    SeriesStep *series_step; /* for ray_step.c; NULL: its own */
+    bool        thin;        /* rays_pass for all shapes above: open surfaces have no thickness */
     bool        far;      /* without instance groups: distances to outlines are right everywhere */
     bool        guarded;  /* skip levels of sequences that are far away (guards.c) */
     Node        unit;     /* guarded: length, outside of all shapes, of 1 in this space */

@@ -58,12 +58,12 @@ bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredGrou
                 Node roots[PART_ROOTS])
 {
     const Lowering *outer   = finder->outer;
-    Lowering        l       = {.graph    = outer->graph,
-                               .scratch  = outer->scratch,
-                               .surfaces = true,
-                               .method   = outer->method,
-                               .most     = outer->most,
-                               .groups   = groups};
+    Lowering        l       = {.graph       = outer->graph,
+                               .scratch     = outer->scratch,
+                               .surfaces    = true,
+                               .series_step = outer->series_step,
+                               .most        = outer->most,
+                               .groups      = groups};
     ArenaMark       mark    = arena_mark(outer->scratch);
     Lowered         lowered = finder->operands ? lower_operand(&l, shape, finder->context)
                                                : lower_shape(&l, shape, finder->context);

@@ -4,7 +4,6 @@
 #ifndef KRS_LOWER_H
 #define KRS_LOWER_H
 
-#include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
 struct LoweredGroups; /* instance_groups.h */
@@ -57,11 +56,13 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredG
 /*
  * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape.  Inside it
  * is negative: how far the ray may go before it can leave.  It is at least the distance, and much
- * more where the shape is given by polynomials or is below inversions.  It is `plain`, which is
- * ROOT_DISTANCE, where the method does not apply.
+ * more where the shape is given by polynomials or has open surfaces.  Else it is `plain`, which is
+ * ROOT_DISTANCE.
  */
-Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
-                 struct LoweredGroups *groups, Arena *scratch);
+Node lower_along(Graph *graph, const Shape *shape, Node plain, struct LoweredGroups *groups,
+                 Arena *scratch);
+/* Tells whether there is a map that inverts in a shape, below kinds in whose parts rays have images. */
+bool reaches_inversion(const Shape *shape);
 
 /*
  * The gradient of a function that is about ROOT_DISTANCE near the surface, and in `near` that

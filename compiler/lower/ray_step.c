@@ -30,7 +30,7 @@
 #include "compiler/graph/symbolic/series.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/map_chain.h"
-#include "compiler/lower/ray_images.h"
+#include "compiler/lower/ray_step.h"
 #include "compiler/shape/slope.h"
 
 /* A ray in the space of a shape: point + t direction, with the same t everywhere. */
@@ -112,26 +112,15 @@ static Node safe_step(Lowering *l, const Series *s)
     return mul(g, length, fraction);
 }
 
-/* The r with r sum n |P_n| r^(n-1) = |P_0|: the fixed point of Ban and Valasek.  It is found as a
-   root, since their iteration diverges where terms of high order are large (math.md, section 3). */
-static Node taylor_radius(Lowering *l, Series *s)
-{
-    Graph *g = l->graph;
-    for (uint32_t k = 2; k <= s->degree; k++)
-        s->c[k] = mul(g, s->c[k], graph_number(g, k));
-    return series_radius(g, s);
-}
-
 static Node along_series(Lowering *l, Series *s)
 {
     Graph *g    = l->graph;
     Node   sign = graph_op1(g, OP_sign, s->c[0]);
+    if (l->series_step)
+        return mul(g, l->series_step(g, s), sign);
     for (uint32_t k = 0; k <= s->degree; k++)
-        s->c[k] = l->method == ALONG_EXACT ? mul(g, s->c[k], sign) : graph_op1(g, OP_abs, s->c[k]);
-    Node step = l->method == ALONG_EXACT    ? safe_step(l, s)
-                : l->method == ALONG_TAYLOR ? taylor_radius(l, s)
-                                            : series_radius(g, s);
-    return mul(g, step, sign);
+        s->c[k] = mul(g, s->c[k], sign);
+    return mul(g, safe_step(l, s), sign);
 }
 
 /* The part of a ray in a box, some of whose sides may be infinite: from `enter`, which is 0 inside,
@@ -253,7 +242,7 @@ static Node along_ball(Lowering *l, const Shape *shape, Ray ray)
 
 static Node along_distance(Lowering *l, const Shape *shape, Ray ray)
 {
-    if (shape->ball_radius != NODE_NONE && l->method == ALONG_EXACT)
+    if (shape->ball_radius != NODE_NONE && !l->series_step)
         return along_ball(l, shape, ray);
     Lowered ball = lower_shape(l, shape, context_new(ray.point, false));
     if (ball.distance == NODE_NONE)
@@ -482,21 +471,25 @@ static Node along(Lowering *l, const Shape *shape, Ray ray)
     return rule_of(shape)->along(l, shape, ray);
 }
 
-Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
-                 struct LoweredGroups *groups, Arena *scratch)
+Node lower_along_by(Graph *graph, const Shape *shape, Node plain, SeriesStep *step,
+                    struct LoweredGroups *groups, Arena *scratch)
 {
-    if (method >= ALONG_POLYNOMIALS)
-        return lower_image(graph, shape, plain, method, groups, scratch);
     if (!reaches_polynomial(shape))
         return plain;
-    Lowering l = {.graph   = graph,
-                  .scratch = scratch,
-                  .most    = graph->count + MAX_LOWERED,
-                  .method  = method,
-                  .groups  = groups,
-                  .thin    = true};
+    Lowering l = {.graph       = graph,
+                  .scratch     = scratch,
+                  .most        = graph->count + MAX_LOWERED,
+                  .series_step = step,
+                  .groups      = groups,
+                  .thin        = true};
     Ray ray = {graph_leaf(graph, OP_POINT), graph_leaf(graph, OP_DIRECTION), graph_number(graph, 1),
                graph_leaf(graph, OP_FOOTPRINT)};
     Node all = along(&l, shape, ray);
     return l.overflow || all == NODE_NONE ? plain : all;
+}
+
+Node lower_along(Graph *graph, const Shape *shape, Node plain, struct LoweredGroups *groups,
+                 Arena *scratch)
+{
+    return lower_along_by(graph, shape, plain, NULL, groups, scratch);
 }

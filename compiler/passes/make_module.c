@@ -61,6 +61,8 @@ KrsStatus pass_emit(Compilation *c)
                              .surfaces        = roots_of(roots, ROOTS_SURFACE).items,
                              .guarded         = roots_of(roots, ROOTS_GUARDED).items,
                              .along           = roots_of(roots, ROOTS_ALONG).items,
+                             .research        = roots_of(roots, ROOTS_RESEARCH).items,
+                             .research_count  = roots_of(roots, ROOTS_RESEARCH).count,
                              .gradients       = roots_of(roots, ROOTS_GRADIENT).items,
                              .zone            = zone_root(scene),
                              .planes          = roots_of(roots, ROOTS_PLANE).items,

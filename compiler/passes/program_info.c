@@ -78,17 +78,18 @@ static void find_additions(Compilation *c)
     program->gradients       = c->additions.gradients;
 }
 
-/* Finds whether steps along rays exceed the distance, for polynomials and for maps that invert. */
+/* Finds whether steps along rays exceed the distance, and whether rays have arcs as images. */
 static void find_steps(Compilation *c)
 {
-    KrsProgram  *program     = &c->scene->program;
-    const Roots *roots       = &c->scene->roots;
-    const Node  *exact       = along_roots(roots, ALONG_EXACT);
-    const Node  *directional = along_roots(roots, ALONG_DIRECTIONAL);
+    KrsProgram  *program = &c->scene->program;
+    const Roots *roots   = &c->scene->roots;
+    const Node  *along   = roots_of(roots, ROOTS_ALONG).items;
     for (size_t i = 0; i < c->scene->component_count; i++) {
-        program->along   = program->along || exact[i] != distance_root(roots, i);
-        program->inverts = program->inverts || directional[i] != distance_root(roots, i);
+        const Shape *shape = c->elaborated.components.items[i].shape;
+        program->along     = program->along || along[i] != distance_root(roots, i);
+        program->inverts   = program->inverts || reaches_inversion(shape);
     }
+    program->research = c->options->research;
 }
 
 static void find_tables(Compilation *c)

@@ -192,9 +192,9 @@ static void retain_tapes(Compilation *c)
     if (c->additions.open_surfaces) {
         RootRange gradients = roots_of(roots, ROOTS_GRADIENT);
         gradients.count     = scene->component_count * NODES_OF(GradientRoots);
-        scene->ahead        = tape_with_zones(scene, along_roots(roots, ALONG_EXACT), false, arena,
-                                              &c->scratch);
-        scene->turned       = tape_of(scene, gradients, arena);
+        scene->ahead  = tape_with_zones(scene, roots_of(roots, ROOTS_ALONG).items, false, arena,
+                                        &c->scratch);
+        scene->turned = tape_of(scene, gradients, arena);
     }
     scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);
     if (scene->assembly.items.count > 0)

@@ -30,7 +30,8 @@ static void allocate_roots(Compilation *c, RootRange assembly)
         [ROOTS_LIGHT]           = s->lights.count * NODES_OF(LightNodes),
         [ROOTS_SKY]             = NODES_OF(SkyRoots),
         [ROOTS_GUARDED]         = components,
-        [ROOTS_ALONG]           = components * ALONG_COUNT,
+        [ROOTS_ALONG]           = components,
+        [ROOTS_RESEARCH]        = c->options->research ? components * RESEARCH_COUNT : 0,
         [ROOTS_PLANE]           = NODES_OF(PlaneRoots),
         [ROOTS_GRADIENT]        = (components + 1) * NODES_OF(GradientRoots),
         [ROOTS_SLOPE]           = s->slopes.count,
@@ -91,9 +92,10 @@ static void lower_marches(Compilation *c, Graph *g, LoweredGroups *groups)
         Node         plain                      = distance_root(roots, i);
         roots_of(roots, ROOTS_GUARDED).items[i] = lower_guarded(g, shape, plain, groups,
                                                                 &c->scratch);
-        for (AlongMethod method = 0; method < ALONG_COUNT; method++)
-            along_roots(roots, method)[i] = lower_along(g, shape, plain, method, groups,
-                                                        &c->scratch);
+        roots_of(roots, ROOTS_ALONG).items[i]   = lower_along(g, shape, plain, groups, &c->scratch);
+        for (ResearchMethod method = 0; c->options->research && method < RESEARCH_COUNT; method++)
+            research_roots(roots, method)[i] = lower_research(g, shape, plain, method, groups,
+                                                              &c->scratch);
     }
 }
 
@@ -169,7 +171,7 @@ static void lower_planes(Compilation *c, Graph *g)
    bound, which is no more accurate than its series. */
 static bool is_algebraic(const Scene *s, const Roots *roots)
 {
-    const Node *exact = along_roots(roots, ALONG_EXACT);
+    const Node *exact = roots_of(roots, ROOTS_ALONG).items;
     bool        found = false;
     for (size_t i = 0; i < s->components.count; i++) {
         const Shape *shape = s->components.items[i].shape;

@@ -34,7 +34,9 @@ typedef struct Module {
     size_t      components;
     const Node *surfaces; /* ROOT_COUNT, the distance among them */
     const Node *guarded;  /* lower_guarded */
-    const Node *along;    /* lower_along, method by method */
+    const Node *along;    /* lower_along */
+    const Node *research; /* lower_research, method by method; or none */
+    size_t      research_count;
     const Node
         *gradients; /* lower_gradient's two, of the zones as well; FLOATs where there is none */
     /* Of the scene: */

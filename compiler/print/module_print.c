@@ -3,15 +3,16 @@
  *
  * Functions are printed first, since they tell which helpers they call; then all is put together.
  */
+#include <assert.h>
 #include <string.h>
 
 #include "compiler/graph/instance_table.h"
+#include "compiler/lower/research/research.h"
 #include "compiler/print/emitter.h"
 
-_Static_assert((int)KRS_STEP_DIRECTIONAL == (int)ALONG_DIRECTIONAL &&
-                   (int)KRS_STEP_ROOT_FREE == (int)ALONG_ROOT_FREE &&
-                   (int)KRS_STEP_TAYLOR == (int)ALONG_TAYLOR,
-               "steps have the numbers of methods");
+_Static_assert(KRS_STEP_DIRECTIONAL - KRS_STEP_TAYLOR == (int)RESEARCH_DIRECTIONAL &&
+                   KRS_STEP_ROOT_FREE - KRS_STEP_TAYLOR == (int)RESEARCH_ROOT_FREE,
+               "steps of research have the order of its methods");
 
 /* What each function of the scene needs of components, and what is inside of it. */
 static const struct {
@@ -92,14 +93,29 @@ static const Node *tangent_roots(const Emitter *e, uint32_t component, const Nod
     return roots;
 }
 
+/* Of a scene that was compiled with `research`. */
+static const Node *research_root(const Module *module, ResearchMethod method, uint32_t component)
+{
+    const size_t at = method * module->components + component;
+    assert(at < module->research_count);
+    return module->research + at;
+}
+
+static const Node *step_root(const Emitter *e, uint32_t component)
+{
+    const KrsRayStep step = e->variant->step;
+    return step == KRS_STEP_EXACT
+               ? e->module->along + component
+               : research_root(e->module, (ResearchMethod)(step - KRS_STEP_TAYLOR), component);
+}
+
 ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t component)
 {
-    const Module *m     = e->module;
-    const Node   *along = m->along + component;
+    const Module *m = e->module;
     switch (kind) {
-    case OF_ALONG:
-        return (ModuleFunction){kind, component, along + e->variant->step * m->components, 1};
-    case OF_PROBE: return (ModuleFunction){kind, component, along + ALONG_PROBE * m->components, 1};
+    case OF_ALONG: return (ModuleFunction){kind, component, step_root(e, component), 1};
+    case OF_PROBE:
+        return (ModuleFunction){kind, component, research_root(m, RESEARCH_PROBE, component), 1};
     case OF_LOD: return (ModuleFunction){kind, component, m->guarded + component, 1};
     case OF_GRADIENT: return (ModuleFunction){kind, component, m->gradients + 2 * component, 2};
     default: break;
@@ -164,7 +180,8 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
     add_nodes(&e, &all, module->surfaces, count * ROOT_COUNT);
     add_nodes(&e, &all, &module->zone, module->zone != NODE_NONE);
     add_nodes(&e, &all, module->guarded, count);
-    add_nodes(&e, &all, module->along, ALONG_COUNT * count);
+    add_nodes(&e, &all, module->along, count);
+    add_nodes(&e, &all, module->research, module->research_count);
     add_nodes(&e, &all, module->planes, planes);
     add_boxes(&e, &all, true, true);
     add_nodes(&e, &all, module->gradients, module->derives ? 2 * (count + 1) : 0);

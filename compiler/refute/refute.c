@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "compiler/lower/lower.h"
+#include "compiler/lower/research/research.h"
 #include "compiler/refute/refute_blame.h"
 #include "compiler/refute/refute_report.h"
 #include "compiler/refute/refute_settings.h"
@@ -174,15 +175,17 @@ static Node lower_claim(Refuter *r, const Shape *shape, Claim claim, Node plain)
 {
     Arena *scratch = r->in->scratch;
     return claim == CLAIM_GUARDED ? lower_guarded(r->graph, shape, plain, NULL, scratch)
-                                  : lower_along(r->graph, shape, plain,
-                                                (AlongMethod)(claim - CLAIM_ALONG), NULL, scratch);
+           : claim == CLAIM_ALONG
+               ? lower_along(r->graph, shape, plain, NULL, scratch)
+               : lower_research(r->graph, shape, plain, (ResearchMethod)(claim - CLAIM_RESEARCH),
+                                NULL, scratch);
 }
 
 /* The guarded distance of a component, and its steps along rays, where there are such. */
 static bool try_steps(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
 {
     const Shape *shape   = r->suspects.items[suspect].shape;
-    const Claim  end     = CLAIM_ALONG + ALONG_PROBE; /* which is no distance */
+    const Claim  end     = CLAIM_RESEARCH + RESEARCH_PROBE; /* which is no distance */
     bool         refuted = false;
     Search       search;
     for (Claim claim = CLAIM_GUARDED; claim < end && !refuted && !r->stopped; claim++) {

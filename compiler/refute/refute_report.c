@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "compiler/lower/along_method.h"
+#include "compiler/lower/research/research.h"
 #include "compiler/refute/search.h"
 
 static const char *point_text(Refuter *r, const double p[3])
@@ -126,12 +126,12 @@ static void mark_caller(Refuter *r, Diag *diag, const Finding *finding)
 }
 
 static const char *const claim_texts[] = {
-    [CLAIM_DISTANCE]                  = "distance",
-    [CLAIM_GUARDED]                   = "distance that leaves out what is far",
-    [CLAIM_ALONG + ALONG_EXACT]       = "step along a ray (exact)",
-    [CLAIM_ALONG + ALONG_TAYLOR]      = "step along a ray (taylor)",
-    [CLAIM_ALONG + ALONG_ROOT_FREE]   = "step along a ray (root-free)",
-    [CLAIM_ALONG + ALONG_DIRECTIONAL] = "step along a ray (directional)",
+    [CLAIM_DISTANCE]                        = "distance",
+    [CLAIM_GUARDED]                         = "distance that leaves out what is far",
+    [CLAIM_ALONG]                           = "step along a ray (exact)",
+    [CLAIM_RESEARCH + RESEARCH_TAYLOR]      = "step along a ray (taylor)",
+    [CLAIM_RESEARCH + RESEARCH_ROOT_FREE]   = "step along a ray (root-free)",
+    [CLAIM_RESEARCH + RESEARCH_DIRECTIONAL] = "step along a ray (directional)",
 };
 
 void report_finding(Refuter *r, const Finding *whole, const Finding *finding)

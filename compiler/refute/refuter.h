@@ -21,7 +21,8 @@ typedef struct Suspect {
 typedef enum Claim {
     CLAIM_DISTANCE,
     CLAIM_GUARDED, /* the distance that leaves out what is far */
-    CLAIM_ALONG    /* the step along a ray, by AlongMethod from here on */
+    CLAIM_ALONG,   /* the step along a ray */
+    CLAIM_RESEARCH /* the same by ResearchMethod, from here on */
 } Claim;
 
 /* Points that refute a shape, at these parameters. */

@@ -236,9 +236,9 @@ static bool same_methods(const KrsProgram *a, const KrsProgram *b)
     return a->planes == b->planes && a->camera_relative == b->camera_relative &&
            a->gradients == b->gradients && a->algebraic == b->algebraic && a->along == b->along &&
            a->open_surfaces == b->open_surfaces && a->inverts == b->inverts &&
-           a->plain == b->plain && a->march_group_count == b->march_group_count &&
-           a->per_component == b->per_component && a->scene_parts == b->scene_parts &&
-           a->expensive == b->expensive;
+           a->research == b->research && a->plain == b->plain &&
+           a->march_group_count == b->march_group_count && a->per_component == b->per_component &&
+           a->scene_parts == b->scene_parts && a->expensive == b->expensive;
 }
 
 /* Tells whether shaders treat the boxes alike; corners are numbers of the frame. */

@@ -84,7 +84,8 @@ typedef struct KrsProgram {
     bool          along;                     /* there is krs_along */
     bool          open_surfaces; /* there are surfaces without thickness, where krs_distance is not
                                 negative: rays need krs_along, and normals krs_gradient */
-    bool          inverts;       /* krs_along has methods for sequences with maps that invert */
+    bool          inverts;       /* maps that invert make arcs of rays */
+    bool          research;      /* krs_along has steps of research, too, and there is krs_probe */
     bool          plain;         /* no component is curved (shape_is_curved) */
     bool          shadows;       /* a light casts shadows */
     bool          emits;         /* a component may emit light */

@@ -10,6 +10,7 @@
 #include "compiler/scene/daylight.h"
 #include "compiler/scene/emissive.h"
 #include "compiler/lower/lower.h"
+#include "compiler/lower/research/research.h"
 #include "compiler/shape/scene.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/print/module.h"
@@ -26,7 +27,8 @@ typedef enum RootKind {
     ROOTS_SKY,     /* SkyRoots, with fog */
     /* The kinds from here on are for the march, gradients and slopes only. */
     ROOTS_GUARDED,         /* for each component: lower_guarded */
-    ROOTS_ALONG,           /* for each method, for each component: lower_along */
+    ROOTS_ALONG,           /* for each component: lower_along */
+    ROOTS_RESEARCH,        /* for each method, for each component: lower_research; or none */
     ROOTS_PLANE,           /* PlaneRoots of the nearest half-space */
     ROOTS_GRADIENT,        /* GradientRoots of each component, then of all zones */
     ROOTS_SLOPE,           /* each slope that is computed per frame */
@@ -84,11 +86,11 @@ static inline Node distance_root(const Roots *roots, size_t component)
     return surface_roots(roots, component)[ROOT_DISTANCE];
 }
 
-/* The root of each component for one method of lower_along. */
-static inline Node *along_roots(const Roots *roots, AlongMethod method)
+/* The root of each component for a method of research that was asked for. */
+static inline Node *research_roots(const Roots *roots, ResearchMethod method)
 {
-    RootRange along = roots_of(roots, ROOTS_ALONG);
-    return along.items + method * (along.count / ALONG_COUNT);
+    RootRange all = roots_of(roots, ROOTS_RESEARCH);
+    return all.items + method * (all.count / RESEARCH_COUNT);
 }
 
 static inline CameraNodes *camera_roots(const Roots *roots, size_t camera)
@@ -171,7 +173,7 @@ struct KrsScene {
     Tape             distance; /* distances of all components, and zones */
     Tape             guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
     zones */
-    Tape ahead;   /* if there are open surfaces: ALONG_EXACT of all components, and zones */
+    Tape ahead;   /* if there are open surfaces: ROOTS_ALONG of all components, and zones */
     Tape turned;  /* if there are open surfaces: gradients of all components */
     Tape surface; /* all roots of all components, and zones */
     Tape places;  /* ROOTS_PLACE; empty if nobody asks for meshes */

@@ -93,7 +93,7 @@ static double step_ahead(KrsState *frame, const double point[3], const double di
                          double step)
 {
     const KrsScene *scene = frame->scene;
-    const Node     *exact = along_roots(&scene->roots, ALONG_EXACT);
+    const Node     *exact = roots_of(&scene->roots, ROOTS_ALONG).items;
     Tape            ahead = march_tape(frame, &frame->tapes.ahead);
     double          least = INFINITY;
     tape_run_surface(&ahead, point, direction, step, frame->values);

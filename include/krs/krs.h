@@ -169,6 +169,7 @@ typedef struct KrsOptions {
        files of the standard library are not told of where they are not read from disk. */
     KrsOpenedCallback *opened;      /* may be NULL */
     void              *opened_user; /* handed to `opened` */
+    bool research; /* compile steps for KRS_TRACE_TAYLOR and all methods behind it, too */
 } KrsOptions;
 
 /* Compiles a text in memory, or a file.  `name` is the text's name in diagnostics, and paths of

@@ -8,6 +8,7 @@
 
 #include "runtime/film/noise.h"
 #include "runtime/tracer/methods.h"
+#include "runtime/tracer/research/research.h"
 
 #define MAX_STEPS 16384
 /* The most steps of a lane in a dispatch.  All loops of an invocation together stay under 32768
@@ -49,6 +50,8 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
         o->even_hits > KRS_MAX_EVEN_HITS || (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
         return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow, "
                                  "filter or integrator");
+    if (research_trace(o->trace) && !rendering->program->research)
+        return refuse(rendering, "this method wants a scene that was compiled with `research`");
     if (o->normals == KRS_NORMALS_ANALYTIC && !rendering->program->gradients)
         return refuse(rendering,
                       "analytic normals need a scene that was compiled with `gradients`");

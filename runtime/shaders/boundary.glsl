@@ -29,7 +29,7 @@ float find_eta(float here, float beyond)
 }
 
 #ifdef STARTS_BY_DISTANCE
-#include "starts_by_distance.glsl"
+#include "research/starts_by_distance.glsl"
 #else
 // How many pixels above a surface rays of previews start, where it is even and where it is not, as in
 // secondary.comp.

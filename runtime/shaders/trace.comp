@@ -70,9 +70,6 @@ const float LEARNING = 0.3;
 // clearance at its start.
 const float OVERSHOOT = 1.05;
 const float SHALLOW = 0.25;
-// Methods that try balls (PROBE).  SAFETY: the next radius, relative to the predicted one.
-const uint  BINARY = 1u;
-const float SAFETY = 0.9;
 // Solids that touch are one.  From inside they count as larger, by what rounding may leave open at
 // the seam between two.
 const float SEAM = 4.0; // roundings

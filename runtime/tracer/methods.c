@@ -3,6 +3,8 @@
  */
 #include "runtime/tracer/methods.h"
 
+#include "runtime/tracer/research/research.h"
+
 /* Where a distance costs fewer operations than this, refilling lanes costs more than it gains. */
 #define FLOPS_WORTH_REFILL 150
 /* For a march group the threshold is higher, as few rays of its tiles meet it. */
@@ -13,6 +15,12 @@
 /* So many march groups take longer to compile than they save in a single small picture. */
 #define GROUPS_FOR_LARGE_PICTURES 3
 
+static bool finds_roots(KrsTrace trace)
+{
+    const ResearchTrace *research = research_trace(trace);
+    return trace == KRS_TRACE_EXACT || (research && !research->inverts);
+}
+
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
     const Gpu *gpu       = &rendering->renderer->gpu;
@@ -20,9 +28,8 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
     bool       expensive = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
-    /* Sheets have no thickness, so rays find them by roots alone. */
-    if (rendering->program->open_surfaces &&
-        (*trace < KRS_TRACE_EXACT || *trace >= KRS_TRACE_DIRECTIONAL))
+    /* Open surfaces have no thickness, so rays find them by roots alone. */
+    if (rendering->program->open_surfaces && !finds_roots(*trace))
         *trace = KRS_TRACE_EXACT;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
         *schedule = !software   ? KRS_SCHEDULE_QUEUE
@@ -113,9 +120,11 @@ bool rendering_has_beams(const KrsRendering *rendering, KrsTrace trace)
 
 bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace)
 {
-    bool known = trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
-                                                : rendering->program->along;
-    return trace >= KRS_TRACE_EXACT && known && !rendering->camera_relative;
+    const KrsProgram    *program  = rendering->program;
+    const ResearchTrace *research = research_trace(trace);
+    const bool           known    = research ? research_applies(program, research)
+                                             : trace == KRS_TRACE_EXACT && program->along;
+    return known && !rendering->camera_relative;
 }
 
 bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,

@@ -15,6 +15,7 @@
 #include "runtime/tracer/shaders.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
+#include "runtime/tracer/research/research.h"
 
 /* The distance from the eye to the box of a group. */
 static double distance_to(const Job *job, const KrsMarchGroup *march_group)
@@ -155,20 +156,19 @@ March primary_march_of_paths(const Job *job, Shader *shader)
     return march;
 }
 
-/* Hits are evened out where that is asked for.  Sheets have none to even out: their distance is that
-   of a shell around them. */
-static bool add_even_hits(Job *job, Plan *plan)
+static bool add_research(Job *job, Plan *plan)
 {
     KrsRendering *r = job->rendering;
-    if (job->options.even_hits == 0 || r->program->open_surfaces)
+    ResearchPass  research;
+    if (!research_pass(&job->options, r->program, &research))
         return true;
-    const Shader *shader = rendering_even_hits(r);
+    const Shader *shader = rendering_research(r, &research);
     plan_add(plan, (Pass){.kind      = PASS_ITEMS,
                           .phase     = KRS_PHASE_PRIMARY,
                           .shader    = shader,
                           .in        = LIST_OF_BAND,
                           .out       = NO_LIST,
-                          .constants = {.value = job->options.even_hits}});
+                          .constants = {.value = research.value}});
     return shader != NULL;
 }
 
@@ -204,14 +204,14 @@ bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
                                rendering_marches_per_component(r, job->options.components);
     if (primary)
         *primary = (Primary){0};
-    /* Methods that try balls work outside of solids only. */
-    if (job->options.trace >= KRS_TRACE_BINARY && !job->begins_outside)
-        job->options.trace = KRS_TRACE_PLAIN;
+    const ResearchTrace *research = research_trace(job->options.trace);
+    if (research && !job->begins_outside)
+        job->options.trace = research->from_inside;
     if (per_component || job_has_beams(job))
         plan_add(plan, (Pass){.kind = PASS_CLEAR, .phase = KRS_PHASE_BEAMS});
     bool added = per_component ? add_groups(job, plan, weight, primary)
                                : find_normals(job, primary) && add_whole(job, plan, weight);
-    return added && add_even_hits(job, plan) && add_limit(job, plan);
+    return added && add_research(job, plan) && add_limit(job, plan);
 }
 
 void primary_add_normals(Plan *plan, float weight, const Primary *primary)

@@ -124,9 +124,9 @@ Shader *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
     return find_shader(rendering, "query.comp", variant_of_questions(rendering, schedule));
 }
 
-Shader *rendering_even_hits(KrsRendering *rendering)
+Shader *rendering_research(KrsRendering *rendering, const ResearchPass *pass)
 {
-    return find_shader(rendering, "even_hits.comp", variant_of_even_hits(rendering));
+    return find_shader(rendering, pass->shader, variant_of_research(rendering, pass));
 }
 
 Shader *rendering_shade(KrsRendering *rendering)
@@ -141,10 +141,10 @@ Shader *rendering_point_query(KrsRendering *rendering)
 
 /* ---- paths ---- */
 
-/* Methods that try balls work outside of solids only, and from a start that is far from surfaces. */
 static KrsTrace trace_of_paths(KrsTrace trace)
 {
-    return trace >= KRS_TRACE_DIRECTIONAL ? KRS_TRACE_AUTO : trace;
+    const ResearchTrace *research = research_trace(trace);
+    return research ? research->of_paths : trace;
 }
 
 static uint32_t group_of_paths(const KrsRendering *rendering)

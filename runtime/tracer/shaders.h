@@ -8,6 +8,7 @@
 #define KRS_SHADERS_H
 
 #include "runtime/tracer/handles.h"
+#include "runtime/tracer/research/research.h"
 
 /* The shader of primary rays.  Method and schedule are chosen, not the defaults.  `march_group` is
    the number of a group from 1, 0 for all components, or MARCH_WITHOUT_PLANES or MARCH_PACKED. */
@@ -24,7 +25,7 @@ Shader *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool 
 /* The shader of the albedo of what rays for occlusion have met. */
 Shader *rendering_occluders(KrsRendering *rendering);
 /* The shader that evens hits out. */
-Shader *rendering_even_hits(KrsRendering *rendering);
+Shader *rendering_research(KrsRendering *rendering, const ResearchPass *pass);
 Shader *rendering_shade(KrsRendering *rendering);
 Shader *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 Shader *rendering_point_query(KrsRendering *rendering);

@@ -171,32 +171,14 @@ static ShaderVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
 static bool want_steps(ShaderVariant *to, const KrsRendering *rendering, KrsTrace trace,
                        KrsFunction function)
 {
-    static const KrsRayStep steps[KRS_TRACE_COUNT] = {
-        [KRS_TRACE_EXACT]       = KRS_STEP_EXACT,
-        [KRS_TRACE_TAYLOR]      = KRS_STEP_TAYLOR,
-        [KRS_TRACE_ROOT_FREE]   = KRS_STEP_ROOT_FREE,
-        [KRS_TRACE_DIRECTIONAL] = KRS_STEP_DIRECTIONAL,
-    };
+    const ResearchTrace *research = research_trace(trace);
     if (!rendering_goes_along(rendering, trace))
         return false;
-    to->scene.variant.step = steps[trace];
-    want(to, function);
-    return true;
-}
-
-static bool want_along(ShaderVariant *to, const KrsRendering *rendering, KrsTrace trace)
-{
-    return want_steps(to, rendering, trace, KRS_FUNCTION_ALONG);
-}
-
-/* Chooses krs_probe for methods that test whether balls are empty; false for others. */
-static bool want_probe(ShaderVariant *to, const KrsRendering *rendering, KrsTrace trace)
-{
-    if ((trace != KRS_TRACE_BINARY && trace != KRS_TRACE_PREDICTED) ||
-        !rendering_goes_along(rendering, trace))
-        return false;
-    define(to, "#define PROBE %d\n", trace == KRS_TRACE_BINARY ? 1 : 2);
-    want(to, KRS_FUNCTION_PROBE);
+    want(to, research ? research->function : function);
+    if (research) {
+        to->scene.variant.step = research->step;
+        define(to, "%s", research->defines);
+    }
     return true;
 }
 
@@ -228,9 +210,7 @@ ShaderVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
     if (group == MARCH_PACKED) {
         want(&to, KRS_FUNCTION_SCENE_PART_DISTANCE);
         want(&to, KRS_FUNCTION_SCENE_PART_BOX);
-    } else if (!want_probe(&to, rendering, trace) &&
-               !want_steps(&to, rendering, trace,
-                           trace == KRS_TRACE_EXACT ? KRS_FUNCTION_STEPS : KRS_FUNCTION_ALONG)) {
+    } else if (!want_steps(&to, rendering, trace, KRS_FUNCTION_STEPS)) {
         want_distance_to_march(&to);
     }
     define_choices(&to);
@@ -328,8 +308,7 @@ ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
     want(&to, KRS_FUNCTION_SINES);
     if (rendering->program->emits)
         define(&to, "#define EMISSIVE\n");
-    if (starts == KRS_STARTS_DISTANCE)
-        define(&to, "#define STARTS_BY_DISTANCE\n");
+    define(&to, "%s", research_starts(starts));
     if (rendering->program->media && integrator == KRS_INTEGRATOR_DIRECT) {
         define(&to, "#define DIRECT\n");
         want(&to, KRS_FUNCTION_GLASS);
@@ -344,11 +323,11 @@ ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
     return to;
 }
 
-ShaderVariant variant_of_even_hits(const KrsRendering *rendering)
+ShaderVariant variant_of_research(const KrsRendering *rendering, const ResearchPass *pass)
 {
     ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want_rays(&to, rendering);
-    want(&to, KRS_FUNCTION_DISTANCE);
+    want(&to, pass->function);
     define_choices(&to);
     return to;
 }
@@ -357,7 +336,7 @@ ShaderVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, Kr
 {
     ShaderVariant to = begin_variant(rendering, trace, schedule);
     want_rays(&to, rendering);
-    if (!want_along(&to, rendering, trace))
+    if (!want_steps(&to, rendering, trace, KRS_FUNCTION_ALONG))
         want_distance_to_march(&to);
     define_choices(&to);
     return to;
@@ -393,7 +372,7 @@ ShaderVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
         {"trace.comp", true, {0}, 0},
         {"query.comp", true, {0}, 0},
         {"normals.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
-        {"even_hits.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
+        {"research/even_hits.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
         {"secondary.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SINES}, 2},
         {"shade.comp", false, {KRS_FUNCTION_SURFACE}, 1},
         {"occluders.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},

@@ -6,6 +6,7 @@
 #define KRS_VARIANTS_H
 
 #include "runtime/tracer/handles.h"
+#include "runtime/tracer/research/research.h"
 
 typedef struct ShaderVariant {
     ShaderScene scene;
@@ -42,7 +43,7 @@ ShaderVariant variant_of_occluders(const KrsRendering *rendering);
 ShaderVariant variant_of_shade(const KrsRendering *rendering);
 ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
                                  KrsIntegrator integrator);
-ShaderVariant variant_of_even_hits(const KrsRendering *rendering);
+ShaderVariant variant_of_research(const KrsRendering *rendering, const ResearchPass *pass);
 ShaderVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
 ShaderVariant variant_of_point_query(const KrsRendering *rendering);
 /* The source of a shader.  It points into the variant, which must live as long. */

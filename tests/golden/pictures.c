@@ -77,9 +77,10 @@ static void render_all(Show *show)
 
 static bool show_scene(KrsRenderer *renderer, const char *path)
 {
-    Show      show = {.path = path, .renderer = renderer};
-    KrsScene *scene;
-    bool      good = krs_compile_file(path, NULL, &scene) == KRS_OK &&
+    Show             show    = {.path = path, .renderer = renderer};
+    const KrsOptions options = {.research = true};
+    KrsScene        *scene;
+    bool             good = krs_compile_file(path, &options, &scene) == KRS_OK &&
                 krs_state_new(scene, &show.frame) == KRS_OK &&
                 krs_rendering_new(renderer, scene, &show.rendering) == KRS_OK;
     if (good)

@@ -391,10 +391,11 @@ static size_t wrong_random_scene(int number)
     char      name[40];
     snprintf(name, sizeof name, "random scene %d", number);
     write_random_scene(&text, &random, far ? any_vec(&random, 3000) : vec(0, 0, 0), size);
-    Fixture fixture = {.name = name};
-    size_t  method  = (size_t)number % (sizeof methods / sizeof *methods);
+    Fixture          fixture = {.name = name};
+    size_t           method  = (size_t)number % (sizeof methods / sizeof *methods);
+    const KrsOptions options = {.research = true};
     fixture_open(&fixture,
-                 krs_compile_text(text.bytes, text.length, "scene.krs", NULL, &fixture.scene));
+                 krs_compile_text(text.bytes, text.length, "scene.krs", &options, &fixture.scene));
     size_t wrong = wrong_scene(&fixture, KRS_TRACE_DEFAULT) +
                    wrong_scene(&fixture, methods[method]);
     if (wrong)

@@ -185,6 +185,7 @@ static int close_device(void **state)
 
 int main(void)
 {
+    product_wants_research();
     static const char *const thorough[] = {"kummer of a param", "barth_sextic", "labs_septic"};
     static const char *const exact[]    = {
            "clebsch",     "cayley",        "togliatti",           "endrass_octic",

@@ -457,6 +457,7 @@ static void thickness_is_given(void **state)
 
 int main(void)
 {
+    product_wants_research();
     struct CMUnitTest tests[3 * OPEN_SURFACES + 2];
     static char       names[OPEN_SURFACES][2][80];
     size_t            count = 0;

@@ -41,10 +41,14 @@ static KrsStatus compile(const char *text, const KrsOptions *options, KrsScene *
     return status;
 }
 
+static bool wants_research;
+
+void product_wants_research(void) { wants_research = true; }
+
 Product product_compile(const char *text)
 {
     Product    product = {0};
-    KrsOptions options = {.diagnostic = print_diagnostic};
+    KrsOptions options = {.diagnostic = print_diagnostic, .research = wants_research};
     KrsStatus  status  = compile(text, &options, &product.scene);
     if (status != KRS_OK)
         fail_msg("status %d for the scene:\n%s", (int)status, text);

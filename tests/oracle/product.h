@@ -28,6 +28,8 @@ void scene_write(SceneText *text, const char *format, ...) __attribute__((format
 
 /* Compiles a text; a refusal prints text and diagnostics and fails the test. */
 Product product_compile(const char *text);
+/* The scenes that are compiled from now on have what methods of research need. */
+void    product_wants_research(void);
 Product product_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void    product_free(Product *product);
 

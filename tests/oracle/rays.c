@@ -11,30 +11,36 @@
 
 #include <stdio.h>
 
+/* The last two are of research. */
+typedef enum Method { EXACT, TAYLOR, ROOT_FREE, METHODS } Method;
+
 /* A scene of one component, ready to be asked along rays. */
 typedef struct Steps {
-    Product     product;
-    AlongMethod method;
-    Node        root;
-    Tape        tape;
+    Product product;
+    Method  method;
+    Node    root;
+    Tape    tape;
 } Steps;
 
-static const char *const method_names[ALONG_POLYNOMIALS] = {"exact", "taylor", "root-free"};
+static const char *const method_names[METHODS] = {"exact", "taylor", "root-free"};
 /* A ray has arrived where its steps are so short, in radii of the region; then it is as near to its
    root, which is where the other methods take many steps. */
-static const double enough[ALONG_POLYNOMIALS]  = {1e-10, 1e-6, 1e-6};
-static const double arrived[ALONG_POLYNOMIALS] = {1e-8, 2e-3, 2e-3};
+static const double enough[METHODS]  = {1e-10, 1e-6, 1e-6};
+static const double arrived[METHODS] = {1e-8, 2e-3, 2e-3};
 /* How many steps a ray may need on average and at most. */
-static const int mean_steps[ALONG_POLYNOMIALS] = {20, 100, 100};
+static const int mean_steps[METHODS] = {20, 100, 100};
 enum { MAX_STEPS = 20000 };
 
 /* Takes `product`, which steps_free frees. */
-static Steps steps_new(Product product, AlongMethod method)
+static Steps steps_new(Product product, Method method)
 {
     KrsScene *scene = product.scene;
     assert_int_equal(krs_component_count(scene), 1);
-    Steps steps = {product, method, along_roots(&scene->roots, method)[0], {0}};
-    steps.tape  = tape_new(scene->graph, &steps.root, 1, &scene->arena);
+    const Node *root  = method == EXACT    ? roots_of(&scene->roots, ROOTS_ALONG).items
+                        : method == TAYLOR ? research_roots(&scene->roots, RESEARCH_TAYLOR)
+                                           : research_roots(&scene->roots, RESEARCH_ROOT_FREE);
+    Steps       steps = {product, method, root[0], {0}};
+    steps.tape        = tape_new(scene->graph, &steps.root, 1, &scene->arena);
     frame_refresh(product.frame);
     tape_run_frame(&steps.tape, product.frame->parameters, product.frame->values);
     return steps;
@@ -90,8 +96,8 @@ static int march_rays(const Steps *steps, Formula *formula, double radius, int r
 
 static void surfaces_are_not_overshot(void **state)
 {
-    AlongMethod method = (AlongMethod)(uintptr_t)*state;
-    const int   rays   = method == ALONG_EXACT ? 80 : 25;
+    Method    method = (Method)(uintptr_t)*state;
+    const int rays   = method == EXACT ? 80 : 25;
     for (size_t i = 0; i < SURFACES; i++) {
         const Surface *surface = &surfaces[i];
         Steps steps = steps_new(product_format("use \"std/surfaces.krs\";\n%sshow %sopen: false);",
@@ -174,14 +180,14 @@ static void random_polynomials_are_not_overshot(void **state)
 {
     enum { RAYS = 8 };
     static SceneText text;
-    AlongMethod      method = (AlongMethod)(uintptr_t)*state;
+    Method           method = (Method)(uintptr_t)*state;
     Random           random = {101};
-    int              hits = 0, count = 0, polynomials = method == ALONG_EXACT ? 200 : 80;
+    int              hits = 0, count = 0, polynomials = method == EXACT ? 200 : 80;
     for (int i = 0; i < polynomials; i++) {
         draw_polynomial(&random, i % 4 == 0 ? 20 : 9, &text);
         Steps steps = steps_new(product_compile(text.bytes), method);
         count += march_rays(&steps, polynomial_value, 1.5, RAYS, &hits, text.bytes);
-        if (method == ALONG_EXACT)
+        if (method == EXACT)
             ask_rays(&steps.product, &random, RAYS, text.bytes);
         product_free(&steps.product);
     }
@@ -191,9 +197,10 @@ static void random_polynomials_are_not_overshot(void **state)
 
 int main(void)
 {
-    struct CMUnitTest tests[2 * ALONG_POLYNOMIALS];
-    static char       names[2 * ALONG_POLYNOMIALS][64];
-    for (int i = 0; i < ALONG_POLYNOMIALS; i++) {
+    product_wants_research();
+    struct CMUnitTest tests[2 * METHODS];
+    static char       names[2 * METHODS][64];
+    for (int i = 0; i < METHODS; i++) {
         void *state = (void *)(uintptr_t)i;
         snprintf(names[2 * i], sizeof names[0], "surfaces of the library, %s", method_names[i]);
         snprintf(names[2 * i + 1], sizeof names[0], "random polynomials, %s", method_names[i]);
@@ -202,5 +209,5 @@ int main(void)
         tests[2 * i + 1] = (struct CMUnitTest){
             names[2 * i + 1], random_polynomials_are_not_overshot, NULL, NULL, state};
     }
-    return _cmocka_run_group_tests("rays", tests, 2 * ALONG_POLYNOMIALS, NULL, NULL);
+    return _cmocka_run_group_tests("rays", tests, 2 * METHODS, NULL, NULL);
 }

@@ -274,6 +274,7 @@ static int close_all(void **state)
 
 int main(void)
 {
+    product_wants_research();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_oracle_sees_a_tenth_of_a_pixel),
         cmocka_unit_test(balls_are_as_large_as_they_are),

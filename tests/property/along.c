@@ -122,7 +122,7 @@ static void steps_stay_before_the_surface(void **state)
     assert_int_equal(krs_compile_text(c->text, strlen(c->text), c->name, NULL, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_true(krs_scene_program(scene)->along);
-    Node root = along_roots(&scene->roots, ALONG_EXACT)[0];
+    Node root = roots_of(&scene->roots, ROOTS_ALONG).items[0];
     Tape tape = tape_new(scene->graph, &root, 1, &scene->arena);
     frame_refresh(frame);
     tape_run_frame(&tape, frame->parameters, frame->values);

@@ -156,7 +156,7 @@ static void costs_count_instances(void **state)
 static Module make_module(Bench *b, Many *many)
 {
     Graph *g     = b->graph;
-    Node  *roots = arena_new_array(&b->arena, Node, ROOT_COUNT + ALONG_COUNT + 6);
+    Node  *roots = arena_new_array(&b->arena, Node, ROOT_COUNT + 6);
     for (ComponentRoot r = 0; r < ROOT_COUNT; r++)
         roots[r] = r == ROOT_DISTANCE ? NODE_NONE : root_otherwise(g, r);
     Node nearest          = graph_op2(g, OP_min, many->roots[SHARP], many->roots[NESTED]);
@@ -164,7 +164,7 @@ static Module make_module(Bench *b, Many *many)
     roots[ROOT_NORMAL]    = many->roots[LEAN];
     roots[ROOT_roughness] = many->roots[SHADED];
     Node *rest            = roots + ROOT_COUNT;
-    for (int i = 0; i < ALONG_COUNT + 6; i++)
+    for (int i = 0; i < 6; i++)
         rest[i] = roots[ROOT_DISTANCE];
     Box *box = arena_new(&b->arena, Box);
     *box     = box_around((double[3]){0, 0, 0}, 8);

@@ -26,7 +26,7 @@
 static KrsScene *open_file(const char *path, bool gradients)
 {
     KrsScene        *scene;
-    const KrsOptions options = {.gradients = gradients};
+    const KrsOptions options = {.gradients = gradients, .research = gradients};
     if (krs_compile_file(path, &options, &scene) != KRS_OK)
         fail_msg("%s does not compile", path);
     return scene;
@@ -309,7 +309,7 @@ static void look_at_far_scene(bool compiled)
                                "show box([1, 1, 1]).move([100003, 1, 0]);"
                                "camera { eye: [100000, 2, 5], target: [100000, 1, 0] }";
     KrsScene         *scene;
-    const KrsOptions  options = {.gradients = true};
+    const KrsOptions  options = {.gradients = true, .research = true};
     assert_int_equal(krs_compile_text(text, strlen(text), "far.krs", &options, &scene), KRS_OK);
     assert_true(krs_scene_program(scene)->camera_relative);
     look_at_variants(scene, "far.krs", compiled);
@@ -326,7 +326,7 @@ static void look_at_glass(void)
                                "show box([1, 1, 1]).paint(gold);"
                                "show plane([0, 1, 0], 0);";
     KrsScene         *scene;
-    const KrsOptions  options = {.gradients = true};
+    const KrsOptions  options = {.gradients = true, .research = true};
     assert_int_equal(krs_compile_text(text, strlen(text), "glass.krs", &options, &scene), KRS_OK);
     assert_true(krs_scene_program(scene)->media);
     look_at_variants(scene, "glass.krs", true);

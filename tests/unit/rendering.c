@@ -164,6 +164,8 @@ static void wrong_use_is_refused(void **state)
         {.slice_ms = -1},
         {.steps_at_once = 8193},
         {.trace = KRS_TRACE_COUNT},
+        {.trace = KRS_TRACE_TAYLOR},    /* the scene was not compiled for that */
+        {.trace = KRS_TRACE_PREDICTED}, /* or for that */
         {.schedule = KRS_SCHEDULE_COUNT},
         {.shadows = KRS_SHADOWS_COUNT},
         {.starts = KRS_STARTS_COUNT},

@@ -92,7 +92,8 @@ static void note_validation_message(void *user, const char *message)
 
 KrsStatus open_scene(Scene *scene)
 {
-    KrsStatus status = krs_compile_text(scene->text, strlen(scene->text), scene->name, NULL,
+    const KrsOptions options = {.research = true};
+    KrsStatus status = krs_compile_text(scene->text, strlen(scene->text), scene->name, &options,
                                         &scene->scene);
     if (status == KRS_OK)
         status = krs_state_new(scene->scene, &scene->frame);

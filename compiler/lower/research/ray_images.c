@@ -1,6 +1,6 @@
 /*
  * ray_images.c: images of rays and balls in sequences with maps that invert (math.md, section 2).
- * They tell how far a ray may go (ALONG_DIRECTIONAL), and whether a ball is empty (ALONG_PROBE).
+ * They tell how far a ray may go (RESEARCH_DIRECTIONAL), and whether a ball is empty (RESEARCH_PROBE).
  *
  * The image of a ray p + t v under a conformal map F is a circle or a line through q = F(p).  Let
  * A = |F'(p)|, w the image's direction at q, and h a vector at q, which is 0 if no map inverts:
@@ -17,10 +17,10 @@
  * The image of a ball under conformal maps is a ball.  A mirror may cut it.  Then the centre is
  * folded and the radius kept, which is safe since folding does not increase distances.
  */
-#include "compiler/lower/ray_images.h"
-
 #include "compiler/graph/build.h"
+#include "compiler/lower/lower.h"
 #include "compiler/lower/map_chain.h"
+#include "compiler/lower/research/methods.h"
 #include "compiler/shape/slope.h"
 
 /* Error of single precision in inverse lengths, relative to those of the centred bound. */
@@ -34,13 +34,14 @@ static const double TINY = 1e-30;
 
 /* The image of a ray or ball behind the maps so far. */
 typedef struct RayImage {
+    bool     probes; /* it is a ball */
     MapChain chain;
-    Node     direction;    /* DIRECTIONAL: w */
+    Node     direction;    /* of a ray: w */
     Node     bow;          /* h; NODE_NONE: 0, since no map inverts */
     Node     tilt, square; /* h.w and h.h, unless h is NODE_NONE */
     Node     crossing;   /* 1 / t where the ray crosses the first mirror since the last inversion */
     Node outer_crossing; /* the same of mirrors before an inversion; NODE_NONE: there are none */
-    Node radius;         /* PROBE: of the ball */
+    Node radius;         /* of the ball */
 } RayImage;
 
 static Node larger(Lowering *l, Node a, Node b)
@@ -106,7 +107,7 @@ static Node length_outside(Lowering *l, const RayImage *image, Node distance)
     Graph *g = l->graph;
     if (distance == NODE_NONE)
         return NODE_NONE;
-    if (l->method == ALONG_DIRECTIONAL)
+    if (!image->probes)
         return exit_of(l, image, distance);
     Node radius = graph_leaf(g, OP_FOOTPRINT);
     if (image->radius == radius)
@@ -157,13 +158,13 @@ static Node invert_ball(Lowering *l, RayImage *image, const Map *map)
 }
 
 /* Returns the length outside up to the pole of a map for a ball, else NODE_NONE. */
-static Node image_map(Lowering *l, RayImage *image, const Map *map)
+static Node map_image(Lowering *l, RayImage *image, const Map *map)
 {
     Graph     *g    = l->graph;
     NormalPath none = normal_path(l, context_new(image->chain.point, false), 0);
-    if (l->method == ALONG_PROBE && map->pole != NODE_NONE)
+    if (image->probes && map->pole != NODE_NONE)
         return invert_ball(l, image, map);
-    if (l->method == ALONG_PROBE)
+    if (image->probes)
         image->radius = over(g, image->radius, map->scale);
     else if (map->pole != NODE_NONE) {
         Inversion inversion = inversion_at(g, map, image->chain.point);
@@ -203,12 +204,12 @@ static Node crossing_of(Lowering *l, const RayImage *image, Node axis, Node dist
     return graph_op3(g, OP_select, leaves, leaving, nearing);
 }
 
-static void image_mirror(Lowering *l, RayImage *image, Node axis, Node offset)
+static void mirror_image(Lowering *l, RayImage *image, Node axis, Node offset)
 {
     Graph *g           = l->graph;
     Node   point       = image->chain.point;
     image->chain.point = graph_op3(g, OP_fold, point, axis, offset);
-    if (l->method == ALONG_PROBE)
+    if (image->probes)
         return;
     Node front       = graph_op3(g, OP_front, point, axis, offset);
     Node mirrored    = reflected(l, image->direction, axis);
@@ -229,7 +230,7 @@ static void image_mirror(Lowering *l, RayImage *image, Node axis, Node offset)
 
 static Node image_shape(Lowering *l, const Shape *shape, RayImage image);
 
-static Node image_distance(Lowering *l, const Shape *shape, RayImage image)
+static Node image_none(Lowering *l, const Shape *shape, RayImage image)
 {
     Lowered ball = lower_shape(l, shape, context_new(image.chain.point, false));
     if (ball.distance == NODE_NONE)
@@ -247,7 +248,7 @@ static Node hull_length(Lowering *l, const RayImage *image, const Map *map, Ball
 static Node image_inversion(Lowering *l, const Shape *shape, RayImage image)
 {
     Node hull  = hull_length(l, &image, &shape->map, ball_around(shape->children[0]->box));
-    Node pole  = image_map(l, &image, &shape->map);
+    Node pole  = map_image(l, &image, &shape->map);
     Node inner = image_shape(l, shape->children[0], image);
     return inner == NODE_NONE ? NODE_NONE : larger(l, nearer_of(l->graph, inner, pole), hull);
 }
@@ -266,13 +267,13 @@ static Node image_krs(Lowering *l, const Shape *shape, RayImage image)
         const Map           *map   = &stage->map;
         Node                 found = NODE_NONE;
         switch (stage->kind) {
-        case SEQUENCE_REFLECT: image_mirror(l, &image, stage->normal, stage->offset); break;
-        case SEQUENCE_SPHERE: break; /* reaches_in_stages */
+        case SEQUENCE_REFLECT: mirror_image(l, &image, stage->normal, stage->offset); break;
+        case SEQUENCE_SPHERE: break; /* inverts_krs */
         case SEQUENCE_KERNEL: found = image_shape(l, shape->children[stage->kernel], image); break;
         case SEQUENCE_MAP:
             if (map->pole != NODE_NONE)
                 hull = larger(l, hull, hull_length(l, &image, map, shape->bounds[i - 1].ball));
-            found = image_map(l, &image, map);
+            found = map_image(l, &image, map);
             break;
         }
         if (found != NODE_NONE)
@@ -289,9 +290,9 @@ static Node image_union(Lowering *l, const Shape *shape, RayImage image)
     return nearest;
 }
 
-static Node image_transform(Lowering *l, const Shape *shape, RayImage image)
+static Node image_map(Lowering *l, const Shape *shape, RayImage image)
 {
-    image_map(l, &image, &shape->map);
+    map_image(l, &image, &shape->map);
     return image_shape(l, shape->children[0], image);
 }
 
@@ -300,74 +301,19 @@ static Node image_part(Lowering *l, const Shape *shape, RayImage image)
     return image_shape(l, shape->children[0], image);
 }
 
-/* ---- whether there is an inversion in a shape, below kinds that map images of rays ---- */
-
-static bool reaches_inversion(const Shape *shape);
-
-static bool reaches_none(const Shape *shape)
-{
-    (void)shape;
-    return false;
-}
-
-static bool reaches_own(const Shape *shape)
-{
-    (void)shape;
-    return true;
-}
-
-static bool reaches_in_parts(const Shape *shape)
-{
-    for (uint32_t i = 0; i < shape->child_count; i++)
-        if (reaches_inversion(shape->children[i]))
-            return true;
-    return false;
-}
-
-static bool reaches_in_sharp_parts(const Shape *shape)
-{
-    return shape->blend.width == NODE_NONE && reaches_in_parts(shape);
-}
-
-/* A sphere that is a mirror has no image of a ray: what is in front of it and what is behind it are
-   each other's images.  There the distance serves. */
-static bool reaches_in_stages(const Shape *shape)
-{
-    bool inverts = reaches_in_parts(shape);
-    for (uint32_t i = 0; i < shape->stage_count; i++) {
-        const SequenceStage *stage = &shape->stages[i];
-        if (stage->kind == SEQUENCE_SPHERE)
-            return false;
-        inverts = inverts || (stage->kind == SEQUENCE_MAP && stage->map.pole != NODE_NONE);
-    }
-    return inverts;
-}
-
 /* ---- kinds ---- */
 
-typedef struct ImageRule {
-    bool (*reaches)(const Shape *shape);
-    Node (*image)(Lowering *l, const Shape *shape, RayImage image);
-} ImageRule;
+typedef Node ImageRule(Lowering *l, const Shape *shape, RayImage image);
 
-static const ImageRule rule_none      = {reaches_none, image_distance};
-static const ImageRule rule_inversion = {reaches_own, image_inversion};
-static const ImageRule rule_krs       = {reaches_in_stages, image_krs};
-static const ImageRule rule_union     = {reaches_in_sharp_parts, image_union};
-static const ImageRule rule_map       = {reaches_in_parts, image_transform};
-static const ImageRule rule_part      = {reaches_in_parts, image_part};
-
-static const ImageRule *rule_of(const Shape *shape)
+static ImageRule *rule_of(const Shape *shape)
 {
-    static const ImageRule *const rules[SHAPE_COUNT] = {
+    static ImageRule *const rules[SHAPE_COUNT] = {
 #define SHAPE(KIND, name, parts, curved, divided, own, leaves, box, rays, step, image, ...) \
-    &rule_##image,
+    image_##image,
 #include "compiler/shape/shapes.def"
     };
     return rules[shape->kind];
 }
-
-static bool reaches_inversion(const Shape *shape) { return rule_of(shape)->reaches(shape); }
 
 static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
 {
@@ -375,11 +321,10 @@ static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
     l->overflow    = l->overflow || l->graph->count > l->most;
     if (l->overflow)
         return NODE_NONE;
-    return reaches_inversion(shape) ? rule_of(shape)->image(l, shape, image)
-                                    : image_distance(l, shape, image);
+    return reaches_inversion(shape) ? rule_of(shape)(l, shape, image) : image_none(l, shape, image);
 }
 
-Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
+Node lower_image(Graph *graph, const Shape *shape, Node plain, bool probes,
                  struct LoweredGroups *groups, Arena *scratch)
 {
     if (!reaches_inversion(shape))
@@ -387,10 +332,10 @@ Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
     Lowering l      = {.graph   = graph,
                        .scratch = scratch,
                        .most    = graph->count + MAX_LOWERED,
-                       .method  = method,
                        .groups  = groups,
                        .thin    = true};
-    RayImage image  = {.bow            = NODE_NONE,
+    RayImage image  = {.probes         = probes,
+                       .bow            = NODE_NONE,
                        .tilt           = NODE_NONE,
                        .square         = NODE_NONE,
                        .crossing       = NODE_NONE,

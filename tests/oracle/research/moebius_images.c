@@ -7,17 +7,17 @@
 
 #include <stdio.h>
 
-/* What is marched by instead of the distance: ray_images.c. */
+/* What is marched by instead of the distance: compiler/lower/research/ray_images.c. */
 typedef struct Asked {
     Product product;
     Node    root;
     Tape    tape;
 } Asked;
 
-static Asked asked_new(Product product, AlongMethod method)
+static Asked asked_new(Product product, ResearchMethod method)
 {
     KrsScene *scene = product.scene;
-    Asked     asked = {product, along_roots(&scene->roots, method)[0], {0}};
+    Asked     asked = {product, research_roots(&scene->roots, method)[0], {0}};
     asked.tape      = tape_new(scene->graph, &asked.root, 1, &scene->arena);
     frame_refresh(product.frame);
     tape_run_frame(&asked.tape, product.frame->parameters, product.frame->values);
@@ -125,8 +125,8 @@ static void images(void **state)
         Chain   chain     = random_chain(flavour, flavour->nested ? &inner : NULL, &random);
         Product product   = compile_chain(&chain);
         Cloud   cloud     = chain_cloud(&chain, flavour->levels > 4 ? 200 : 800, &random);
-        Asked   steps     = asked_new(product, ALONG_DIRECTIONAL);
-        Asked   balls     = asked_new(product, ALONG_PROBE);
+        Asked   steps     = asked_new(product, RESEARCH_DIRECTIONAL);
+        Asked   balls     = asked_new(product, RESEARCH_PROBE);
         for (int i = 0; i < 200 && cloud.count; i++) {
             Vec p  = i % 3 ? random_near(&cloud, &random) : random_in_cube(&random, 3);
             Vec to = vec_sub(cloud.points[random_below(&random, (int)cloud.count)], p);
@@ -153,6 +153,7 @@ static void images(void **state)
 
 int main(void)
 {
+    product_wants_research();
     struct CMUnitTest tests[FLAVOURS];
     char              names[FLAVOURS][80];
     for (size_t i = 0; i < FLAVOURS; i++) {
