@@ -67,7 +67,7 @@ KrsStatus krs_scene_reload_sized(const KrsScene *scene, KrsScene **updated, KrsC
 ASKED_BY_INDEX(krs_parameter, const KrsScene, KrsParameter)
 ASKED_BY_INDEX(krs_texture, const KrsScene, KrsTexture)
 ASKED_BY_INDEX(krs_state_slope, const KrsScene, KrsStateSlope)
-ASKED_BY_INDEX(krs_camera_place, const KrsScene, KrsPlace)
+ASKED_BY_INDEX(krs_camera_location, const KrsScene, KrsLocation)
 ASKED_BY_INDEX(krs_state_camera, KrsState, KrsCamera)
 ASKED_BY_INDEX(krs_component, const KrsScene, KrsComponent)
 

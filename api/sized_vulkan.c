@@ -32,13 +32,13 @@ void krs_renderer_device_sized(const KrsRenderer *renderer, KrsDevice *device, s
     sized_give(device, size, &own, sizeof own);
 }
 
-size_t krs_rendering_kernels_sized(const KrsRendering *rendering, KrsKernelStats *kernels,
+size_t krs_rendering_shaders_sized(const KrsRendering *rendering, KrsShaderStats *shaders,
                                    size_t size, size_t capacity)
 {
     SizedArray array;
-    if (!sized_open(&array, kernels, size, sizeof(KrsKernelStats), capacity))
+    if (!sized_open(&array, shaders, size, sizeof(KrsShaderStats), capacity))
         return 0;
-    const size_t found = krs_rendering_kernels(rendering, array.own, capacity);
+    const size_t found = krs_rendering_shaders(rendering, array.own, capacity);
     sized_close(&array, found < capacity ? found : capacity);
     return found;
 }

@@ -140,7 +140,7 @@ static void open_device(Bench *bench)
     KrsRendererOptions options = {.device = bench->device};
     if (krs_renderer_new(&options, &bench->renderer) != KRS_OK)
         fail("%s", krs_renderer_message(bench->renderer));
-    if (!gpu_open(&bench->gpu, &options))
+    if (!gpu_open(&bench->gpu, &options, 0))
         fail("%s", bench->gpu.message);
 }
 

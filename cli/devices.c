@@ -92,7 +92,7 @@ const char *cache_folder(const Options *options)
 }
 
 /* The driver's time is no part of a deadline while it works. */
-static void go_on(void *user)
+static void keep_alive(void *user)
 {
     (void)user;
     stage_goes_on();
@@ -104,8 +104,8 @@ KrsRendererOptions renderer_options(const Options *options)
     return (KrsRendererOptions){.device     = device,
                                 .cache      = cache_folder(options),
                                 .early_outs = options->early_outs,
-                                .working    = go_on,
-                                .patience   = DEVICE_TIMEOUT * options->deadline};
+                                .working    = keep_alive,
+                                .timeout    = DEVICE_TIMEOUT * options->deadline};
 }
 
 static KrsStatus begin(const KrsRendererOptions *with, KrsRenderer **renderer)
@@ -119,7 +119,7 @@ static KrsStatus begin(const KrsRendererOptions *with, KrsRenderer **renderer)
 KrsStatus open_renderer_early(const Options *options, KrsRenderer **renderer)
 {
     KrsRendererOptions with = renderer_options(options);
-    with.pictures_ahead     = true;
+    with.prewarm            = true;
     return begin(&with, renderer);
 }
 

@@ -44,7 +44,7 @@ typedef struct Gridding {
     double          done, begun, goal; /* of all work: done, and before and after this step of it */
 } Gridding;
 
-static bool go_on(void *user, double fraction)
+static bool report_progress(void *user, double fraction)
 {
     Gridding *gridding = user;
     double    done     = gridding->begun + fraction * (gridding->goal - gridding->begun);
@@ -163,7 +163,7 @@ static KrsStatus take_options(Gridding *gridding)
                                      .component    = meshing->how.component,
                                      .within       = meshing->how.within,
                                      .memory_limit = options->limits.memory,
-                                     .go_on        = go_on,
+                                     .progress     = report_progress,
                                      .user         = gridding};
     memcpy(gridding->how.low, meshing->how.low, sizeof gridding->how.low);
     memcpy(gridding->how.high, meshing->how.high, sizeof gridding->how.high);

@@ -165,7 +165,7 @@ static void print_text(const KrsScene *scene)
     for (size_t i = 0; i < krs_state_slope_count(scene); i++) {
         KrsStateSlope slope;
         krs_state_slope(scene, i, &slope);
-        printf("slope of each frame: slot %u, of %s\n", slope.slot, slope.place);
+        printf("slope of each frame: slot %u, of %s\n", slope.slot, slope.location);
     }
     for (size_t i = 0; i < krs_camera_count(scene); i++)
         if (krs_camera_name(scene, i))
@@ -273,7 +273,7 @@ static void add_slopes(Text *json, const KrsScene *scene)
         KrsStateSlope slope;
         krs_state_slope(scene, i, &slope);
         text_format(json, "%s{\"slot\": %u, \"place\": ", i == 0 ? "" : ", ", slope.slot);
-        text_json(json, slope.place);
+        text_json(json, slope.location);
         text_add(json, ", \"low\": ");
         json_vector(json, slope.low, 3);
         text_add(json, ", \"high\": ");

@@ -17,7 +17,7 @@ typedef struct Printing {
     Progress        progress;
 } Printing;
 
-static bool go_on(void *user, double fraction)
+static bool report_progress(void *user, double fraction)
 {
     Printing *printing = user;
     progress_show(&printing->progress, fraction);
@@ -259,7 +259,7 @@ static KrsMeasureOptions measure_options(Printing *printing, const KrsMeshOption
                                  .overhang     = options->overhang * M_PI / 180,
                                  .nozzle       = options->nozzle,
                                  .memory_limit = options->limits.memory,
-                                 .go_on        = go_on,
+                                 .progress     = report_progress,
                                  .user         = printing};
     how.up[options->axis]     = 1;
     memcpy(how.low, meshed->low, sizeof how.low);

@@ -21,7 +21,7 @@ static int copies_in(const Options *options, const MeshFormat *format)
 
 /* ---- the mesh ---- */
 
-static bool go_on(void *user, double fraction)
+static bool report_progress(void *user, double fraction)
 {
     Meshing *meshing = user;
     double   done    = meshing->begun + fraction * (meshing->goal - meshing->begun);
@@ -442,7 +442,7 @@ KrsStatus write_meshes(Meshing *meshing)
                                 options->time + options->first_frame / options->fps);
     if (status == KRS_OK) {
         meshing->how = (KrsMeshOptions){
-            .memory_limit = options->limits.memory, .go_on = go_on, .user = meshing};
+            .memory_limit = options->limits.memory, .progress = report_progress, .user = meshing};
         status = check_common_options(meshing);
     }
     if (status == KRS_OK)

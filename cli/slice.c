@@ -39,9 +39,10 @@ typedef struct Slicing {
     Progress        progress;
 } Slicing;
 
-static bool go_on(void *user)
+/* Layers tell the progress. */
+static bool is_wanted(void *user, double fraction)
 {
-    (void)user;
+    (void)user, (void)fraction;
     return !*interrupted();
 }
 
@@ -337,7 +338,7 @@ static KrsStatus take_options(Slicing *slicing)
                                          .component    = meshing->how.component,
                                          .within       = meshing->how.within,
                                          .memory_limit = slicing->options->limits.memory,
-                                         .go_on        = go_on};
+                                         .progress     = is_wanted};
     memcpy(slicing->how.low, meshing->how.low, sizeof slicing->how.low);
     memcpy(slicing->how.high, meshing->how.high, sizeof slicing->how.high);
     return status == KRS_OK ? check_figures(slicing) : status;

@@ -349,7 +349,7 @@ static KrsStatus try_modules(const Validation *v)
 
 /* ---- the search ---- */
 
-static bool go_on(void *user, double fraction)
+static bool report_progress(void *user, double fraction)
 {
     Progress *progress = user;
     progress_show(progress, fraction);
@@ -396,7 +396,7 @@ static KrsStatus try_search(Validation *v)
                             .time        = options->time,
                             .fixed       = fixed,
                             .fixed_count = count,
-                            .go_on       = go_on,
+                            .progress    = report_progress,
                             .user        = &progress};
     stage_enter(STAGE_VALIDATE);
     progress_start(&progress, options, 1);

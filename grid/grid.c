@@ -89,7 +89,7 @@ static KrsStatus find_mesh(KrsGrid *grid, KrsState *frame)
     KrsMeshOptions        how     = {.component    = options->component,
                                      .within       = options->within,
                                      .memory_limit = options->memory_limit,
-                                     .go_on        = options->go_on,
+                                     .progress     = options->progress,
                                      .user         = options->user};
     memcpy(how.low, options->low, sizeof how.low);
     memcpy(how.high, options->high, sizeof how.high);
@@ -377,7 +377,8 @@ static KrsStatus visit_all(Runs *runs, KrsVisitBrick *visit, void *user)
     make_room(runs, all < at_once ? all : at_once);
     for (; runs->first < all && status == KRS_OK; runs->first += runs->count) {
         runs->count = all - runs->first < at_once ? all - runs->first : at_once;
-        if (options->go_on && !options->go_on(options->user, (double)runs->first / (double)all))
+        if (options->progress &&
+            !options->progress(options->user, (double)runs->first / (double)all))
             status = KRS_INTERRUPTED;
         else
             status = visit_some(runs, visit, user);

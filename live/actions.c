@@ -34,7 +34,7 @@ static void changed(Viewing *viewing)
 
 static void turn(Viewing *viewing, double right, double up)
 {
-    krs_camera_turn(&viewing->view.camera, right, up);
+    krs_camera_orbit(&viewing->view.camera, right, up);
     changed(viewing);
 }
 
@@ -78,7 +78,7 @@ static void act_frame_part(Viewing *viewing)
 
 static void act_home(Viewing *viewing)
 {
-    krs_state_place_camera(viewing_frame(viewing));
+    krs_state_fit_camera(viewing_frame(viewing));
     viewing_take_camera(viewing, viewing->camera);
 }
 

@@ -280,7 +280,7 @@ void viewing_adopt(Viewing *viewing, Version *version)
         keep_values(viewing, &before);
     else {
         begin_view(viewing);
-        krs_state_place_camera(viewing_frame(viewing));
+        krs_state_fit_camera(viewing_frame(viewing));
     }
     version_release(before.version);
     free(before.values);

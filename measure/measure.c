@@ -15,8 +15,8 @@ static const double MESH_DONE = 0.4, VOLUME_DONE = 0.7;
 bool measurer_goes_on(Measurer *m, size_t part, double fraction)
 {
     const KrsMeasureOptions *options = m->options;
-    if (part == 0 && options->go_on &&
-        !options->go_on(options->user, m->begun + fraction * (m->goal - m->begun)))
+    if (part == 0 && options->progress &&
+        !options->progress(options->user, m->begun + fraction * (m->goal - m->begun)))
         atomic_store(&m->stopped, true);
     return !atomic_load_explicit(&m->stopped, memory_order_relaxed);
 }
@@ -33,7 +33,7 @@ static KrsStatus make_mesh(Measurer *m, KrsState *frame)
                                         .component    = options->component,
                                         .within       = options->within,
                                         .memory_limit = options->memory_limit,
-                                        .go_on        = mesher_goes_on,
+                                        .progress     = mesher_goes_on,
                                         .user         = m};
     memcpy(how.low, options->low, sizeof how.low);
     memcpy(how.high, options->high, sizeof how.high);

@@ -7,7 +7,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/field/steps.h"
 #include "mesh/mesh.h"
-#include "mesh/placing.h"
+#include "mesh/similarity.h"
 
 /* Items that a search for how far one reaches may look at. */
 enum { MAX_VISITS = 1 << 20 };
@@ -54,19 +54,19 @@ static void read_map(const Assembler *a, uint32_t root, double matrix[3][4])
         for (int k = 0; k < 3; k++)
             rows[i][k] = number_of(a, map->rows[i], k);
     }
-    placing_map(number_of(a, map->scale, 0), (const double(*)[3])rows, shift, matrix);
+    similarity_map(number_of(a, map->scale, 0), (const double(*)[3])rows, shift, matrix);
 }
 
-static void read_placing(const Assembler *a, const AssemblyPlacing *from, KrsPlacing *to)
+static void read_transform(const Assembler *a, const AssemblyTransform *from, KrsTransform *to)
 {
     double normal[3], offset;
     to->item = from->item;
-    memcpy(to->matrix, placing_identity, sizeof to->matrix);
+    memcpy(to->matrix, similarity_identity, sizeof to->matrix);
     if (from->kind == PLACED_MAPPED)
         read_map(a, from->root, to->matrix);
     else if (from->kind == PLACED_MIRRORED) {
         read_mirror(a, from->root, normal, &offset);
-        placing_mirror(normal, offset, to->matrix);
+        similarity_mirror(normal, offset, to->matrix);
     }
 }
 
@@ -76,17 +76,17 @@ static bool copy_items(Assembler *a)
     size_t       items = a->from->items.count, components = a->frame->scene->component_count;
     KrsAssembly *to  = a->to;
     to->items        = calloc(items + 2, sizeof *to->items);
-    to->placings     = calloc(a->from->placings.count + components + 1, sizeof *to->placings);
+    to->transforms   = calloc(a->from->transforms.count + components + 1, sizeof *to->transforms);
     a->search.bounds = calloc(items + 2, sizeof *a->search.bounds);
     a->scales        = calloc(items + 2, sizeof *a->scales);
     a->apart         = calloc(components + 1, sizeof *a->apart);
-    if (!to->items || !to->placings || !a->search.bounds || !a->scales || !a->apart)
+    if (!to->items || !to->transforms || !a->search.bounds || !a->scales || !a->apart)
         return false;
-    to->item_count     = items;
-    to->placing_count  = a->from->placings.count;
-    a->search.assembly = to;
-    for (size_t i = 0; i < to->placing_count; i++)
-        read_placing(a, &a->from->placings.items[i], &to->placings[i]);
+    to->item_count      = items;
+    to->transform_count = a->from->transforms.count;
+    a->search.assembly  = to;
+    for (size_t i = 0; i < to->transform_count; i++)
+        read_transform(a, &a->from->transforms.items[i], &to->transforms[i]);
     for (size_t i = 0; i < items; i++) {
         to->items[i].first      = a->from->items.items[i].first;
         to->items[i].count      = a->from->items.items[i].count;
@@ -99,15 +99,15 @@ static bool copy_items(Assembler *a)
 
 /* ---- which components are taken apart ---- */
 
-static bool is_cut(Assembler *a, const AssemblyPlacing *placing)
+static bool is_cut(Assembler *a, const AssemblyTransform *transform)
 {
     double normal[3], offset;
-    if (placing->kind != PLACED_MIRRORED || box_is_empty(a->search.bounds[placing->item].box))
+    if (transform->kind != PLACED_MIRRORED || box_is_empty(a->search.bounds[transform->item].box))
         return false;
-    read_mirror(a, placing->root, normal, &offset);
-    double most      = offset + ROUNDING_OF_MIRRORS * a->search.bounds[placing->item].ball.radius;
+    read_mirror(a, transform->root, normal, &offset);
+    double most      = offset + ROUNDING_OF_MIRRORS * a->search.bounds[transform->item].ball.radius;
     a->search.visits = MAX_VISITS;
-    return reach_along(&a->search, placing->item, placing_identity, normal, most) > most;
+    return reach_along(&a->search, transform->item, similarity_identity, normal, most) > most;
 }
 
 /* Whether an item, or one that it is made of, is cut; `asked` has answers + 1. */
@@ -118,8 +118,8 @@ static bool has_cuts(Assembler *a, size_t number, char *asked)
     if (asked[number])
         return asked[number] - 1;
     for (size_t i = item->first; i < item->first + item->count && !cut; i++) {
-        const AssemblyPlacing *placing = &a->from->placings.items[i];
-        cut                            = has_cuts(a, placing->item, asked) || is_cut(a, placing);
+        const AssemblyTransform *transform = &a->from->transforms.items[i];
+        cut = has_cuts(a, transform->item, asked) || is_cut(a, transform);
     }
     asked[number] = (char)(1 + cut);
     return cut;
@@ -149,16 +149,16 @@ static bool choose_components(Assembler *a, char *asked)
 
 static void place_still(KrsAssembly *to, size_t item)
 {
-    KrsPlacing *placing = &to->placings[to->placing_count++];
-    placing->item       = item;
-    memcpy(placing->matrix, placing_identity, sizeof placing->matrix);
+    KrsTransform *transform = &to->transforms[to->transform_count++];
+    transform->item         = item;
+    memcpy(transform->matrix, similarity_identity, sizeof transform->matrix);
 }
 
 /* An item for what is not taken apart, if there is such, and one for all. */
 static void add_last_items(Assembler *a)
 {
     KrsAssembly *to    = a->to;
-    size_t       first = to->placing_count;
+    size_t       first = to->transform_count;
     for (size_t i = 0; i < a->frame->scene->component_count; i++)
         if (a->apart[i])
             place_still(to, a->from->of_component[i]);
@@ -167,7 +167,7 @@ static void add_last_items(Assembler *a)
             place_still(to, to->item_count++);
             break;
         }
-    to->items[to->item_count++] = (KrsItem){.first = first, .count = to->placing_count - first};
+    to->items[to->item_count++] = (KrsItem){.first = first, .count = to->transform_count - first};
 }
 
 /* How many copies items have, how large, and where one is, from all down to the meshes. */
@@ -176,36 +176,38 @@ static void count_copies(Assembler *a)
     KrsAssembly *to   = a->to;
     KrsItem     *last = &to->items[to->item_count - 1];
     last->copies = a->scales[to->item_count - 1] = 1;
-    memcpy(last->first_copy, placing_identity, sizeof last->first_copy);
+    memcpy(last->first_copy, similarity_identity, sizeof last->first_copy);
     for (size_t n = to->item_count; n-- > 0;) {
         const KrsItem *item = &to->items[n];
         for (size_t i = item->first; item->copies > 0 && i < item->first + item->count; i++) {
-            const KrsPlacing *placing = &to->placings[i];
-            KrsItem          *placed  = &to->items[placing->item];
-            double           *scale   = &a->scales[placing->item];
-            const double(*matrix)[4]  = (const double(*)[4])placing->matrix;
+            const KrsTransform *transform = &to->transforms[i];
+            KrsItem            *placed    = &to->items[transform->item];
+            double             *scale     = &a->scales[transform->item];
+            const double(*matrix)[4]      = (const double(*)[4])transform->matrix;
             if (placed->copies == 0)
-                placing_product((const double(*)[4])item->first_copy, matrix, placed->first_copy);
+                similarity_product((const double(*)[4])item->first_copy, matrix,
+                                   placed->first_copy);
             placed->copies += item->copies;
-            *scale = fmax(*scale, a->scales[n] * placing_scale(matrix));
+            *scale = fmax(*scale, a->scales[n] * similarity_scale(matrix));
         }
     }
 }
 
 /* ---- meshes ---- */
 
-static bool go_on(void *user, double fraction)
+static bool report_progress(void *user, double fraction)
 {
     const Assembler *a = user;
-    return a->options->go_on(a->options->user, ((double)a->meshed + fraction) / (double)a->meshes);
+    return a->options->progress(a->options->user,
+                                ((double)a->meshed + fraction) / (double)a->meshes);
 }
 
 static KrsStatus mesh_item(Assembler *a, size_t number, const MeshSolid *solid)
 {
     KrsMeshOptions options = *a->options;
     options.error /= a->scales[number];
-    options.go_on = a->options->go_on ? go_on : NULL;
-    options.user  = a;
+    options.progress = a->options->progress ? report_progress : NULL;
+    options.user     = a;
     a->meshed++;
     return mesh_solid(a->frame, &options, solid, &a->to->items[number].mesh);
 }
@@ -271,7 +273,7 @@ static void find_box(Assembler *a)
         double direction[3] = {0};
         direction[k / 2]    = k % 2 ? 1 : -1;
         a->search.visits    = SIZE_MAX;
-        double most = reach_along(&a->search, a->to->item_count - 1, placing_identity, direction,
+        double most = reach_along(&a->search, a->to->item_count - 1, similarity_identity, direction,
                                   -INFINITY);
         *(k % 2 ? &a->to->high[k / 2] : &a->to->low[k / 2]) = k % 2 ? most : -most;
     }
@@ -346,7 +348,7 @@ static bool any_is_cut(Assembler *a)
     for (size_t i = 0; i < a->from->items.count; i++) {
         const AssemblyItem *item = &a->from->items.items[i];
         for (uint32_t k = item->first; k < item->first + item->count; k++)
-            if (a->to->items[i].copies > 0 && is_cut(a, &a->from->placings.items[k]))
+            if (a->to->items[i].copies > 0 && is_cut(a, &a->from->transforms.items[k]))
                 return true;
     }
     return false;
@@ -354,18 +356,18 @@ static bool any_is_cut(Assembler *a)
 
 static bool has_mirrors(const Assembly *assembly)
 {
-    for (size_t i = 0; i < assembly->placings.count; i++)
-        if (assembly->placings.items[i].kind == PLACED_MIRRORED)
+    for (size_t i = 0; i < assembly->transforms.count; i++)
+        if (assembly->transforms.items[i].kind == PLACED_MIRRORED)
             return true;
     return false;
 }
 
-KrsStatus krs_assembly_place(KrsState *frame, KrsAssembly *assembly)
+KrsStatus krs_assembly_transform(KrsState *frame, KrsAssembly *assembly)
 {
     Assembler a = {.frame = frame, .from = &frame->scene->assembly, .to = assembly};
     frame_refresh(frame);
-    for (size_t i = 0; i < a.from->placings.count; i++)
-        read_placing(&a, &a.from->placings.items[i], &assembly->placings[i]);
+    for (size_t i = 0; i < a.from->transforms.count; i++)
+        read_transform(&a, &a.from->transforms.items[i], &assembly->transforms[i]);
     if (!has_mirrors(a.from))
         return KRS_OK;
     a.search.assembly = assembly;
@@ -411,7 +413,7 @@ void krs_assembly_free(KrsAssembly *assembly)
     for (size_t i = 0; assembly->items && i < assembly->item_count; i++)
         krs_mesh_free(assembly->items[i].mesh);
     free(assembly->items);
-    free(assembly->placings);
+    free(assembly->transforms);
     free(assembly);
 }
 
@@ -421,10 +423,10 @@ static bool visit_copies(const KrsAssembly *assembly, const KrsItem *item,
     if (item->mesh)
         return visit(user, item, matrix);
     for (size_t i = item->first; i < item->first + item->count; i++) {
-        const KrsPlacing *placing = &assembly->placings[i];
-        double            product[3][4];
-        placing_product(matrix, (const double(*)[4])placing->matrix, product);
-        if (!visit_copies(assembly, &assembly->items[placing->item], (const double(*)[4])product,
+        const KrsTransform *transform = &assembly->transforms[i];
+        double              product[3][4];
+        similarity_product(matrix, (const double(*)[4])transform->matrix, product);
+        if (!visit_copies(assembly, &assembly->items[transform->item], (const double(*)[4])product,
                           visit, user))
             return false;
     }
@@ -433,6 +435,6 @@ static bool visit_copies(const KrsAssembly *assembly, const KrsItem *item,
 
 bool krs_assembly_visit(const KrsAssembly *assembly, KrsVisitCopy *visit, void *user)
 {
-    return visit_copies(assembly, &assembly->items[assembly->item_count - 1], placing_identity,
+    return visit_copies(assembly, &assembly->items[assembly->item_count - 1], similarity_identity,
                         visit, user);
 }

@@ -198,8 +198,8 @@ static void ask(const Look *look)
     Borders              *b       = look->b;
     const KrsMeshOptions *options = b->options;
     double                looked  = fmin(1, (double)atomic_load(&b->next) / (double)b->fresh.count);
-    if (look->asks && options->go_on &&
-        !options->go_on(options->user, 1 - ldexp(1 - 0.5 * looked, -b->round)))
+    if (look->asks && options->progress &&
+        !options->progress(options->user, 1 - ldexp(1 - 0.5 * looked, -b->round)))
         atomic_store(&b->stopped, true);
 }
 

@@ -193,17 +193,17 @@ typedef struct Step {
     double                begun, part, said; /* what is done is never less than was said */
 } Step;
 
-static bool go_on(void *user, double fraction)
+static bool report_progress(void *user, double fraction)
 {
     Step *step = user;
     step->said = fmax(step->said, step->begun + fraction * step->part);
-    return step->options->go_on(step->options->user, step->said);
+    return step->options->progress(step->options->user, step->said);
 }
 
 static KrsMeshOptions options_of_step(Step *step)
 {
     KrsMeshOptions options = *step->options;
-    options.go_on          = options.go_on ? go_on : NULL;
+    options.progress       = options.progress ? report_progress : NULL;
     options.user           = step;
     return options;
 }

@@ -79,7 +79,7 @@ static void advance(Mesher *m, double part)
 /* The first part of a round runs in the thread of the caller, so it may ask. */
 static bool is_wanted(const Mesher *m)
 {
-    return !m->options->go_on || m->options->go_on(m->options->user, m->fraction);
+    return !m->options->progress || m->options->progress(m->options->user, m->fraction);
 }
 
 static void add_to_groups(Mesher *m, size_t index)

@@ -63,13 +63,14 @@ typedef struct Section {
     double     error, enough, skin;
     uint32_t finest, thinnest; /* side of the smallest cells, and of those around what is thinner */
     bool     arcs, lines;
-    bool (*go_on)(void *user); /* NULL: another thread asks */
-    void        *user;
-    atomic_bool *stopped;
-    size_t       looked;     /* at cells */
-    bool         split_thin; /* cells were, for what is thinner */
-    size_t       lost;       /* cells with something that is thinner than the smallest */
-    double       lost_at[2];
+    KrsProgressCallback *progress; /* NULL: another thread asks */
+    double               fraction; /* of the sections, before this one */
+    void                *user;
+    atomic_bool         *stopped;
+    size_t               looked;     /* at cells */
+    bool                 split_thin; /* cells were, for what is thinner */
+    size_t               lost;       /* cells with something that is thinner than the smallest */
+    double               lost_at[2];
 
     struct {
         Corner *items;

@@ -186,16 +186,17 @@ static bool plane_is_valid(const KrsSectionPlane *plane)
 static KrsStatus slice_plane_of(Slicing *slicing, size_t part, size_t number)
 {
     KrsSlicer *slicer     = slicing->slicer;
-    Section    s          = {.field   = &slicer->fields[part],
-                             .plane   = slice_plane(&slicing->planes[number]),
-                             .error   = slicer->error,
-                             .enough  = ENOUGH * slicer->size,
-                             .arcs    = slicer->options.arcs,
-                             .lines   = slicer->options.arcs && slicer->options.lines,
-                             .skin    = SKIN * slicer->size,
-                             .go_on   = part == 0 ? slicer->options.go_on : NULL,
-                             .user    = slicer->options.user,
-                             .stopped = &slicing->stopped};
+    Section    s          = {.field    = &slicer->fields[part],
+                             .plane    = slice_plane(&slicing->planes[number]),
+                             .error    = slicer->error,
+                             .enough   = ENOUGH * slicer->size,
+                             .arcs     = slicer->options.arcs,
+                             .lines    = slicer->options.arcs && slicer->options.lines,
+                             .skin     = SKIN * slicer->size,
+                             .progress = part == 0 ? slicer->options.progress : NULL,
+                             .user     = slicer->options.user,
+                             .fraction = (double)number / (double)slicing->count,
+                             .stopped  = &slicing->stopped};
     s.memory.limit        = slicer->memory.limit / slicer->parts;
     s.arena.memory        = &s.memory;
     KrsStatus status      = make_section(&s, slicer, &slicing->sections[number]);

@@ -375,7 +375,7 @@ static CellState find_state(Section *s, const Cell *cell, Box box)
 
 static bool goes_on(Section *s)
 {
-    if (s->go_on && s->looked++ % ASK_EVERY == 0 && !s->go_on(s->user))
+    if (s->progress && s->looked++ % ASK_EVERY == 0 && !s->progress(s->user, s->fraction))
         atomic_store(s->stopped, true);
     return !atomic_load_explicit(s->stopped, memory_order_relaxed);
 }

@@ -20,7 +20,7 @@ report() { # status, name
 # ---- where members are ----
 
 # Elements of arrays and parts of other structs, which keep their size.
-fixed="KrsAllocator KrsWindow KrsContour KrsSectionPlane KrsPlacing KrsItem KrsMatte KrsBeam KrsWall KrsOrientation
+fixed="KrsAllocator KrsWindow KrsContour KrsSectionPlane KrsTransform KrsItem KrsMatte KrsBeam KrsWall KrsOrientation
        KrsRenderStats"
 layouts() { # folder of headers
     printf '#include <krs/%s.h>\n' camera vulkan >"$work/all.c"
@@ -74,9 +74,9 @@ broken "an element that grows" slice.h 's/^    double area; .*/&\n    double lat
 
 # ---- programs ----
 
-all="KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsStateSlope KrsPlace KrsComponent KrsBound KrsMeshOptions
+all="KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsStateSlope KrsLocation KrsComponent KrsBound KrsMeshOptions
      KrsMotion KrsGridOptions KrsGridShape KrsSliceOptions KrsMeasureOptions KrsDevice KrsRendererOptions KrsRenderOptions
-     KrsKernelStats KrsRays"
+     KrsShaderStats KrsRays"
 headers() { # older or later
     mkdir -p "$work/$1/krs" && cp include/krs/*.def "$work/$1/krs"
     for header in include/krs/*.h; do

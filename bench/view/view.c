@@ -157,7 +157,7 @@ static double count_pictures(Trial *trial, void (*step)(Trial *trial, int i), ui
 static void turn(Trial *trial, int i)
 {
     (void)i;
-    krs_camera_turn(&trial->view.camera, 0.02, 0);
+    krs_camera_orbit(&trial->view.camera, 0.02, 0);
 }
 
 /* The first parameter with a range, or else the time. */

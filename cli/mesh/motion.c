@@ -57,7 +57,7 @@ static KrsStatus sample(Motion *motion, double frame, Matrix *matrices)
                                             options->time + frame / options->fps);
     if (status != KRS_OK)
         return status;
-    status = krs_assembly_place(motion->meshing->frame, motion->assembly);
+    status = krs_assembly_transform(motion->meshing->frame, motion->assembly);
     if (status == KRS_BAD_SCENE)
         say("at frame %g a mirror cuts what moves", frame);
     motion->to      = matrices;

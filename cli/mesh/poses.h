@@ -18,7 +18,7 @@ typedef struct MeshPose {
     bool   mirrored;
 } MeshPose;
 
-/* Tells whether a placing mirrors what it places. */
+/* Tells whether a transform mirrors what it places. */
 bool mesh_is_reflection(const double matrix[3][4]);
 /* Of a matrix that moves, turns, mirrors and scales evenly. */
 void mesh_pose_of(const double matrix[3][4], MeshPose *pose);

@@ -318,17 +318,17 @@ static void find_wanted(const KrsAssembly *assembly, ItemObjects *objects)
     for (size_t n = assembly->item_count; n-- > 0;)
         for (int mirrored = 0; mirrored < 2; mirrored++)
             for (size_t i = 0; objects[n].wanted[mirrored] && i < assembly->items[n].count; i++) {
-                const KrsPlacing *placing = &assembly->placings[assembly->items[n].first + i];
-                const bool        image   = mesh_is_reflection(placing->matrix) != (mirrored != 0);
-                objects[placing->item].wanted[image] = true;
+                const KrsTransform *transform = &assembly->transforms[assembly->items[n].first + i];
+                const bool image = mesh_is_reflection(transform->matrix) != (mirrored != 0);
+                objects[transform->item].wanted[image] = true;
             }
 }
 
 /* A placed item, of whose image in x = 0 where `mirrored` is set. */
-static void put_component(const Copies *copies, const KrsPlacing *placing, bool mirrored)
+static void put_component(const Copies *copies, const KrsTransform *transform, bool mirrored)
 {
-    const bool   image  = mesh_is_reflection(placing->matrix) != mirrored;
-    const size_t object = copies->objects[placing->item].made[image];
+    const bool   image  = mesh_is_reflection(transform->matrix) != mirrored;
+    const size_t object = copies->objects[transform->item].made[image];
     const Model *model  = copies->model;
     if (object == 0)
         return;
@@ -338,7 +338,7 @@ static void put_component(const Copies *copies, const KrsPlacing *placing, bool 
             const double sign  = (mirrored && i == 0 ? -1 : 1) * (image && k == 0 ? -1 : 1);
             const double scale = k == 3 ? model->parts->scale : 1;
             fprintf(model->out, "%s%.9g", k + i > 0 ? " " : "",
-                    (float)(sign * scale * placing->matrix[i][k]));
+                    (float)(sign * scale * transform->matrix[i][k]));
         }
     fputs("\"/>\n", model->out);
 }
@@ -346,7 +346,7 @@ static void put_component(const Copies *copies, const KrsPlacing *placing, bool 
 static bool has_components(const Copies *copies, const KrsItem *item)
 {
     for (size_t i = item->first; i < item->first + item->count; i++) {
-        const size_t *made = copies->objects[copies->body->assembly->placings[i].item].made;
+        const size_t *made = copies->objects[copies->body->assembly->transforms[i].item].made;
         if (made[0] || made[1])
             return true;
     }
@@ -367,7 +367,7 @@ static size_t put_item(const Copies *copies, size_t number, bool mirrored)
     open_object(copies->model, all ? body->name : NULL);
     fputs(">\n<components>\n", copies->model->out);
     for (size_t i = item->first; i < item->first + item->count; i++)
-        put_component(copies, &body->assembly->placings[i], mirrored);
+        put_component(copies, &body->assembly->transforms[i], mirrored);
     fputs("</components>\n</object>\n", copies->model->out);
     return copies->model->last;
 }

@@ -34,15 +34,15 @@ static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsPro
 /* The most shaders that statistics list: those of a picture are fewer. */
 enum { MAX_SHADERS = 64 };
 
-static size_t read_shaders(const KrsRendering *rendering, KrsKernelStats shaders[MAX_SHADERS])
+static size_t read_shaders(const KrsRendering *rendering, KrsShaderStats shaders[MAX_SHADERS])
 {
-    const size_t count = krs_rendering_kernels(rendering, shaders, MAX_SHADERS);
+    const size_t count = krs_rendering_shaders(rendering, shaders, MAX_SHADERS);
     return count < MAX_SHADERS ? count : MAX_SHADERS;
 }
 
 static void add_shaders_json(Text *json, const KrsRendering *rendering)
 {
-    KrsKernelStats shaders[MAX_SHADERS];
+    KrsShaderStats shaders[MAX_SHADERS];
     const size_t   count = read_shaders(rendering, shaders);
     text_add(json, ", \"kernels\": [");
     for (size_t i = 0; i < count; i++)
@@ -57,7 +57,7 @@ static void add_shaders_json(Text *json, const KrsRendering *rendering)
 
 static void print_shaders(const KrsRendering *rendering)
 {
-    KrsKernelStats shaders[MAX_SHADERS];
+    KrsShaderStats shaders[MAX_SHADERS];
     const size_t   count    = read_shaders(rendering, shaders);
     size_t         compiled = 0;
     double         spirv_ms = 0, driver_ms = 0;

@@ -295,7 +295,7 @@ KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsState **
         status = scene_set_time(options, *frame, options->time);
     if (status == KRS_OK && shows_pictures(options) &&
         (options->settings.count > 0 || options->time != 0))
-        status = krs_state_place_camera(*frame);
+        status = krs_state_fit_camera(*frame);
     if (status != KRS_OK) {
         krs_state_free(*frame);
         *frame = NULL;

@@ -27,8 +27,8 @@ typedef struct KrsRefuteOptions {
     } const *fixed;
     size_t   fixed_count;
     /* Called repeatedly with the fraction of the work done; false ends the search.  May be NULL. */
-    bool (*go_on)(void *user, double fraction);
-    void *user;
+    KrsProgressCallback *progress;
+    void                *user;
 } KrsRefuteOptions;
 
 typedef struct KrsRefutation {
@@ -43,7 +43,7 @@ typedef struct KrsRefutation {
     size_t   estimates;   /* shapes whose distance is an estimate */
 } KrsRefutation;
 
-/* Runs the search.  KRS_BAD_SCENE: refuted, or the scene does not compile; KRS_INTERRUPTED: `go_on`
+/* Runs the search.  KRS_BAD_SCENE: refuted, or the scene does not compile; KRS_INTERRUPTED: `progress`
    ended the search. */
 KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
                      KrsRefutation *result);

@@ -50,13 +50,13 @@ static uint32_t add_roots(Finder *f, const Node *roots, size_t count)
     return first;
 }
 
-/* The placings of an item follow each other, so what they place is found before. */
-static uint32_t add_item(Finder *f, const AssemblyPlacing *placings, uint32_t count)
+/* The transforms of an item follow each other, so what they place is found before. */
+static uint32_t add_item(Finder *f, const AssemblyTransform *transforms, uint32_t count)
 {
     Assembly    *assembly = f->assembly;
-    AssemblyItem item     = {.first = (uint32_t)assembly->placings.count, .count = count};
+    AssemblyItem item     = {.first = (uint32_t)assembly->transforms.count, .count = count};
     for (uint32_t i = 0; i < count; i++)
-        array_push(f->arena, &assembly->placings, placings[i]);
+        array_push(f->arena, &assembly->transforms, transforms[i]);
     array_push(f->arena, &assembly->items, item);
     return (uint32_t)assembly->items.count - 1;
 }
@@ -81,40 +81,40 @@ static Node in_iteration(const Finder *f, Node node)
                         : node;
 }
 
-static AssemblyPlacing mapped(Finder *f, uint32_t item, const Map *map)
+static AssemblyTransform mapped(Finder *f, uint32_t item, const Map *map)
 {
     const MapRoots roots = {in_iteration(f, map->scale),
                             {in_iteration(f, map->rows[0]), in_iteration(f, map->rows[1]),
                              in_iteration(f, map->rows[2])},
                             in_iteration(f, map->shift)};
-    return (AssemblyPlacing){item, PLACED_MAPPED,
-                             add_roots(f, (const Node *)&roots, NODES_OF(MapRoots))};
+    return (AssemblyTransform){item, PLACED_MAPPED,
+                               add_roots(f, (const Node *)&roots, NODES_OF(MapRoots))};
 }
 
-static AssemblyPlacing mirrored(Finder *f, uint32_t item, const SequenceStage *stage)
+static AssemblyTransform mirrored(Finder *f, uint32_t item, const SequenceStage *stage)
 {
     const MirrorRoots roots = {stage->normal, stage->offset};
-    return (AssemblyPlacing){item, PLACED_MIRRORED,
-                             add_roots(f, (const Node *)&roots, NODES_OF(MirrorRoots))};
+    return (AssemblyTransform){item, PLACED_MIRRORED,
+                               add_roots(f, (const Node *)&roots, NODES_OF(MirrorRoots))};
 }
 
 /* What a stage makes of the item before it, which may be NO_ITEM. */
 static uint32_t take_stage(Finder *f, const Shape *krs, const SequenceStage *stage, uint32_t before)
 {
-    AssemblyPlacing placings[2] = {{before, PLACED_STILL, 0}};
+    AssemblyTransform transforms[2] = {{before, PLACED_STILL, 0}};
     if (stage->kind == SEQUENCE_KERNEL) {
         uint32_t kernel = find_item(f, krs->children[stage->kernel]);
-        placings[1]     = (AssemblyPlacing){kernel, PLACED_STILL, 0};
-        return before == NO_ITEM ? kernel : add_item(f, placings, 2);
+        transforms[1]   = (AssemblyTransform){kernel, PLACED_STILL, 0};
+        return before == NO_ITEM ? kernel : add_item(f, transforms, 2);
     }
     if (before == NO_ITEM)
         return NO_ITEM;
     if (stage->kind == SEQUENCE_REFLECT) {
-        placings[1] = mirrored(f, before, stage);
-        return add_item(f, placings, 2);
+        transforms[1] = mirrored(f, before, stage);
+        return add_item(f, transforms, 2);
     }
-    placings[0] = mapped(f, before, &stage->map);
-    return add_item(f, placings, 1);
+    transforms[0] = mapped(f, before, &stage->map);
+    return add_item(f, transforms, 1);
 }
 
 static uint32_t take_sequence(Finder *f, const Shape *krs)
@@ -170,29 +170,29 @@ static uint32_t take_moving_union(Finder *f, const Shape *shape)
 {
     UnionParts still = {0}, others = {0};
     sort_parts(f, shape, &still, &others);
-    AssemblyPlacing *placings = arena_new_array(f->work, AssemblyPlacing, others.count + 1);
-    uint32_t         count    = 0;
+    AssemblyTransform *transforms = arena_new_array(f->work, AssemblyTransform, others.count + 1);
+    uint32_t           count      = 0;
     if (still.count > 0) {
-        Shape *whole           = arena_new(f->work, Shape);
-        *whole                 = *shape;
-        whole->children        = still.items;
-        whole->child_count     = (uint32_t)still.count;
-        whole->levels          = 0;
-        placings[count++].item = find_item(f, still.count > 1 ? whole : still.items[0]);
+        Shape *whole             = arena_new(f->work, Shape);
+        *whole                   = *shape;
+        whole->children          = still.items;
+        whole->child_count       = (uint32_t)still.count;
+        whole->levels            = 0;
+        transforms[count++].item = find_item(f, still.count > 1 ? whole : still.items[0]);
     }
     for (size_t i = 0; i < others.count; i++)
-        placings[count++].item = find_item(f, others.items[i]);
-    return add_item(f, placings, count);
+        transforms[count++].item = find_item(f, others.items[i]);
+    return add_item(f, transforms, count);
 }
 
 static uint32_t take_union(Finder *f, const Shape *shape)
 {
     if (moves(f, shape))
         return take_moving_union(f, shape);
-    AssemblyPlacing *placings = arena_new_array(f->work, AssemblyPlacing, shape->child_count);
+    AssemblyTransform *transforms = arena_new_array(f->work, AssemblyTransform, shape->child_count);
     for (uint32_t i = 0; i < shape->child_count; i++)
-        placings[i].item = find_item(f, shape->children[i]);
-    return add_item(f, placings, shape->child_count);
+        transforms[i].item = find_item(f, shape->children[i]);
+    return add_item(f, transforms, shape->child_count);
 }
 
 /* The outermost paint counts.  Copies of a part are alike below it only. */
@@ -215,8 +215,8 @@ static uint32_t take_iteration(Finder *f, const Shape *shape)
 
 static uint32_t take_transform(Finder *f, const Shape *shape)
 {
-    AssemblyPlacing placing = mapped(f, find_item(f, shape->children[0]), &shape->map);
-    return add_item(f, &placing, 1);
+    AssemblyTransform transform = mapped(f, find_item(f, shape->children[0]), &shape->map);
+    return add_item(f, &transform, 1);
 }
 
 static bool is_rigid(const Shape *krs)

@@ -22,15 +22,16 @@ static bool any_timed(const MotionFinder *f, uint32_t root, size_t count)
 static void add_item(const MotionFinder *f, uint32_t number, KrsMotion *motion);
 
 /* What grows has a larger error, so that is no motion. */
-static void add_placing(const MotionFinder *f, const AssemblyPlacing *placing, KrsMotion *motion)
+static void add_transform(const MotionFinder *f, const AssemblyTransform *transform,
+                          KrsMotion *motion)
 {
-    if (placing->kind == PLACED_MIRRORED && any_timed(f, placing->root, NODES_OF(MirrorRoots)))
+    if (transform->kind == PLACED_MIRRORED && any_timed(f, transform->root, NODES_OF(MirrorRoots)))
         motion->deforms = true;
-    if (placing->kind == PLACED_MAPPED) {
-        motion->deforms = motion->deforms || any_timed(f, placing->root, 1);
-        motion->moves   = motion->moves || any_timed(f, placing->root, NODES_OF(MapRoots));
+    if (transform->kind == PLACED_MAPPED) {
+        motion->deforms = motion->deforms || any_timed(f, transform->root, 1);
+        motion->moves   = motion->moves || any_timed(f, transform->root, NODES_OF(MapRoots));
     }
-    add_item(f, placing->item, motion);
+    add_item(f, transform->item, motion);
 }
 
 static void add_item(const MotionFinder *f, uint32_t number, KrsMotion *motion)
@@ -42,7 +43,7 @@ static void add_item(const MotionFinder *f, uint32_t number, KrsMotion *motion)
     if (item->count == 0)
         motion->deforms = motion->deforms || any_timed(f, item->root, 1);
     for (uint32_t i = item->first; i < item->first + item->count; i++)
-        add_placing(f, &f->assembly->placings.items[i], motion);
+        add_transform(f, &f->assembly->transforms.items[i], motion);
 }
 
 static bool is_timed_material(const MotionFinder *f, const Material *material)

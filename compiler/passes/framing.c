@@ -424,7 +424,7 @@ static KrsStatus find_camera(KrsState *frame, DefaultCamera *camera, bool *found
     return status;
 }
 
-KrsStatus krs_state_place_camera(KrsState *frame)
+KrsStatus krs_state_fit_camera(KrsState *frame)
 {
     DefaultCamera camera;
     bool          found;

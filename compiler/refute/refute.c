@@ -52,7 +52,7 @@ static void report_progress(Refuter *r, uint64_t operations)
 {
     r->done += operations;
     double fraction = fmin(1, (double)r->done / (double)r->total);
-    if (r->how->go_on && !r->how->go_on(r->how->user, fraction))
+    if (r->how->progress && !r->how->progress(r->how->user, fraction))
         r->stopped = true;
 }
 

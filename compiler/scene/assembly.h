@@ -16,11 +16,11 @@
 /* How an item is placed: as it is, as its image in a mirror, which must not cut it, or by a map. */
 typedef enum PlacingKind { PLACED_STILL, PLACED_MIRRORED, PLACED_MAPPED } PlacingKind;
 
-typedef struct AssemblyPlacing {
+typedef struct AssemblyTransform {
     uint32_t    item;
     PlacingKind kind;
     uint32_t    root; /* the first of its numbers: MirrorRoots or MapRoots */
-} AssemblyPlacing;
+} AssemblyTransform;
 
 typedef struct MirrorRoots {
     Node normal, offset;
@@ -30,7 +30,7 @@ typedef struct MapRoots {
 } MapRoots;
 
 typedef struct AssemblyItem {
-    uint32_t    first, count; /* its placings; 0: it is a part */
+    uint32_t    first, count; /* its transforms; 0: it is a part */
     uint32_t    root;         /* of a part: its distance */
     Box         box;          /* of a part */
     bool        estimate;     /* likewise: nothing is proven of its distance */
@@ -49,9 +49,9 @@ typedef struct Assembly {
         size_t        count, capacity;
     } items; /* each behind those that it is made of */
     struct {
-        AssemblyPlacing *items;
-        size_t           count, capacity;
-    } placings;
+        AssemblyTransform *items;
+        size_t             count, capacity;
+    } transforms;
     uint32_t      *of_component; /* the item of each component that is lowered; or NO_ITEM */
     KrsMotion     *motions;      /* of these; NULL: nobody asks */
     AssemblyBeams *beams;        /* of components that are shown; NULL: nobody asks */

@@ -92,7 +92,7 @@ static void turn_sight(const KrsCamera *camera, double sight[3], double right, d
     turn(sight, upright, -right);
 }
 
-void krs_camera_turn(KrsCamera *camera, double right, double up)
+void krs_camera_orbit(KrsCamera *camera, double right, double up)
 {
     double sight[3];
     for (int i = 0; i < 3; i++)

@@ -404,9 +404,9 @@ static bool same_items(const Assembly *a, const Assembly *b)
 
 static bool same_placings(const Assembly *a, const Assembly *b)
 {
-    bool same = a->placings.count == b->placings.count;
-    for (size_t i = 0; same && i < a->placings.count; i++) {
-        const AssemblyPlacing *x = &a->placings.items[i], *y = &b->placings.items[i];
+    bool same = a->transforms.count == b->transforms.count;
+    for (size_t i = 0; same && i < a->transforms.count; i++) {
+        const AssemblyTransform *x = &a->transforms.items[i], *y = &b->transforms.items[i];
         same = x->item == y->item && x->kind == y->kind && x->root == y->root;
     }
     return same;

@@ -53,17 +53,17 @@ const char *krs_camera_name(const KrsScene *scene, size_t index)
     return index < scene->camera_count ? scene->cameras[index].name : NULL;
 }
 
-KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place)
+KrsStatus krs_camera_location(const KrsScene *scene, size_t index, KrsLocation *place)
 {
     if (index >= scene->camera_count || scene->cameras[index].standing_in)
         return KRS_BAD_ARGUMENT;
     const RetainedPlace *from = &scene->camera_places[index];
     const Span           span = scene->cameras[index].block;
-    *place                    = (KrsPlace){.source = from->source,
-                                           .start  = span.start,
-                                           .end    = span.end,
-                                           .line   = from->position.line,
-                                           .column = from->position.column};
+    *place                    = (KrsLocation){.source = from->source,
+                                              .start  = span.start,
+                                              .end    = span.end,
+                                              .line   = from->position.line,
+                                              .column = from->position.column};
     return KRS_OK;
 }
 
@@ -112,7 +112,7 @@ KrsStatus krs_state_slope(const KrsScene *scene, size_t index, KrsStateSlope *sl
     if (index >= scene->slope_count)
         return KRS_BAD_ARGUMENT;
     const RetainedSlope *from = &scene->slopes[index];
-    *slope                    = (KrsStateSlope){.slot = from->slot, .place = from->place};
+    *slope                    = (KrsStateSlope){.slot = from->slot, .location = from->place};
     for (int i = 0; i < 3; i++) {
         slope->low[i]  = from->task.box.axis[i].low;
         slope->high[i] = from->task.box.axis[i].high;

@@ -63,7 +63,7 @@ static void report(const KrsMesh *mesh)
 }
 
 /* Told now and then; it may end the work. */
-static bool go_on(void *user, double fraction)
+static bool report_progress(void *user, double fraction)
 {
     (void)user;
     fprintf(stderr, "\r%3.0f %%", 100 * fraction);
@@ -81,7 +81,7 @@ int main(int argc, char **argv)
     KrsScene      *scene   = NULL;
     KrsState      *frame   = NULL;
     KrsMesh       *mesh    = NULL;
-    KrsMeshOptions options = {.error = argc > 2 ? atof(argv[2]) : 0, .go_on = go_on};
+    KrsMeshOptions options = {.error = argc > 2 ? atof(argv[2]) : 0, .progress = report_progress};
     KrsOptions     how     = {.diagnostic = say};
     if (argc != 3) {
         fputs("usage: mesh SCENE.krs ERROR\n", stderr);

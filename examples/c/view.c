@@ -142,7 +142,7 @@ static bool refine(GLFWwindow *window)
 static void on_move(GLFWwindow *window, double x, double y)
 {
     if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
-        krs_camera_turn(&camera, (mouse_x - x) / 150, (y - mouse_y) / 150);
+        krs_camera_orbit(&camera, (mouse_x - x) / 150, (y - mouse_y) / 150);
         dragged = moved = true;
     }
     mouse_x = x;

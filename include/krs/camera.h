@@ -16,9 +16,9 @@ extern "C" {
 #pragma GCC visibility push(default)
 #endif
 
-/* Turns around the target: to the right and upwards, in radians.  The picture stays upright; it does
+/* Orbits the target: to the right and upwards, in radians.  The picture stays upright; it does
    not turn over the poles. */
-void krs_camera_turn(KrsCamera *camera, double right, double up);
+void krs_camera_orbit(KrsCamera *camera, double right, double up);
 /* Turns around the eye, to look elsewhere. */
 void krs_camera_look(KrsCamera *camera, double right, double up);
 /* Moves eye and target, so that the picture moves to the right and upwards. */

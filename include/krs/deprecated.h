@@ -33,7 +33,7 @@ KRS_RENAMED(KrsStatus, krs_frame_set, krs_state_set,
 KRS_RENAMED(KrsStatus, krs_frame_set_time, krs_state_set_time, (KrsState * state, double time),
             (state, time))
 KRS_RENAMED(double, krs_frame_time, krs_state_time, (const KrsState *state), (state))
-KRS_RENAMED(KrsStatus, krs_frame_place_camera, krs_state_place_camera, (KrsState * state), (state))
+KRS_RENAMED(KrsStatus, krs_frame_place_camera, krs_state_fit_camera, (KrsState * state), (state))
 KRS_RENAMED(const char *, krs_frame_unbounded, krs_state_unbounded, (const KrsState *state),
             (state))
 KRS_RENAMED_VOID(krs_frame_parameters, krs_state_parameters,
@@ -51,7 +51,18 @@ KRS_RENAMED(KrsStatus, krs_frame_set_zones, krs_state_set_zones,
 KRS_RENAMED(KrsStatus, krs_frame_camera, krs_state_camera,
             (KrsState * state, size_t index, KrsCamera *camera), (state, index, camera))
 
+typedef KrsLocation KrsPlace    KRS_DEPRECATED("KrsLocation");
+typedef KrsTransform KrsPlacing KRS_DEPRECATED("KrsTransform");
+KRS_RENAMED(KrsStatus, krs_camera_place, krs_camera_location,
+            (const KrsScene *scene, size_t index, KrsLocation *location), (scene, index, location))
+KRS_RENAMED(KrsStatus, krs_texture_places, krs_texture_uvs,
+            (KrsState * state, const double (*points)[3], size_t count, double (*uvs)[2]),
+            (state, points, count, uvs))
+
 /* Those of camera.h. */
+void krs_camera_orbit(KrsCamera *camera, double right, double up);
+KRS_RENAMED_VOID(krs_camera_turn, krs_camera_orbit, (KrsCamera * camera, double right, double up),
+                 (camera, right, up))
 bool krs_state_component_box(KrsState *state, size_t component, double low[3], double high[3]);
 bool krs_state_box(KrsState *state, double low[3], double high[3]);
 KRS_RENAMED(bool, krs_frame_component_box, krs_state_component_box,

@@ -17,6 +17,13 @@ extern "C" {
 #define KRS_MOST_REFLECTANCE    KRS_MAX_REFLECTANCE
 #define KRS_MOST_LIGHT_GROUPS   KRS_MAX_LIGHT_GROUPS
 
+typedef KrsProgressCallback KrsCompilingCallback KRS_DEPRECATED("KrsProgressCallback");
+typedef KrsShaderStats KrsKernelStats            KRS_DEPRECATED("KrsShaderStats");
+KRS_RENAMED(size_t, krs_rendering_kernels, krs_rendering_shaders,
+            (const KrsRendering *rendering, KrsShaderStats *shaders, size_t capacity),
+            (rendering, shaders, capacity))
+KRS_RENAMED(uint64_t, krs_renderer_complaints, krs_renderer_validation_messages,
+            (const KrsRenderer *renderer), (renderer))
 typedef KrsAov KrsPlane KRS_DEPRECATED("KrsAov");
 
 #ifdef __cplusplus

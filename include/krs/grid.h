@@ -33,10 +33,9 @@ typedef struct KrsGridOptions {
     size_t component; /* from 1; 0: all */
     bool   within;    /* only what is in the box from `low` to `high`, for scenes without an end */
     double low[3], high[3];
-    size_t memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
-    /* Told now and then which part of the work is done; false: stop, with KRS_INTERRUPTED.  May be NULL. */
-    bool (*go_on)(void *user, double fraction);
-    void *user;
+    size_t memory_limit;           /* bytes; 0: KRS_USUAL_MEMORY */
+    KrsProgressCallback *progress; /* may be NULL */
+    void                *user;
 } KrsGridOptions;
 
 /* Samples are dealt out in bricks of so many along each axis. */

@@ -103,6 +103,10 @@ typedef struct KrsDiagnostic {
 
 typedef void KrsDiagnosticCallback(void *user, const KrsDiagnostic *diagnostic);
 
+/* Told now and then which part of the work is done, from 0 to 1, as far as one can say; in the thread that called the
+   library.  False: stop, with KRS_INTERRUPTED. */
+typedef bool KrsProgressCallback(void *user, double done);
+
 /* Where memory comes from; a zeroed struct means malloc and free.  It is called in the thread that
    calls the library.  It must outlive all objects that were made with it.  glslang and the Vulkan
    driver do not use it. */
@@ -147,7 +151,7 @@ typedef struct KrsOptions {
                     is the last and named `floor`; for pictures */
     bool pictures; /* six large parts that are alike share code, too: shorter shaders and faster
                       frames, but meshes take longer; for pictures */
-    bool assembly; /* keep what krs_assemble and krs_texture_places need, which takes some time */
+    bool assembly; /* keep what krs_assemble and krs_texture_uvs need, which takes some time */
     bool motion;   /* with `assembly`: what the time moves is taken apart, too */
     bool beams;    /* with `assembly`: keep what krs_component_beams needs */
     bool
@@ -284,9 +288,9 @@ KrsStatus krs_state_update(KrsState *state, const KrsScene *scene);
 KrsStatus krs_state_set(KrsState *state, const char *name, const double *values, size_t count);
 KrsStatus krs_state_set_time(KrsState *state, double time);
 double    krs_state_time(const KrsState *state);
-/* Places the camera of a scene that has none so that all is in the picture at the values and the time of
-   the state; until then it is placed for the defaults and time 0.  Other scenes are left as they are. */
-KrsStatus krs_state_place_camera(KrsState *state);
+/* Moves the camera of a scene that has none so that all is in the picture at the values and the time of
+   the state; until then that holds for the defaults and time 0.  Other scenes are left as they are. */
+KrsStatus krs_state_fit_camera(KrsState *state);
 /* The location ("scene.krs:3:14") of an expression whose slope has no bound for the last value or
    time, which was refused for that reason.  NULL if it was accepted, or refused for another one. */
 const char *krs_state_unbounded(const KrsState *state);
@@ -333,9 +337,9 @@ KRS_SIZED KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture 
 /* A slope that is computed for each state: its slot, and the location of its expression.
    KRS_BAD_ARGUMENT: there is none of this index. */
 typedef struct KrsStateSlope {
-    uint32_t    slot;
-    const char *place;           /* "scene.krs:3:14" */
-    double      low[3], high[3]; /* the box for which the slope holds; may be infinite */
+    uint32_t slot;
+    KRS_WAS(const char *location, const char *place, "location"); /* "scene.krs:3:14" */
+    double low[3], high[3]; /* the box for which the slope holds; may be infinite */
 } KrsStateSlope;
 size_t              krs_state_slope_count(const KrsScene *scene);
 KRS_SIZED KrsStatus krs_state_slope(const KrsScene *scene, size_t index, KrsStateSlope *slope);
@@ -378,12 +382,12 @@ size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);
 /* Where the text has its block: bytes [start, end) of the file or text of this name, from `camera`
    to behind the `}`.  KRS_BAD_ARGUMENT: there is no such camera, or the compiler places it. */
-typedef struct KrsPlace {
+typedef struct KrsLocation {
     const char *source;
     uint32_t    start, end;
     uint32_t    line, column; /* of its beginning, from 1 */
-} KrsPlace;
-KRS_SIZED KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place);
+} KrsLocation;
+KRS_SIZED KrsStatus krs_camera_location(const KrsScene *scene, size_t index, KrsLocation *location);
 /* A camera at the state's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
    index. */
 KRS_SIZED KrsStatus krs_state_camera(KrsState *state, size_t index, KrsCamera *camera);

@@ -23,12 +23,11 @@ typedef struct KrsMeasureOptions {
     double up[3]; /* away from the plate, of any length; 0, 0, 0: z */
     /* A face hangs over where it looks down, and leans from upright by more than this angle in radians: a wall leans by 0,
        a ceiling by a quarter turn.  0: an eighth of a turn. */
-    double overhang;
-    double nozzle;       /* thinner walls have `thin_area`; 0: none */
-    size_t memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
-    /* As of KrsMeshOptions. */
-    bool (*go_on)(void *user, double fraction);
-    void *user;
+    double               overhang;
+    double               nozzle;       /* thinner walls have `thin_area`; 0: none */
+    size_t               memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
+    KrsProgressCallback *progress;     /* may be NULL */
+    void                *user;
 } KrsMeasureOptions;
 
 /* How a part lies on the plate. */

@@ -37,9 +37,8 @@ typedef struct KrsMeshOptions {
        error is that of these points. */
     bool   draft;
     size_t memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
-    /* Told now and then which part of the work is done, as far as one can say; false: stop, with
-       KRS_INTERRUPTED.  May be NULL. */
-    bool (*go_on)(void *user, double fraction);
+    KRS_WAS(KrsProgressCallback *progress, bool (*go_on)(void *user, double fraction),
+            "progress"); /* may be NULL */
     void *user;
 } KrsMeshOptions;
 
@@ -75,21 +74,21 @@ void                krs_mesh_free(KrsMesh *mesh);
 
 /*
  * Leaves out triangles that are not needed for the mesh to stay within an error of what it was, in both
- * directions.  Of the options it asks for error, which must not be 0, go_on and user.  That is proven, and so is that the mesh is still closed and does not cross itself; where
+ * directions.  Of the options it asks for error, which must not be 0, progress and user.  That is proven, and so is that the mesh is still closed and does not cross itself; where
  * it cannot be, fewer are left out, or none.  mesh->error grows by it.  *simplified is a mesh of its own.
  */
 KRS_SIZED KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
                                       KrsMesh **simplified);
 
 /* How an item is placed: x -> matrix (x, 1), which turns, moves, mirrors and scales evenly. */
-typedef struct KrsPlacing {
+typedef struct KrsTransform {
     size_t item;
     double matrix[3][4];
-} KrsPlacing;
+} KrsTransform;
 
-/* A mesh, or placings of items before it. */
+/* A mesh, or transforms of items before it. */
 typedef struct KrsItem {
-    KrsMesh *mesh;             /* NULL: it has placings, */
+    KrsMesh *mesh;             /* NULL: it has transforms, */
     size_t   first, count;     /* these of the assembly's */
     double   copies;           /* number of its copies in all that is shown; 0: not used */
     double   first_copy[3][4]; /* of a mesh: where one of them is */
@@ -99,11 +98,12 @@ typedef struct KrsItem {
 
 /* What a state shows, as meshes and their copies; the last item is all of it. */
 typedef struct KrsAssembly {
-    KrsItem    *items;
-    KrsPlacing *placings;
-    size_t      item_count, placing_count;
-    double      low[3], high[3];   /* a box around all vertices of all copies */
-    double      copies, triangles; /* of meshes, and of those copies */
+    KrsItem *items;
+    KRS_WAS(KrsTransform *transforms, KrsTransform *placings, "transforms");
+    size_t item_count;
+    KRS_WAS(size_t transform_count, size_t placing_count, "transform_count");
+    double low[3], high[3];   /* a box around all vertices of all copies */
+    double copies, triangles; /* of meshes, and of those copies */
 } KrsAssembly;
 
 /*
@@ -117,9 +117,9 @@ typedef struct KrsAssembly {
 KRS_SIZED KrsStatus krs_assemble(KrsState *state, const KrsMeshOptions *options,
                                  KrsAssembly **assembly);
 void                krs_assembly_free(KrsAssembly *assembly);
-/* Places the meshes of an assembly anew, as they are at the values and the time of the state, of which it was made or of
+/* Finds the transforms of an assembly anew, as they are at the values and the time of the state, of which it was made or of
    another of this scene.  KRS_BAD_SCENE: a mirror would cut something.  The box and `first_copy` stay. */
-KrsStatus krs_assembly_place(KrsState *state, KrsAssembly *assembly);
+KrsStatus krs_assembly_transform(KrsState *state, KrsAssembly *assembly);
 /* Calls `visit` for each copy of each mesh, one behind the other, until it returns false; then that is
    returned. */
 typedef bool KrsVisitCopy(void *user, const KrsItem *item, const double matrix[3][4]);
@@ -150,8 +150,8 @@ size_t krs_component_beams(KrsState *state, size_t index, KrsBeam *beams);
  * coordinates as meshes have them; they jump where those of the surface do.  The scene must have been compiled with
  * KrsOptions.assembly.
  */
-KrsStatus krs_texture_places(KrsState *state, const double (*points)[3], size_t count,
-                             double (*places)[2]);
+KrsStatus krs_texture_uvs(KrsState *state, const double (*points)[3], size_t count,
+                          double (*uvs)[2]);
 
 #ifdef __GNUC__
 #pragma GCC visibility pop

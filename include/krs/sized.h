@@ -29,7 +29,8 @@ void      krs_scene_image_sized(const KrsScene *scene, KrsImage *image, size_t s
 KrsStatus krs_texture_sized(const KrsScene *scene, size_t index, KrsTexture *texture, size_t size);
 KrsStatus krs_state_slope_sized(const KrsScene *scene, size_t index, KrsStateSlope *slope,
                                 size_t size);
-KrsStatus krs_camera_place_sized(const KrsScene *scene, size_t index, KrsPlace *place, size_t size);
+KrsStatus krs_camera_location_sized(const KrsScene *scene, size_t index, KrsLocation *location,
+                                    size_t size);
 KrsStatus krs_state_camera_sized(KrsState *state, size_t index, KrsCamera *camera, size_t size);
 KrsStatus krs_component_sized(const KrsScene *scene, size_t index, KrsComponent *component,
                               size_t size);
@@ -98,9 +99,9 @@ KRS_SIZED KrsStatus krs_state_slope(const KrsScene *scene, size_t index, KrsStat
 {
     return krs_state_slope_sized(scene, index, slope, sizeof *slope);
 }
-KRS_SIZED KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place)
+KRS_SIZED KrsStatus krs_camera_location(const KrsScene *scene, size_t index, KrsLocation *location)
 {
-    return krs_camera_place_sized(scene, index, place, sizeof *place);
+    return krs_camera_location_sized(scene, index, location, sizeof *location);
 }
 KRS_SIZED KrsStatus krs_state_camera(KrsState *state, size_t index, KrsCamera *camera)
 {

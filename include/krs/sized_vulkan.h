@@ -17,7 +17,7 @@ KrsStatus krs_devices_sized(KrsDevice *devices, size_t size, size_t capacity, si
 KrsStatus krs_renderer_new_sized(const KrsRendererOptions *options, size_t size,
                                  KrsRenderer **renderer);
 void      krs_renderer_device_sized(const KrsRenderer *renderer, KrsDevice *device, size_t size);
-size_t    krs_rendering_kernels_sized(const KrsRendering *rendering, KrsKernelStats *kernels,
+size_t    krs_rendering_shaders_sized(const KrsRendering *rendering, KrsShaderStats *shaders,
                                       size_t size, size_t capacity);
 KrsStatus krs_render_sized(KrsRendering *rendering, KrsState *state,
                            const KrsRenderOptions *options, size_t size, KrsPicture **picture);
@@ -51,10 +51,10 @@ KRS_SIZED KrsDevice krs_renderer_device(const KrsRenderer *renderer)
     krs_renderer_device_sized(renderer, &device, sizeof device);
     return device;
 }
-KRS_SIZED size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
+KRS_SIZED size_t krs_rendering_shaders(const KrsRendering *rendering, KrsShaderStats *shaders,
                                        size_t capacity)
 {
-    return krs_rendering_kernels_sized(rendering, kernels, sizeof *kernels, capacity);
+    return krs_rendering_shaders_sized(rendering, shaders, sizeof *shaders, capacity);
 }
 KRS_SIZED KrsStatus krs_render(KrsRendering *rendering, KrsState *state,
                                const KrsRenderOptions *options, KrsPicture **picture)

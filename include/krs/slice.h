@@ -25,10 +25,9 @@ typedef struct KrsSliceOptions {
     double low[3], high[3];
     bool   arcs;  /* contours are of lines and arcs of circles, where these are within the error */
     bool   lines; /* with `arcs`: sections also have contours of lines */
-    size_t memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
-    /* Asked now and then whether to go on; false: stop, with KRS_INTERRUPTED.  May be NULL. */
-    bool (*go_on)(void *user);
-    void *user;
+    size_t memory_limit;           /* bytes; 0: KRS_USUAL_MEMORY */
+    KrsProgressCallback *progress; /* may be NULL */
+    void                *user;
 } KrsSliceOptions;
 
 /* A point of a plane, and the direction from which it is seen, of any length but 0. */

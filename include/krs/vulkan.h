@@ -40,17 +40,12 @@ typedef struct KrsDevice {
     bool          preferred;   /* what a renderer takes when nothing is asked for */
 } KrsDevice;
 
-/* A complaint of Vulkan's validation layers; the text lives until the callback returns. */
+/* A message of Vulkan's validation layers; the text lives until the callback returns. */
 typedef void KrsValidationCallback(void *user, const char *message);
 
 /* Called about once a second while the driver compiles and keeps the processor busy, so that a
    caller can tell slow from stuck. */
 typedef void KrsWorkingCallback(void *user);
-
-/* Called between steps of compiling shaders, in the thread that called the library: `done` rises from
-   0 to 1 for the shaders that are compiled together.  False interrupts: when the step has ended, the
-   call returns KRS_INTERRUPTED, and what there was stays. */
-typedef bool KrsCompilingCallback(void *user, double done);
 
 /* Whether branches skip shapes that are far away for their size.  The default is on, but off on
    devices of type CPU, which run both sides of a branch. */
@@ -60,34 +55,31 @@ typedef enum KrsEarlyOuts {
     KRS_EARLY_OUTS_OFF
 } KrsEarlyOuts;
 
-/* Bits, for tests: as what the host treats a device.  Pictures are the same. */
-typedef enum KrsPretence {
-    KRS_PRETEND_CARD         = 1, /* a graphics card, whatever its type */
-    KRS_PRETEND_LEAST_LIMITS = 2  /* a device with the smallest limits that Vulkan permits */
-} KrsPretence;
-
 /* Zero asks for the defaults. */
 typedef struct KrsRendererOptions {
     /* NULL or "": a real graphics card if there is one (discrete before integrated), else a
        device of type CPU.  "cpu": a device of type CPU.  A number: the device of that index in
        krs_devices.  Anything else: the first device whose name contains it, in any case. */
-    const char            *device;
-    bool                   validation; /* core and synchronization validation */
-    KrsValidationCallback *complaint;  /* may be NULL: complaints are counted all the same */
-    KrsWorkingCallback    *working;    /* may be NULL */
-    void                  *user;       /* handed to both */
-    KrsCompilingCallback  *compiling;  /* may be NULL */
-    void                  *compiling_user;
+    const char *device;
+    bool        validation; /* core and synchronization validation */
+    KRS_WAS(KrsValidationCallback *validation_message, KrsValidationCallback *complaint,
+            "validation_message"); /* may be NULL: messages are counted all the same */
+    KrsWorkingCallback *working;   /* may be NULL */
+    void               *user;      /* handed to both */
+    /* Called between steps of compiling shaders: `done` rises from 0 to 1 for those that are compiled together.  False
+       interrupts when the step has ended, and what there was stays.  May be NULL. */
+    KRS_WAS(KrsProgressCallback *progress, KrsProgressCallback *compiling, "progress");
+    KRS_WAS(void *progress_user, void *compiling_user, "progress_user");
     /* A folder that caches compiled shaders.  It is made if it is missing, and need not be
        writable.  NULL: no cache, and nothing is written to disk. */
     const char  *cache;
     KrsEarlyOuts early_outs;
     /* Shaders that all pictures need are compiled in the background from now on, on a device of
        type CPU; for callers that have a scene to compile meanwhile. */
-    bool         pictures_ahead;
-    unsigned     pretence;  /* bits of KrsPretence */
+    KRS_WAS(bool prewarm, bool pictures_ahead, "prewarm");
     KrsAllocator allocator; /* of the library; the driver and glslang have their own */
-    double       patience;  /* seconds that the device may take for one of the many steps of
+    KRS_WAS(double timeout, double patience,
+            "timeout"); /* seconds that the device may take for one of the many steps of
                                a picture; then it counts as lost: KRS_INTERNAL.  0: 300 */
 } KrsRendererOptions;
 
@@ -106,8 +98,8 @@ void krs_renderer_free(KrsRenderer *renderer); /* its renderings must be freed b
 const char *krs_renderer_message(const KrsRenderer *renderer);
 /* The device that was opened. */
 KRS_SIZED KrsDevice krs_renderer_device(const KrsRenderer *renderer);
-/* Complaints of the validation layers so far. */
-uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
+/* How many messages the validation layers have had so far. */
+uint64_t krs_renderer_validation_messages(const KrsRenderer *renderer);
 
 /* What a rendering is mostly for.  Those shaders are compiled at once, others when they are
    first needed.  Empty zones (krs_state_set_zones) need shaders of their own: for the first
@@ -131,17 +123,17 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
 void      krs_rendering_free(KrsRendering *rendering);
 
 /* A compute shader that a picture or a query is made by. */
-typedef struct KrsKernelStats {
+typedef struct KrsShaderStats {
     char     name[48];   /* "trace.comp"; "trace.comp 2" of march group 2 alone */
     uint64_t glsl_bytes; /* of its text; 0: the library carries it as SPIR-V */
     double   spirv_ms;   /* of one processor, to print the text and to compile it */
     double   driver_ms;  /* to make it ready on the device; some drivers do so in its first run */
     bool     cached;     /* its SPIR-V was found in the cache, or in the library */
-} KrsKernelStats;
+} KrsShaderStats;
 
 /* The shaders made so far, those without a scene first.  Writes up to `capacity` of them, and
    returns how many there are. */
-KRS_SIZED size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
+KRS_SIZED size_t krs_rendering_shaders(const KrsRendering *rendering, KrsShaderStats *shaders,
                                        size_t capacity);
 
 /*
@@ -179,9 +171,6 @@ typedef enum KrsAov {
 typedef struct KrsWindow {
     uint32_t x, y, width, height; /* of pixels; row 0 is the top */
 } KrsWindow;
-
-/* Called between slices of work; `done` rises from 0 to 1.  False interrupts the render. */
-typedef bool KrsProgressCallback(void *user, double done);
 
 /* Which eye of a camera sees, for stereo; KrsCamera.eyes is their distance. */
 typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEye;
@@ -285,11 +274,12 @@ typedef struct KrsRenderStats {
     KRS_WAS(uint32_t max_evaluations_per_ray, uint32_t most_evaluations_per_ray,
             "max_evaluations_per_ray");
     double   flops_per_evaluation;
-    double   gflops;            /* of the primary phase */
-    uint64_t unresolved;        /* primary and shadow rays that ran out of steps */
-    uint64_t clamped;           /* rays whose light was clamped to max_radiance */
-    uint64_t submissions;       /* of work to the device; the host waits for each */
-    uint64_t kernels;           /* that the renderer has made since it was opened, for all scenes */
+    double   gflops;      /* of the primary phase */
+    uint64_t unresolved;  /* primary and shadow rays that ran out of steps */
+    uint64_t clamped;     /* rays whose light was clamped to max_radiance */
+    uint64_t submissions; /* of work to the device; the host waits for each */
+    KRS_WAS(uint64_t shaders, uint64_t kernels,
+            "shaders");         /* that the renderer has made since it was opened, for all scenes */
     uint64_t peak_memory_bytes; /* the most held at once on the device, and the picture */
     char     device[256];
     uint64_t reserved[8]; /* 0: this is a part of KrsPicture, and keeps its size */

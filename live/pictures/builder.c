@@ -30,7 +30,7 @@ struct Builder {
     char            message[256];
 };
 
-static bool go_on(void *user, double done)
+static bool report_progress(void *user, double done)
 {
     Builder *builder = user;
     atomic_store(&builder->permille, (unsigned)(1000 * done));
@@ -43,7 +43,8 @@ static KrsStatus build(Builder *builder, const View *view)
     KrsStatus status = KRS_OK;
     if (!builder->canvas)
         status = canvas_new(&builder->options, &builder->canvas);
-    return status == KRS_OK ? canvas_prepare(builder->canvas, view, go_on, builder) : status;
+    return status == KRS_OK ? canvas_prepare(builder->canvas, view, report_progress, builder)
+                            : status;
 }
 
 /* Waits for something to build.  False: that was all. */

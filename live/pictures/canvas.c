@@ -30,8 +30,8 @@ struct Canvas {
     KrsProgressCallback *progress;
     void                *user;
     /* While canvas_prepare compiles. */
-    KrsCompilingCallback *compiling;
-    void                 *compiling_user;
+    KrsProgressCallback *compiling;
+    void                *compiling_user;
 };
 
 bool view_copy(const View *view, View *copy)
@@ -66,8 +66,8 @@ KrsStatus canvas_new(const KrsRendererOptions *options, Canvas **canvas)
     *canvas                 = calloc(1, sizeof **canvas);
     if (!*canvas)
         return KRS_OUT_OF_MEMORY;
-    with.compiling      = go_on_compiling;
-    with.compiling_user = *canvas;
+    with.progress      = go_on_compiling;
+    with.progress_user = *canvas;
     return krs_renderer_new(&with, &(*canvas)->renderer);
 }
 
@@ -263,7 +263,7 @@ static KrsStatus try_out(Canvas *canvas, const View *view)
     return krs_sample(canvas->rendering, canvas->frame, point, 1, &distance, NULL);
 }
 
-KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsCompilingCallback *compiling,
+KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsProgressCallback *compiling,
                          void *user)
 {
     const Needs needs      = view_needs(view);
@@ -300,7 +300,7 @@ KrsStatus canvas_camera(Canvas *canvas, size_t index, KrsCamera *camera)
     return krs_state_camera(canvas->frame, index, camera);
 }
 
-static bool go_on(void *user, double done)
+static bool report_progress(void *user, double done)
 {
     Canvas *canvas = user;
     return !canvas->progress || canvas->progress(canvas->user, done);
@@ -320,7 +320,7 @@ static KrsStatus make_film(Canvas *canvas, Film *film, const View *view, uint32_
                                 .integrator    = view->integrator,
                                 .frame_seconds = view->frame_seconds,
                                 .slice_ms      = SLICE_MS,
-                                .progress      = go_on,
+                                .progress      = report_progress,
                                 .user          = canvas};
     krs_film_free(film->film);
     *film = (Film){NULL, width, height, view->samples, view->integrator, view->frame_seconds};

@@ -60,7 +60,7 @@ unsigned canvas_structure(const Canvas *canvas);
 void canvas_reduce(const Canvas *canvas, View *view);
 
 /* Compiles the shaders of a view; `compiling` may be NULL. */
-KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsCompilingCallback *compiling,
+KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsProgressCallback *compiling,
                          void *user);
 /* Takes the canvas over to the view's version, if it has another one.  If that fails, the version
    before stays. */

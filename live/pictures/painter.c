@@ -170,7 +170,7 @@ static void say_failed(Painter *painter, KrsStatus status, const char *message)
     wake(painter);
 }
 
-static bool go_on(void *user, double done)
+static bool report_progress(void *user, double done)
 {
     Painter *painter = user;
     (void)done;
@@ -241,7 +241,7 @@ static KrsStatus make(Painter *painter, FilmKind kind, uint32_t width, uint32_t 
     painter->making  = kind;
     painter->begun   = now_ms();
     KrsStatus status = canvas_add(painter->canvas, kind, &painter->view, width, height, samples,
-                                  again, go_on, painter);
+                                  again, report_progress, painter);
     if (status != KRS_OK)
         return status;
     const double ms = now_ms() - painter->begun;

@@ -61,7 +61,7 @@ static bool go_on_compiling(void *user, double done)
     return tell(saver, done * COMPILED_PART / frames_of(&saver->order));
 }
 
-static bool go_on(void *user, double done)
+static bool report_progress(void *user, double done)
 {
     Saver       *saver  = user;
     const double part   = COMPILED_PART + (1 - COMPILED_PART) * done;
@@ -75,7 +75,7 @@ static void aim(const Saver *saver, View *view)
     const SaveOrder *order = &saver->order;
     const double     i     = saver->frame;
     if (order->kind == SAVE_TURN)
-        krs_camera_turn(&view->camera, 2 * M_PI * i / frames_of(order), 0);
+        krs_camera_orbit(&view->camera, 2 * M_PI * i / frames_of(order), 0);
     if (order->kind != SAVE_TIME)
         return;
     view->time          = order->view.time + i / order->fps;
@@ -104,7 +104,7 @@ static KrsStatus save_frame(Saver *saver, char message[300])
         status = canvas_camera(saver->canvas, (size_t)order->camera, &view.camera);
     if (status == KRS_OK)
         status = canvas_add(saver->canvas, FILM_FULL, &view, view.width, view.height, view.samples,
-                            true, go_on, saver);
+                            true, report_progress, saver);
     if (status == KRS_OK)
         status = canvas_read(saver->canvas, FILM_FULL, order->exr ? 0 : KRS_AOV_COLOR, &picture);
     if (status != KRS_OK) {

@@ -295,7 +295,7 @@ static KrsStatus write_instead(const char *path, const Bytes *before, size_t sta
     return status;
 }
 
-static KrsStatus change(const KrsPlace *place, const KrsCamera *before, const KrsCamera *camera)
+static KrsStatus change(const KrsLocation *place, const KrsCamera *before, const KrsCamera *camera)
 {
     Bytes     bytes = {0};
     char     *block = NULL, *edited = NULL;
@@ -329,8 +329,8 @@ static KrsStatus add(const char *path, const KrsCamera *camera)
 KrsStatus camera_text_write(const KrsScene *scene, size_t index, const KrsCamera *before,
                             const KrsCamera *camera, const char *path)
 {
-    KrsPlace place;
-    if (krs_camera_place(scene, index, &place) != KRS_OK)
+    KrsLocation place;
+    if (krs_camera_location(scene, index, &place) != KRS_OK)
         return add(path, camera);
     return change(&place, before, camera);
 }

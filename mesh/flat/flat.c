@@ -57,7 +57,7 @@ static bool halve_at(Halving *h, Box box, int halvings)
 
 static bool is_wanted(Mesher *m)
 {
-    if (m->options->go_on && !m->options->go_on(m->options->user, 0))
+    if (m->options->progress && !m->options->progress(m->options->user, 0))
         atomic_store(&m->stopped, true);
     return !atomic_load(&m->stopped);
 }

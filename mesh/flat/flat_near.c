@@ -58,8 +58,8 @@ static bool goes_on(Looking *l)
 {
     Mesher   *m    = l->w->m;
     NearPart *part = l->part;
-    if (++part->looks % PATIENCE == 0 && l->asks && m->options->go_on &&
-        !m->options->go_on(m->options->user, 0))
+    if (++part->looks % PATIENCE == 0 && l->asks && m->options->progress &&
+        !m->options->progress(m->options->user, 0))
         atomic_store(&m->stopped, true);
     return !atomic_load(&m->stopped) && part->looks < MAX_LOOKS &&
            (part->unproven == 0 || part->looks < MAX_LOOKS_WHERE_UNPROVEN * l->w->boxes->count) &&

@@ -205,7 +205,7 @@ static void ask(Simplifier *s, double part)
 {
     const KrsMeshOptions *options = s->options;
     s->fraction                   = fmax(s->fraction, s->begun + part * (s->goal - s->begun));
-    if (options->go_on && !options->go_on(options->user, s->fraction))
+    if (options->progress && !options->progress(options->user, s->fraction))
         atomic_store(&s->stopped, true);
 }
 

@@ -25,11 +25,11 @@ static void read_properties(Gpu *gpu, unsigned emulation)
     vkGetPhysicalDeviceProperties2(gpu->physical, &properties);
     gpu->properties                = properties.properties;
     VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
-    if (emulation & KRS_PRETEND_LEAST_LIMITS) {
+    if (emulation & EMULATE_MIN_LIMITS) {
         limits->maxTexelBufferElements = MIN_TEXEL_LIMIT;
         limits->maxStorageBufferRange  = MIN_RANGE_LIMIT;
     }
-    gpu->emulates_card = emulation & KRS_PRETEND_CARD;
+    gpu->emulates_card = emulation & EMULATE_CARD;
     gpu->texels        = devices_read_texels(limits);
     bool shuffles      = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
                     subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
@@ -155,23 +155,23 @@ static bool check_threads(Gpu *gpu)
     return false;
 }
 
-bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
+bool gpu_open(Gpu *gpu, const KrsRendererOptions *options, unsigned emulation)
 {
     static const KrsRendererOptions defaults;
     if (!options)
         options = &defaults;
     *gpu = (Gpu){
         .allocator          = options->allocator,
-        .validation_message = options->complaint,
+        .validation_message = options->validation_message,
         .working            = options->working,
         .user               = options->user,
-        .compiling          = options->compiling,
-        .compiling_user     = options->compiling_user,
-        .timeout            = options->patience > 0 ? options->patience : DEFAULT_TIMEOUT,
+        .compiling          = options->progress,
+        .compiling_user     = options->progress_user,
+        .timeout            = options->timeout > 0 ? options->timeout : DEFAULT_TIMEOUT,
     };
     cache_open(&gpu->cache, options->cache, options->allocator);
     if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&
-        check_threads(gpu) && device_create(gpu, options->pretence)) {
+        check_threads(gpu) && device_create(gpu, emulation)) {
         pipelines_open(gpu);
         return true;
     }
@@ -185,7 +185,7 @@ bool gpu_open_beside(Gpu *gpu, const Gpu *other)
                  .family    = other->family,
                  .time_mask = other->time_mask,
                  .timeout   = other->timeout};
-    if (device_create(gpu, other->texels ? 0 : KRS_PRETEND_LEAST_LIMITS))
+    if (device_create(gpu, other->texels ? 0 : EMULATE_MIN_LIMITS))
         return true;
     gpu_close(gpu);
     return false;

@@ -10,9 +10,15 @@
 #include "runtime/device/devices.h"
 #include "runtime/device/gpu_state.h"
 
-/* Opens the device that the options ask for; `gpu` must stay where it is.  On failure only the
+/* Bits, for tests: what device a device emulates, as far as the host treats it.  Pictures are the same. */
+enum {
+    EMULATE_CARD       = 1, /* a graphics card, whatever its type */
+    EMULATE_MIN_LIMITS = 2  /* a device with the smallest limits that Vulkan permits */
+};
+
+/* Opens the device that the options ask for, with bits of emulation; `gpu` must stay where it is.  On failure only the
    status and the message remain. */
-bool gpu_open(Gpu *gpu, const KrsRendererOptions *options);
+bool gpu_open(Gpu *gpu, const KrsRendererOptions *options, unsigned emulation);
 /* A second device of the kind of `other`, which must stay longer; it has no caches. */
 bool gpu_open_beside(Gpu *gpu, const Gpu *other);
 void gpu_close(Gpu *gpu);

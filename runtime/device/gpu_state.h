@@ -54,7 +54,7 @@ typedef struct Gpu {
     KrsValidationCallback           *validation_message;
     KrsWorkingCallback              *working;
     void                            *user;
-    KrsCompilingCallback            *compiling;
+    KrsProgressCallback             *compiling;
     void                            *compiling_user;
     uint64_t                         validation_messages;
 

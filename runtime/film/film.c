@@ -432,7 +432,7 @@ static bool finish(const KrsFilm *film, KrsPicture *picture)
     const double marching = stats->phase_ms[KRS_PHASE_PRIMARY] + stats->phase_ms[KRS_PHASE_BOUNCES];
     stats->spirv_ms       = rendering->spirv_ms;
     stats->pipeline_ms    = rendering->pipeline_ms;
-    stats->kernels        = gpu->shaders_made;
+    stats->shaders        = gpu->shaders_made;
     stats->device_time    = gpu->times != VK_NULL_HANDLE;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];

@@ -113,19 +113,21 @@ static void *start_glslang(void *unused)
 
 /* Opens the device.  Where pictures come next and no shader is kept, glslang starts meanwhile: both take
    as long, and use one processor each. */
-static bool open_device(KrsRenderer *renderer, const KrsRendererOptions *options)
+static bool open_device(KrsRenderer *renderer, const KrsRendererOptions *options,
+                        unsigned emulation)
 {
     pthread_t  thread;
-    const bool helped = options && options->pictures_ahead && cache_is_empty(options->cache) &&
+    const bool helped = options && options->prewarm && cache_is_empty(options->cache) &&
                         sysconf(_SC_NPROCESSORS_ONLN) > 1 &&
                         pthread_create(&thread, NULL, start_glslang, NULL) == 0;
-    const bool opened = gpu_open(&renderer->gpu, options);
+    const bool opened = gpu_open(&renderer->gpu, options, emulation);
     if (helped)
         pthread_join(thread, NULL);
     return opened;
 }
 
-KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
+KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emulation,
+                                 KrsRenderer **out)
 {
     Gpu          allocating = {.allocator = options ? options->allocator : (KrsAllocator){0}};
     KrsRenderer *renderer   = gpu_alloc(&allocating, 1, sizeof *renderer, "make a renderer");
@@ -133,7 +135,7 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     if (!renderer)
         return KRS_OUT_OF_MEMORY;
     spirv_start();
-    const bool opened          = open_device(renderer, options);
+    const bool opened          = open_device(renderer, options, emulation);
     renderer->compiler_started = true;
     if (!opened)
         return renderer->gpu.status;
@@ -147,9 +149,14 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     if (!layouts_create(renderer) || !shaders_make(renderer, VK_NULL_HANDLE, shaders, count,
                                                    &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
-    if (options && options->pictures_ahead)
+    if (options && options->prewarm)
         start_prewarming(renderer);
     return KRS_OK;
+}
+
+KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **renderer)
+{
+    return renderer_new_emulating(options, 0, renderer);
 }
 
 void krs_renderer_free(KrsRenderer *renderer)
@@ -196,7 +203,7 @@ KrsDevice krs_renderer_device(const KrsRenderer *renderer)
     return gpu_describe(renderer->gpu.physical);
 }
 
-uint64_t krs_renderer_complaints(const KrsRenderer *renderer)
+uint64_t krs_renderer_validation_messages(const KrsRenderer *renderer)
 {
     return renderer->gpu.validation_messages;
 }

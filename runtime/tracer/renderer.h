@@ -6,6 +6,10 @@
 
 #include "runtime/tracer/handles.h"
 
+/* As krs_renderer_new, with bits of emulation (gpu.h). */
+KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emulation,
+                                 KrsRenderer **out);
+
 /* Lists the shaders of previews without a scene for a rendering, PIXEL_SHADERS at most, that do not
    exist.  Returns how many. */
 size_t renderer_request_pixels(const KrsRendering *rendering, ShaderRequest *requests);

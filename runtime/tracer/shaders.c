@@ -311,18 +311,18 @@ bool shaders_create(KrsRendering *rendering, KrsPurpose purpose)
 
 typedef struct ShaderListing {
     const Gpu      *gpu;
-    KrsKernelStats *items;
+    KrsShaderStats *items;
     size_t          capacity, count;
 } ShaderListing;
 
-static void describe(const Gpu *gpu, const Shader *shader, KrsKernelStats *stats)
+static void describe(const Gpu *gpu, const Shader *shader, KrsShaderStats *stats)
 {
     char group[16] = "";
     if (shader->march_group == KRS_MARCH_GROUP_OF_PLANES)
         snprintf(group, sizeof group, " planes");
     else if (shader->march_group > 0)
         snprintf(group, sizeof group, " %u", shader->march_group);
-    *stats = (KrsKernelStats){.glsl_bytes = shader->glsl_bytes,
+    *stats = (KrsShaderStats){.glsl_bytes = shader->glsl_bytes,
                               .spirv_ms   = shader->spirv_ms,
                               .driver_ms  = shader_driver_ms(gpu, shader),
                               .cached     = shader->cached};
@@ -338,7 +338,7 @@ static void list_shader(ShaderListing *listing, const Shader *shader)
     listing->count++;
 }
 
-size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *shaders,
+size_t krs_rendering_shaders(const KrsRendering *rendering, KrsShaderStats *shaders,
                              size_t capacity)
 {
     const KrsRenderer *renderer = rendering->renderer;

@@ -3,6 +3,7 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <krs/camera.h>
@@ -38,7 +39,7 @@ static void use_values(const KrsScene *scene, KrsFrame *frame)
     krs_frame_tables(frame, rows, NULL);
     KrsFrameSlope slope;
     check(krs_frame_slope_count(scene) == 1 && krs_frame_slope(scene, 0, &slope) == KRS_OK &&
-              slope.slot == 2,
+              slope.slot == 2 && strcmp(slope.place, "a.krs:4:6") == 0,
           "a slope");
     check(!krs_frame_unbounded(frame), "slopes are bounded");
 }
@@ -51,6 +52,9 @@ static void use_places(KrsFrame *frame)
     KrsCamera    camera;
     check(krs_frame_place_camera(frame) == KRS_OK, "a place of the camera");
     check(krs_frame_camera(frame, 0, &camera) == KRS_OK, "a camera");
+    const double eye = camera.eye[0];
+    krs_camera_turn(&camera, 0.5, 0);
+    check(camera.eye[0] != eye, "an orbit");
     check(krs_frame_component_box(frame, 0, low, high) && near(high[2], 1.5), "a box");
     check(krs_frame_box(frame, low, high) && near(high[0], 1.5), "a box around all");
     check(krs_frame_set_zones(frame, zone, 1) == KRS_OK, "zones");
@@ -69,6 +73,20 @@ static void use_limits(void)
     check(KRS_LEAST_NOISY_SAMPLES == 16, "samples at least");
 }
 
+static void hear(void *user, const char *message)
+{
+    (void)user;
+    (void)message;
+}
+
+static bool wait(void *user, double done)
+{
+    (void)user;
+    return done <= 1;
+}
+
+static KrsCompilingCallback *const waits = wait;
+
 /* Members and choices are those of the new names. */
 static void use_members(void)
 {
@@ -77,8 +95,48 @@ static void use_members(void)
     const KrsPlane color = KRS_PLANE_COLOR;
     check(options.aovs == (KRS_AOV_COLOR | KRS_AOV_DEPTH) && color == KRS_AOV_COLOR, "AOVs");
     check(options.max_radiance == 2 && options.max_steps == 99, "options of pictures");
-    const KrsRenderStats stats = {.most_evaluations_per_ray = 5};
-    check(stats.max_evaluations_per_ray == 5, "statistics");
+    const KrsRenderStats stats = {.most_evaluations_per_ray = 5, .kernels = 7};
+    check(stats.max_evaluations_per_ray == 5 && stats.shaders == 7, "statistics");
+    const KrsRendererOptions renderer = {.complaint      = hear,
+                                         .compiling      = waits,
+                                         .compiling_user = &failures,
+                                         .pictures_ahead = true,
+                                         .patience       = 9};
+    check(renderer.validation_message == hear && renderer.progress == wait &&
+              renderer.progress_user == &failures && renderer.prewarm && renderer.timeout == 9,
+          "options of a device");
+    const KrsMeshOptions mesh = {.go_on = wait};
+    check(mesh.progress == wait, "options of meshes");
+    KrsPlacing        placing  = {.item = 3};
+    const KrsAssembly assembly = {.placings = &placing, .placing_count = 1};
+    check(assembly.transforms->item == 3 && assembly.transform_count == 1, "an assembly");
+}
+
+static void use_texts(const KrsScene *scene, KrsFrame *frame)
+{
+    KrsPlace     place;
+    double       uv[1][2];
+    const double point[1][3] = {{0, 0, 1}};
+    check(krs_camera_place(scene, 0, &place) == KRS_BAD_ARGUMENT, "the scene has no camera");
+    check(krs_texture_places(frame, point, 1, uv) == KRS_OK && isnan(uv[0][0]),
+          "there is no texture");
+}
+
+static void use_device(const KrsScene *scene)
+{
+    KrsRenderer       *renderer;
+    KrsRendering      *rendering;
+    KrsKernelStats     kernels[2];
+    KrsRendererOptions options = {.device = getenv("KRS_DEVICE")};
+    if (krs_renderer_new(&options, &renderer) != KRS_OK) {
+        check(false, "a renderer");
+        return;
+    }
+    check(krs_rendering_new(renderer, scene, &rendering) == KRS_OK, "a rendering");
+    check(krs_rendering_kernels(rendering, kernels, 2) > 2, "kernels");
+    check(krs_renderer_complaints(renderer) == 0, "no complaints");
+    krs_rendering_free(rendering);
+    krs_renderer_free(renderer);
 }
 
 int main(void)
@@ -93,6 +151,8 @@ int main(void)
     check(krs_frame_update(frame, scene) == KRS_OK, "an update");
     use_values(scene, frame);
     use_places(frame);
+    use_texts(scene, frame);
+    use_device(scene);
     krs_frame_free(frame);
     krs_scene_free(scene);
     return failures > 0;

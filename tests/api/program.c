@@ -70,7 +70,7 @@ static void tell_scene(const KrsScene *scene, KrsState *frame)
     check_guard(bound.guard, "a bound is too long");
     GUARDED(KrsCamera, camera, 1);
     check(krs_state_camera(frame, 0, camera.is) == KRS_OK, "a camera");
-    krs_camera_turn(camera.is, 0.1, 0.2);
+    krs_camera_orbit(camera.is, 0.1, 0.2);
     printf("camera %.3f %.3f %.3f fov %.3f\n", camera.is->eye[0], camera.is->eye[1],
            camera.is->eye[2], camera.is->fov);
     check_guard(camera.guard, "a camera is too long");
@@ -164,10 +164,10 @@ static void render(KrsRendering *rendering, KrsState *frame)
     printf("film %.4f\n", sum_of(picture));
     krs_picture_free(picture);
     krs_film_free(film);
-    GUARDED(KrsKernelStats, kernels, 2);
-    printf("kernels %d", krs_rendering_kernels(rendering, kernels.is, 2) > 2);
-    printf(" %s, %s\n", kernels.is[0].name, kernels.is[1].name);
-    check_guard(kernels.guard, "kernels are too long");
+    GUARDED(KrsShaderStats, shaders, 2);
+    printf("shaders %d", krs_rendering_shaders(rendering, shaders.is, 2) > 2);
+    printf(" %s, %s\n", shaders.is[0].name, shaders.is[1].name);
+    check_guard(shaders.guard, "shaders are too long");
 }
 
 static void ask_device(KrsRendering *rendering, KrsState *frame)

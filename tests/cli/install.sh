@@ -130,7 +130,7 @@ if command -v pkg-config >/dev/null; then
     # The names of before, which programs may still use.
     printf '#include <%s.h>\n' krs krs_camera krs_vulkan >vulkan.c
     echo 'KrsStatus (*function)(void) = (KrsStatus (*)(void))krs_render;' >>vulkan.c
-    echo 'void (*turn)(KrsCamera *, double, double) = krs_camera_turn;' >>vulkan.c
+    echo 'void (*turn)(KrsCamera *, double, double) = krs_camera_orbit;' >>vulkan.c
     # shellcheck disable=SC2046 # words are meant
     ${CC:-cc} -std=c17 -Wall -Werror $(pkg-config --cflags krs) outside.c vulkan.c \
         $(pkg-config --libs krs) -o outside >out 2>err && LD_LIBRARY_PATH="$work/usr/lib" ./outside >printed 2>err &&

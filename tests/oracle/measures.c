@@ -370,7 +370,8 @@ static void work_can_be_stopped(void **state)
     for (double part = 0; part < 1; part += 0.24) {
         KrsMeasures *m;
         assert_int_equal(krs_measure(product.frame,
-                                     &(KrsMeasureOptions){.go_on = stop_later, .user = &part}, &m),
+                                     &(KrsMeasureOptions){.progress = stop_later, .user = &part},
+                                     &m),
                          KRS_INTERRUPTED);
         assert_null(m);
     }

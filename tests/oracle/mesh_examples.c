@@ -66,7 +66,7 @@ static void look_at_components(Example *e)
     }
 }
 
-static bool go_on(void *user, double fraction)
+static bool report_progress(void *user, double fraction)
 {
     const Example *example = user;
     (void)fraction;
@@ -137,8 +137,8 @@ static void try_example(const char *path)
     const Row *row = find_row(path);
     Example    e   = open_example(path, row);
     KrsMesh   *mesh;
-    e.options.go_on = go_on;
-    e.options.user  = &e;
+    e.options.progress = report_progress;
+    e.options.user     = &e;
     assert_int_equal(krs_mesh(e.product.frame, &e.options, &mesh), KRS_OK);
     e.seconds = now() - e.start;
     check_refusal(&e);

@@ -299,7 +299,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     Fixture *fixture = *state;
-    int      wrong   = krs_renderer_complaints(fixture->renderer) != 0;
+    int      wrong   = krs_renderer_validation_messages(fixture->renderer) != 0;
     fixture_close(fixture);
     return wrong;
 }

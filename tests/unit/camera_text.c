@@ -230,8 +230,8 @@ static void a_scene_without_a_camera_gets_one(void **state)
     KrsScene   *scene  = compile(text);
     KrsCamera   camera = camera_of(scene);
     char        after[500];
-    KrsPlace    place;
-    assert_int_equal(krs_camera_place(scene, 0, &place), KRS_BAD_ARGUMENT);
+    KrsLocation place;
+    assert_int_equal(krs_camera_location(scene, 0, &place), KRS_BAD_ARGUMENT);
     memcpy(camera.eye, (double[]){1, 2, 3}, sizeof camera.eye);
     char *block = camera_text(&camera);
     snprintf(after, sizeof after, "%s\n%s", text, block);

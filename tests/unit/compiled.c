@@ -190,7 +190,8 @@ static void shaders_are_compiled_together(void **state)
     char                     name[NAME_MAX + 1];
     static const char *const defines[SHADERS] = {"#define VARIANT 0\n", "#define VARIANT 1\n",
                                                  "#define VARIANT 2\n", "#error refused\n"};
-    assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device = tested_device(), .cache = folder}));
+    assert_true(
+        gpu_open(&gpu, &(KrsRendererOptions){.device = tested_device(), .cache = folder}, 0));
     VkPipelineLayout layout = make_layout(&gpu);
     for (int i = 0; i < SHADERS; i++)
         requests[i] = (ShaderRequest){&shaders[i], {file, NULL, defines[i]}};
@@ -245,7 +246,7 @@ static void memory_that_runs_out_is_reported(void **state)
 
 /* ---- Rehearsals ---- */
 
-/* Shaders are run before they are needed on devices of type CPU alone; a pretended card has nothing
+/* Shaders are run before they are needed on devices of type CPU alone; an emulated card has nothing
    to run them with, so that it would crash. */
 static void graphics_cards_do_not_rehearse(void **state)
 {

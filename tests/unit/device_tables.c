@@ -21,6 +21,7 @@
 #include "compiler/scene/tables.h"
 #include "runtime/device/gpu.h"
 #include "runtime/tracer/handles.h"
+#include "runtime/tracer/renderer.h"
 #include "tests/support/agreement.h"
 #include "tests/support/bench.h"
 #include "tests/support/device.h"
@@ -76,12 +77,11 @@ static void add_tables(Bench *bench, Fixture *fixture, uint32_t rows)
 
 static Fixture open_scene(const char *text, unsigned emulation)
 {
-    KrsRendererOptions options = {.device     = tested_device(),
-                                  .validation = true,
-                                  .complaint  = note_validation_message,
-                                  .pretence   = emulation};
+    KrsRendererOptions options = {.device             = tested_device(),
+                                  .validation         = true,
+                                  .validation_message = note_validation_message};
     Fixture            fixture;
-    if (krs_renderer_new(&options, &fixture.renderer) != KRS_OK)
+    if (renderer_new_emulating(&options, emulation, &fixture.renderer) != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture.renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene),
                      KRS_OK);
@@ -98,7 +98,7 @@ static Fixture open_fixture(Bench *bench, uint32_t rows, unsigned emulation)
 
 static void close_fixture(Fixture *fixture)
 {
-    if (krs_renderer_complaints(fixture->renderer) != 0)
+    if (krs_renderer_validation_messages(fixture->renderer) != 0)
         fail_msg("the validation layers complain: %s", validation_message);
     krs_state_free(fixture->frame);
     krs_scene_free(fixture->scene);
@@ -155,7 +155,7 @@ static void a_query_brings_tables(void **state)
 
 static void a_picture_brings_tables(void **state)
 {
-    Fixture          fixture = open_fixture(*state, 300, KRS_PRETEND_LEAST_LIMITS);
+    Fixture          fixture = open_fixture(*state, 300, EMULATE_MIN_LIMITS);
     KrsRenderOptions options = {.width = 16, .height = 16};
     KrsPicture      *picture;
     KrsRendering    *rendering;
@@ -235,7 +235,7 @@ static void rows_of_texels_are_those_of_the_frame(void **state)
 
 static void rows_of_buffers_are_those_of_the_frame(void **state)
 {
-    rows_are_those_of_the_frame(*state, KRS_PRETEND_LEAST_LIMITS);
+    rows_are_those_of_the_frame(*state, EMULATE_MIN_LIMITS);
 }
 
 /* A picture of a frame is that of a scene without time, whose numbers are those of the frame. */
@@ -303,8 +303,8 @@ static void too_large_tables_are_refused(void **state)
 {
     compare_with_room(*state, 0, true);
     compare_with_room(*state, 0, false);
-    compare_with_room(*state, KRS_PRETEND_LEAST_LIMITS, true);
-    compare_with_room(*state, KRS_PRETEND_LEAST_LIMITS, false);
+    compare_with_room(*state, EMULATE_MIN_LIMITS, true);
+    compare_with_room(*state, EMULATE_MIN_LIMITS, false);
 }
 
 int main(void)

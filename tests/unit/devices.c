@@ -37,10 +37,12 @@ static void a_planted_hazard_is_reported(void **state)
     static Gpu gpu;
     Fixture    fixture = {0};
     Buffer     from, to;
-    assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device     = tested_device(),
-                                                     .validation = true,
-                                                     .complaint  = note_validation_message,
-                                                     .user       = &fixture}));
+    assert_true(gpu_open(&gpu,
+                         &(KrsRendererOptions){.device             = tested_device(),
+                                               .validation         = true,
+                                               .validation_message = note_validation_message,
+                                               .user               = &fixture},
+                         0));
     assert_true(buffer_create(&gpu, &from, 1024, ON_DEVICE, "source"));
     assert_true(buffer_create(&gpu, &to, 1024, SHARED, "target"));
 

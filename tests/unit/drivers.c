@@ -18,6 +18,8 @@
 
 #include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
+#include "runtime/device/gpu.h"
+#include "runtime/tracer/renderer.h"
 #include "tests/support/device.h"
 
 static char validation_message[2048]; /* the last */
@@ -39,13 +41,12 @@ typedef struct Fixture {
 
 static Fixture open_fixture(const char *text, unsigned emulation)
 {
-    KrsRendererOptions options = {.device     = tested_device(),
-                                  .validation = true,
-                                  .complaint  = note_validation_message,
-                                  .early_outs = KRS_EARLY_OUTS_OFF,
-                                  .pretence   = emulation};
+    KrsRendererOptions options = {.device             = tested_device(),
+                                  .validation         = true,
+                                  .validation_message = note_validation_message,
+                                  .early_outs         = KRS_EARLY_OUTS_OFF};
     Fixture            fixture;
-    KrsStatus          status = krs_renderer_new(&options, &fixture.renderer);
+    KrsStatus          status = renderer_new_emulating(&options, emulation, &fixture.renderer);
     if (status != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture.renderer));
     if (krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene) != KRS_OK)
@@ -58,7 +59,7 @@ static Fixture open_fixture(const char *text, unsigned emulation)
 
 static void close_fixture(Fixture *fixture)
 {
-    if (krs_renderer_complaints(fixture->renderer) != 0)
+    if (krs_renderer_validation_messages(fixture->renderer) != 0)
         fail_msg("the validation layers complain: %s", validation_message);
     krs_rendering_free(fixture->rendering);
     krs_state_free(fixture->frame);
@@ -233,16 +234,15 @@ static const Case cases[] = {
 /* Renders a case as the device is, and as it is taken for. */
 static size_t compare(const Case *test, unsigned emulation)
 {
-    Fixture plain = open_fixture(test->text, 0), pretending = open_fixture(test->text, emulation);
-    KrsPicture *a = render(&plain, &test->options), *b = render(&pretending, &test->options);
-    size_t      differ = emulation & KRS_PRETEND_LEAST_LIMITS ? difference_of_shaders(a, b)
-                                                              : difference(a, b);
+    Fixture plain = open_fixture(test->text, 0), emulating = open_fixture(test->text, emulation);
+    KrsPicture *a = render(&plain, &test->options), *b = render(&emulating, &test->options);
+    size_t differ = emulation & EMULATE_MIN_LIMITS ? difference_of_shaders(a, b) : difference(a, b);
     if (differ > 0)
         print_message("# %s: %zu bytes differ\n", test->name, differ);
     krs_picture_free(a);
     krs_picture_free(b);
     close_fixture(&plain);
-    close_fixture(&pretending);
+    close_fixture(&emulating);
     return differ;
 }
 
@@ -257,14 +257,14 @@ static void compare_all(unsigned emulation)
 static void short_texel_buffers_are_not_seen(void **state)
 {
     (void)state;
-    compare_all(KRS_PRETEND_LEAST_LIMITS);
+    compare_all(EMULATE_MIN_LIMITS);
 }
 
 static void a_card_is_not_seen(void **state)
 {
     (void)state;
-    compare_all(KRS_PRETEND_CARD);
-    assert_int_equal(compare(&cases[0], KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS), 0);
+    compare_all(EMULATE_CARD);
+    assert_int_equal(compare(&cases[0], EMULATE_CARD | EMULATE_MIN_LIMITS), 0);
 }
 
 /* The comparison sees one bit. */
@@ -289,7 +289,7 @@ enum { SUBMISSIONS_OF_CARD = 5 };
 static void a_card_is_seldom_waited_for(void **state)
 {
     (void)state;
-    Fixture          fixture = open_fixture(cases[0].text, KRS_PRETEND_CARD);
+    Fixture          fixture = open_fixture(cases[0].text, EMULATE_CARD);
     KrsRenderOptions options = cases[0].options;
     options.slice_ms         = 1e6; /* a slice is all of it */
     for (int frame = 0; frame < 2; frame++) {
@@ -312,7 +312,7 @@ static bool count_down(void *user, double done)
 static void a_card_is_interrupted(void **state)
 {
     (void)state;
-    Fixture          fixture     = open_fixture(cases[0].text, KRS_PRETEND_CARD);
+    Fixture          fixture     = open_fixture(cases[0].text, EMULATE_CARD);
     KrsRenderOptions options     = cases[0].options;
     KrsPicture      *whole       = render(&fixture, &options);
     int              interrupted = 0, left;

@@ -133,7 +133,7 @@ static void assert_shows(Viewer *viewer, const char *text)
 static uint64_t shaders_made(Viewer *viewer)
 {
     KrsPicture    *picture = render(viewer);
-    const uint64_t made    = picture->stats.kernels;
+    const uint64_t made    = picture->stats.shaders;
     krs_picture_free(picture);
     return made;
 }
@@ -141,9 +141,9 @@ static uint64_t shaders_made(Viewer *viewer)
 /* No text of a shader was printed for the last edit: that would have taken time. */
 static void assert_shaders_stay(const Viewer *viewer)
 {
-    KrsKernelStats shaders[32];
+    KrsShaderStats shaders[32];
     size_t         with_scene = 0;
-    const size_t   count      = krs_rendering_kernels(viewer->rendering, shaders, 32);
+    const size_t   count      = krs_rendering_shaders(viewer->rendering, shaders, 32);
     assert_in_range(count, 1, 32);
     for (size_t i = 0; i < count; i++) {
         with_scene += shaders[i].glsl_bytes > 0;

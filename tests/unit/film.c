@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
+#include "runtime/device/gpu.h"
 #include "tests/unit/tracer_fixture.h"
 
 enum { SAMPLES = 4 };
@@ -94,8 +95,8 @@ static const KrsRenderOptions part = {.width   = WIDTH,
                                       .mattes  = true};
 
 /* On devices whose bands are small, or into which the host cannot look, as well. */
-static const unsigned emulations[] = {0, KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
-                                      KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+static const unsigned emulations[] = {0, EMULATE_CARD, EMULATE_MIN_LIMITS,
+                                      EMULATE_CARD | EMULATE_MIN_LIMITS};
 enum { EMULATIONS = sizeof emulations / sizeof emulations[0] };
 
 static void portions_are_the_whole(void **state)

@@ -208,7 +208,7 @@ static int open_fixture(void **state)
     static Fixture           fixture;
     const KrsRendererOptions options = {.device = tested_device()};
     spirv_start();
-    if (!gpu_open(&fixture.gpu, &options) ||
+    if (!gpu_open(&fixture.gpu, &options, 0) ||
         !buffer_create(&fixture.gpu, &fixture.buffer, NUMBERS * sizeof(float), SHARED, "numbers"))
         return -1;
     create_layout(&fixture);

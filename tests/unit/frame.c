@@ -196,7 +196,7 @@ static void frames_without_a_slope_are_refused(void **state)
     assert_int_equal(krs_state_slope_count(scene), 1); /* one expression */
     assert_int_equal(krs_state_slope(scene, 0, &slope), KRS_OK);
     assert_int_equal(krs_state_slope(scene, 1, &slope), KRS_BAD_ARGUMENT);
-    assert_string_equal(slope.place, "scene.krs:2:9");
+    assert_string_equal(slope.location, "scene.krs:2:9");
     assert_true(slope.low[0] == -INFINITY && slope.high[2] == INFINITY);
     assert_int_equal(krs_parameter_slots(scene), 3);
     assert_int_equal(slope.slot, 2);

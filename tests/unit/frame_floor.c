@@ -161,7 +161,7 @@ static void camera_follows_where_it_is_asked_to(void **state)
         set_height(asked, 3.3);
         assert_int_equal(krs_state_camera(asked.frame, 0, &before), KRS_OK);
         assert_memory_equal(first.eye, before.eye, sizeof first.eye);
-        assert_int_equal(krs_state_place_camera(asked.frame), KRS_OK);
+        assert_int_equal(krs_state_fit_camera(asked.frame), KRS_OK);
         assert_int_equal(krs_state_camera(asked.frame, 0, &after), KRS_OK);
         assert_int_equal(krs_state_camera(fixed.frame, 0, &truth), KRS_OK);
         for (int k = 0; k < 3; k++) {

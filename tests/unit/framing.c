@@ -98,7 +98,7 @@ static double place(const KrsScene *scene, KrsCamera *camera)
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     for (int i = 0; i < 2; i++) {
         uint64_t before = frame->ran;
-        assert_int_equal(krs_state_place_camera(frame), KRS_OK);
+        assert_int_equal(krs_state_fit_camera(frame), KRS_OK);
         assert_int_equal(krs_state_camera(frame, 0, i ? &again : camera), KRS_OK);
         ran[i] = frame->ran - before;
     }

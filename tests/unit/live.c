@@ -57,7 +57,7 @@ static void turns_keep_the_target(void **state)
     KrsCamera camera = start;
     for (int i = 0; i < 200; i++) {
         double forward[3], right[3], up[3];
-        krs_camera_turn(&camera, 0.3 * sin(i), 0.5 * cos(0.7 * i));
+        krs_camera_orbit(&camera, 0.3 * sin(i), 0.5 * cos(0.7 * i));
         krs_camera_axes(&camera, forward, right, up);
         assert_true(fabs(apart(camera.eye, camera.target) - apart(start.eye, start.target)) < 1e-9);
         assert_true(fabs(right[1]) < 1e-9 && up[1] > 0); /* upright */

@@ -407,7 +407,7 @@ static void what_cannot_be_meshed_is_refused(void **context)
     options.memory_limit = 10000;
     assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OUT_OF_MEMORY);
     options.memory_limit = 0;
-    options.go_on        = stop;
+    options.progress     = stop;
     assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_INTERRUPTED);
     scene_close(s);
 }

@@ -44,7 +44,7 @@ static void work_goes_on_in_small_steps(void **state)
 {
     Scene          s       = scene_of(text);
     Told           told    = {.most = SIZE_MAX};
-    KrsMeshOptions options = {.error = 0.02, .go_on = hear, .user = &told};
+    KrsMeshOptions options = {.error = 0.02, .progress = hear, .user = &told};
     KrsMesh       *mesh, *few;
     (void)state;
     work_in_one_thread();
@@ -65,7 +65,7 @@ static void simplifying_is_stopped(void **state)
     KrsMesh       *mesh, *few;
     (void)state;
     assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
-    options.go_on = hear;
+    options.progress = hear;
     for (size_t most = 1; most < 40; most += 13) {
         Told told    = {.most = most};
         options.user = &told;

@@ -49,7 +49,7 @@ static int open_renderer(void **state)
 static int close_renderer(void **state)
 {
     (void)state;
-    uint64_t validation_messages = krs_renderer_complaints(renderer);
+    uint64_t validation_messages = krs_renderer_validation_messages(renderer);
     krs_renderer_free(renderer);
     return validation_messages > 0;
 }
@@ -108,8 +108,8 @@ enum { MAX_SHADERS = 64 };
 
 static int count_shaders(const Fixture *fixture, const char *name)
 {
-    KrsKernelStats shaders[MAX_SHADERS];
-    const size_t   count = krs_rendering_kernels(fixture->rendering, shaders, MAX_SHADERS);
+    KrsShaderStats shaders[MAX_SHADERS];
+    const size_t   count = krs_rendering_shaders(fixture->rendering, shaders, MAX_SHADERS);
     int            found = 0;
     for (size_t i = 0; i < count && i < MAX_SHADERS; i++)
         found += strncmp(shaders[i].name, name, strlen(name)) == 0;
@@ -118,8 +118,8 @@ static int count_shaders(const Fixture *fixture, const char *name)
 
 static size_t count_bytes(const Fixture *fixture, const char *name)
 {
-    KrsKernelStats shaders[MAX_SHADERS];
-    const size_t   count = krs_rendering_kernels(fixture->rendering, shaders, MAX_SHADERS);
+    KrsShaderStats shaders[MAX_SHADERS];
+    const size_t   count = krs_rendering_shaders(fixture->rendering, shaders, MAX_SHADERS);
     size_t         bytes = 0;
     for (size_t i = 0; i < count && i < MAX_SHADERS; i++)
         bytes += strcmp(shaders[i].name, name) == 0 ? shaders[i].glsl_bytes : 0;

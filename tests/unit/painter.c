@@ -161,7 +161,7 @@ static uint64_t assert_shows(Fixture *fixture, unsigned version, unsigned view, 
     assert_memory_equal(shown.pixels, meant, BYTES);
     free(shown.pixels);
     free(meant);
-    return shown.stats.kernels;
+    return shown.stats.shaders;
 }
 
 /* How many views are shown before shaders are ready is for the machine to say, but the first is. */
@@ -318,7 +318,7 @@ static void lost_devices_are_said(void **state)
 {
     (void)state;
     Fixture              fixture;
-    const PainterOptions options = {.renderer = {.device = tested_device(), .patience = 1e-9},
+    const PainterOptions options = {.renderer = {.device = tested_device(), .timeout = 1e-9},
                                     .budget   = 40};
     set_up(&fixture, one_ball);
     painter_free(fixture.painter);

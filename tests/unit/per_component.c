@@ -94,11 +94,12 @@ static void print_validation_message(void *user, const char *message)
 static int open_scenes(void **state)
 {
     (void)state;
-    KrsRendererOptions options = {
-        .device = tested_device(), .validation = true, .complaint = print_validation_message};
-    KrsOptions with    = {.diagnostic = print_diagnostic};
-    KrsStatus  status  = krs_renderer_new(&options, &plain);
-    options.early_outs = KRS_EARLY_OUTS_ON;
+    KrsRendererOptions options = {.device             = tested_device(),
+                                  .validation         = true,
+                                  .validation_message = print_validation_message};
+    KrsOptions         with    = {.diagnostic = print_diagnostic};
+    KrsStatus          status  = krs_renderer_new(&options, &plain);
+    options.early_outs         = KRS_EARLY_OUTS_ON;
     if (status == KRS_OK)
         status = krs_renderer_new(&options, &early);
     for (int i = 0; i < SCENES && status == KRS_OK; i++) {
@@ -126,7 +127,8 @@ static int close_scenes(void **state)
         krs_state_free(scenes[i].frame);
         krs_scene_free(scenes[i].scene);
     }
-    uint64_t validation_messages = krs_renderer_complaints(plain) + krs_renderer_complaints(early);
+    uint64_t validation_messages = krs_renderer_validation_messages(plain) +
+                                   krs_renderer_validation_messages(early);
     krs_renderer_free(plain);
     krs_renderer_free(early);
     return validation_messages > 0;

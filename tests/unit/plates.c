@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/device/gpu.h"
 #include "tests/unit/tracer_fixture.h"
 
 /* The ball alone is in the scene; the floor, y = 0, is known by the depths alone. */
@@ -374,8 +375,8 @@ static void noise_and_groups_have_plates(void **state)
 /* Graphics cards chain their passes; with the least limits there are several bands, without texels. */
 static void every_device_finds_the_same(void **state)
 {
-    static const unsigned emulations[] = {KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
-                                          KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+    static const unsigned emulations[] = {EMULATE_CARD, EMULATE_MIN_LIMITS,
+                                          EMULATE_CARD | EMULATE_MIN_LIMITS};
     Fixture              *plain        = *state;
     KrsRenderOptions      options      = on_floor(0);
     make_floor(0);
@@ -397,7 +398,7 @@ static void every_device_finds_the_same(void **state)
             set(&fixture, "shine", 1);
             KrsPicture *seen = fixture_render(&fixture, options);
             assert_same_caught(expected, seen);
-            assert_int_equal(krs_renderer_complaints(fixture.renderer), 0);
+            assert_int_equal(krs_renderer_validation_messages(fixture.renderer), 0);
             krs_picture_free(seen);
             fixture_close(&fixture);
         }

@@ -262,7 +262,7 @@ static void a_search_can_be_stopped(void **state)
 {
     (void)state;
     KrsRefutation    result;
-    KrsRefuteOptions how = {.seconds = 1e6, .go_on = stop};
+    KrsRefuteOptions how = {.seconds = 1e6, .progress = stop};
     assert_int_equal(krs_refute("examples/01-hello.krs", NULL, &how, &result), KRS_INTERRUPTED);
     assert_int_equal(krs_refute("no-such-scene.krs", NULL, &how, &result), KRS_IO_ERROR);
 }

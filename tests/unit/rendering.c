@@ -82,7 +82,7 @@ static void compiling_is_interrupted(void **state)
     Fixture                 *fixture   = *state;
     Compiling                compiling = {0};
     const KrsRendererOptions options   = {
-          .device = tested_device(), .compiling = hear_compiling, .compiling_user = &compiling};
+          .device = tested_device(), .progress = hear_compiling, .progress_user = &compiling};
     const KrsRenderOptions small = {.width = WIDTH, .height = HEIGHT};
     KrsRenderer           *renderer;
     KrsRendering          *rendering;
@@ -111,7 +111,7 @@ static void compiling_is_interrupted(void **state)
 static void shaders_are_made_ahead(void **state)
 {
     Fixture                 *fixture = *state;
-    const KrsRendererOptions options = {.device = tested_device(), .pictures_ahead = true};
+    const KrsRendererOptions options = {.device = tested_device(), .prewarm = true};
     const KrsRenderOptions   small   = {.width = WIDTH, .height = HEIGHT};
     KrsRenderer             *renderer;
     KrsRendering            *rendering;

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
+#include "runtime/device/gpu.h"
 #include "tests/unit/tracer_fixture.h"
 
 enum { SAMPLES = 24 };
@@ -99,7 +100,7 @@ static const KrsRenderOptions kinds[] = {
 
 static void a_saved_film_goes_on(void **state)
 {
-    static const unsigned emulations[] = {0, KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+    static const unsigned emulations[] = {0, EMULATE_CARD | EMULATE_MIN_LIMITS};
     static const uint32_t first[]      = {1, 17, SAMPLES};
     static unsigned char  room[1 << 23];
     (void)state;

@@ -119,8 +119,9 @@ static int tell_failure(KrsStatus status)
 int open_watched(void **state)
 {
     (void)state;
-    KrsRendererOptions options = {
-        .device = tested_device(), .validation = true, .complaint = note_validation_message};
+    KrsRendererOptions options = {.device             = tested_device(),
+                                  .validation         = true,
+                                  .validation_message = note_validation_message};
     return tell_failure(krs_renderer_new(&options, &watched_renderer));
 }
 
@@ -151,9 +152,9 @@ int close_scenes(void **state)
 int hear_layers(void **state)
 {
     (void)state;
-    if (krs_renderer_complaints(watched_renderer) != 0)
+    if (krs_renderer_validation_messages(watched_renderer) != 0)
         fprintf(stderr, "the validation layers complain: %s\n", validation_message);
-    return krs_renderer_complaints(watched_renderer) != 0;
+    return krs_renderer_validation_messages(watched_renderer) != 0;
 }
 
 /* ---- Pictures ---- */

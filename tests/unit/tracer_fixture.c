@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
+#include "runtime/tracer/renderer.h"
 #include "tests/support/device.h"
 
 #define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
@@ -46,15 +47,16 @@ static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
     fputs(diagnostic->text, stderr);
 }
 
-static void open_with(Fixture *fixture, const char *text, KrsRendererOptions options)
+static void open_with(Fixture *fixture, const char *text, KrsRendererOptions options,
+                      unsigned emulation)
 {
-    KrsOptions compiling = {.diagnostic = print_diagnostic};
-    options.device       = tested_device();
-    options.validation   = true;
-    options.complaint    = note_validation_message;
-    options.user         = fixture;
-    *fixture             = (Fixture){0};
-    KrsStatus status     = krs_renderer_new(&options, &fixture->renderer);
+    KrsOptions compiling       = {.diagnostic = print_diagnostic};
+    options.device             = tested_device();
+    options.validation         = true;
+    options.validation_message = note_validation_message;
+    options.user               = fixture;
+    *fixture                   = (Fixture){0};
+    KrsStatus status           = renderer_new_emulating(&options, emulation, &fixture->renderer);
     if (status != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture->renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "test.krs", &compiling, &fixture->scene),
@@ -69,12 +71,12 @@ void fixture_open(Fixture *fixture, const char *text, const KrsAllocator *alloca
     KrsRendererOptions options = {0};
     if (allocator)
         options.allocator = *allocator;
-    open_with(fixture, text, options);
+    open_with(fixture, text, options, 0);
 }
 
 void fixture_open_as(Fixture *fixture, const char *text, unsigned emulation)
 {
-    open_with(fixture, text, (KrsRendererOptions){.pretence = emulation});
+    open_with(fixture, text, (KrsRendererOptions){0}, emulation);
 }
 
 void fixture_close(Fixture *fixture)
@@ -87,7 +89,7 @@ void fixture_close(Fixture *fixture)
 
 void fixture_close_watched(Fixture *fixture)
 {
-    assert_int_equal(krs_renderer_complaints(fixture->renderer), 0);
+    assert_int_equal(krs_renderer_validation_messages(fixture->renderer), 0);
     assert_int_equal(fixture->validation_messages, 0);
     fixture_close(fixture);
 }
@@ -115,7 +117,7 @@ int fixture_set_up(void **state)
 int fixture_tear_down(void **state)
 {
     Fixture *fixture             = *state;
-    uint64_t validation_messages = krs_renderer_complaints(fixture->renderer);
+    uint64_t validation_messages = krs_renderer_validation_messages(fixture->renderer);
     fixture_close(fixture);
     if (validation_messages != 0 || fixture->validation_messages != 0)
         fprintf(stderr, "the validation layers complain: %s\n", fixture->validation_message);

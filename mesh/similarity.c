@@ -1,12 +1,12 @@
-/* placing.c: similarities, and a search for how far copies reach. */
-#include "mesh/placing.h"
+/* similarity.c: similarities, and a search for how far copies reach. */
+#include "mesh/similarity.h"
 
 #include "compiler/base/vec.h"
 
-const double placing_identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+const double similarity_identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
 /* x - 2 (normal . x - offset) normal */
-void placing_mirror(const double normal[3], double offset, double matrix[3][4])
+void similarity_mirror(const double normal[3], double offset, double matrix[3][4])
 {
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
@@ -15,7 +15,8 @@ void placing_mirror(const double normal[3], double offset, double matrix[3][4])
     }
 }
 
-void placing_map(double scale, const double rows[3][3], const double shift[3], double matrix[3][4])
+void similarity_map(double scale, const double rows[3][3], const double shift[3],
+                    double matrix[3][4])
 {
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
@@ -24,7 +25,7 @@ void placing_map(double scale, const double rows[3][3], const double shift[3], d
     }
 }
 
-void placing_product(const double a[3][4], const double b[3][4], double matrix[3][4])
+void similarity_product(const double a[3][4], const double b[3][4], double matrix[3][4])
 {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 4; k++)
@@ -32,13 +33,13 @@ void placing_product(const double a[3][4], const double b[3][4], double matrix[3
                            (k == 3 ? a[i][3] : 0);
 }
 
-void placing_apply(const double matrix[3][4], const double point[3], double image[3])
+void similarity_apply(const double matrix[3][4], const double point[3], double image[3])
 {
     for (int i = 0; i < 3; i++)
         image[i] = dot3(matrix[i], point) + matrix[i][3];
 }
 
-double placing_scale(const double matrix[3][4]) { return length3(matrix[0]); }
+double similarity_scale(const double matrix[3][4]) { return length3(matrix[0]); }
 
 /* ---- reach ---- */
 
@@ -97,10 +98,10 @@ double reach_along(ReachSearch *search, size_t number, const double matrix[3][4]
     if (item->count == 0)
         return most;
     for (size_t i = item->first; i < item->first + item->count; i++) {
-        const KrsPlacing *placing = &search->assembly->placings[i];
-        double            product[3][4];
-        placing_product(matrix, placing->matrix, product);
-        least = reach_along(search, placing->item, (const double(*)[4])product, direction, least);
+        const KrsTransform *transform = &search->assembly->transforms[i];
+        double              product[3][4];
+        similarity_product(matrix, transform->matrix, product);
+        least = reach_along(search, transform->item, (const double(*)[4])product, direction, least);
     }
     return least;
 }
@@ -135,8 +136,8 @@ static Ball place_ball(const double matrix[3][4], Ball ball)
     Ball image = {.radius = ball.radius};
     if (ball.radius < 0 || isinf(ball.radius))
         return image;
-    placing_apply(matrix, ball.centre, image.centre);
-    image.radius *= placing_scale(matrix);
+    similarity_apply(matrix, ball.centre, image.centre);
+    image.radius *= similarity_scale(matrix);
     return image;
 }
 
@@ -152,9 +153,9 @@ void find_item_bounds(ReachSearch *search, size_t number)
     }
     *bounds = (struct ItemBounds){box_empty, {.radius = -1}};
     for (size_t i = item->first; i < item->first + item->count; i++) {
-        const KrsPlacing *placing       = &search->assembly->placings[i];
-        const double(*matrix)[4]        = (const double(*)[4])placing->matrix;
-        const struct ItemBounds *placed = &search->bounds[placing->item];
+        const KrsTransform *transform   = &search->assembly->transforms[i];
+        const double(*matrix)[4]        = (const double(*)[4])transform->matrix;
+        const struct ItemBounds *placed = &search->bounds[transform->item];
         if (box_is_empty(placed->box))
             continue;
         bounds->box  = box_hull(bounds->box, place_box(matrix, placed->box));

@@ -1,20 +1,21 @@
 /*
- * placing.h: where copies are: similarities as matrices, and how far what they place reaches.
+ * similarity.h: where copies are: similarities as matrices, and how far what they place reaches.
  */
-#ifndef KRS_MESH_PLACING_H
-#define KRS_MESH_PLACING_H
+#ifndef KRS_MESH_SIMILARITY_H
+#define KRS_MESH_SIMILARITY_H
 
 #include "krs/krs.h"
 #include "compiler/shape/box.h"
 
-extern const double placing_identity[3][4];
+extern const double similarity_identity[3][4];
 
-void placing_mirror(const double normal[3], double offset, double matrix[3][4]);
-void placing_map(double scale, const double rows[3][3], const double shift[3], double matrix[3][4]);
+void similarity_mirror(const double normal[3], double offset, double matrix[3][4]);
+void similarity_map(double scale, const double rows[3][3], const double shift[3],
+                    double matrix[3][4]);
 /* matrix = a b; it may be none of them. */
-void   placing_product(const double a[3][4], const double b[3][4], double matrix[3][4]);
-void   placing_apply(const double matrix[3][4], const double point[3], double image[3]);
-double placing_scale(const double matrix[3][4]);
+void   similarity_product(const double a[3][4], const double b[3][4], double matrix[3][4]);
+void   similarity_apply(const double matrix[3][4], const double point[3], double image[3]);
+double similarity_scale(const double matrix[3][4]);
 
 /* A search for how far items reach; each may be as large as a box and a ball, the smaller of which counts. */
 typedef struct ReachSearch {

@@ -1,5 +1,5 @@
 /*
- * texture_places.c: where surfaces read their textures, which meshes have as coordinates.
+ * texture_uvs.c: where surfaces read their textures, which meshes have as coordinates.
  */
 #include <math.h>
 #include <string.h>
@@ -44,8 +44,8 @@ static bool place_at(KrsState *frame, const double point[3], bool normals, doubl
     return true;
 }
 
-KrsStatus krs_texture_places(KrsState *frame, const double (*points)[3], size_t count,
-                             double (*places)[2])
+KrsStatus krs_texture_uvs(KrsState *frame, const double (*points)[3], size_t count,
+                          double (*places)[2])
 {
     const KrsScene *scene   = frame->scene;
     bool            any     = roots_of(&scene->roots, ROOTS_PLACE).count > 0;
