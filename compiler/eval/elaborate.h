@@ -201,8 +201,7 @@ typedef struct Comprehension {
 
 /* ---- iterations.c: loops whose iterations differ in numbers only are evaluated once ---- */
 typedef struct IterationTrials {
-    uint32_t least;   /* iterations of such a loop */
-    bool     refused; /* something needs iterations by themselves */
+    uint32_t least; /* iterations of such a loop */
     uint32_t loops,
         depth; /* made so far; being tried now, one within a definition that another needs */
     uint32_t statements; /* loops of statements around what runs now */
@@ -226,6 +225,9 @@ bool iterations_possible(const Elaboration *e, const Syntax *comprehension);
 bool iterations_made(Elaboration *e, const Comprehension *c);
 /* While a loop is tried, that a condition must hold in each iteration; false: none is tried. */
 bool iterations_require(Elaboration *e, Node condition);
+/* An iteration of a loop that was made at once, by itself, for what needs its numbers: any other shape as it
+   is.  NULL: a limit was reached. */
+const Shape *iteration_alone(Elaboration *e, const Shape *shape);
 /* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->iteration, to be set
    again behind it. */
 Node iterations_begin_definition(Elaboration *e, Definition *definition);

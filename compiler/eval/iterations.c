@@ -55,15 +55,16 @@ bool iterations_possible(const Elaboration *e, const Syntax *comprehension)
 
 /* ---- what is put back ---- */
 
+/* What a trial adds to, as it was before. */
 typedef struct Before {
     EvaluationMark values;
     GraphMark      graph;
-    size_t said, errors, warnings, parameters, slopes, outlines, materials, half_spaces, checked,
-        functions, defined, required;
-    uint64_t steps;
-    uint32_t printed;
-    size_t   nodes_before;
-    Span     here;
+    Diags          diags;
+    Scene          scene;
+    ShapeBuilder   builder;
+    size_t         parameters, checked, functions, defined, required;
+    uint32_t       printed;
+    Span           here;
 } Before;
 
 static size_t function_count(const Graph *graph)
@@ -75,59 +76,50 @@ static size_t function_count(const Graph *graph)
 static Before remember(Elaboration *e)
 {
     e->iterations->depth++;
-    return (Before){.values       = evaluation_mark(e),
-                    .graph        = graph_mark(e->graph),
-                    .said         = e->diags->count,
-                    .errors       = e->diags->errors,
-                    .warnings     = e->diags->warnings,
-                    .parameters   = e->graph->parameters.count,
-                    .slopes       = e->scene->slopes.count,
-                    .outlines     = e->builder->outlines.count,
-                    .materials    = e->scene->materials.count,
-                    .half_spaces  = e->scene->half_spaces.count,
-                    .checked      = e->checked.count,
-                    .functions    = function_count(e->graph),
-                    .defined      = e->iterations->defined.count,
-                    .required     = e->iterations->required.count,
-                    .steps        = e->steps,
-                    .printed      = e->printed,
-                    .nodes_before = e->builder->nodes_before,
-                    .here         = e->graph->here};
+    return (Before){.values     = evaluation_mark(e),
+                    .graph      = graph_mark(e->graph),
+                    .diags      = *e->diags,
+                    .scene      = *e->scene,
+                    .builder    = *e->builder,
+                    .parameters = e->graph->parameters.count,
+                    .checked    = e->checked.count,
+                    .functions  = function_count(e->graph),
+                    .defined    = e->iterations->defined.count,
+                    .required   = e->iterations->required.count,
+                    .printed    = e->printed,
+                    .here       = e->graph->here};
 }
 
 /* Nothing was reported, and nothing made that an iteration by itself would not make. */
 static bool is_silent(const Elaboration *e, const Before *before)
 {
-    return !is_stopped(e) && e->diags->count == before->said &&
-           e->diags->errors == before->errors && e->diags->warnings == before->warnings &&
-           e->scene->slopes.count == before->slopes &&
-           e->scene->half_spaces.count == before->half_spaces &&
+    const Diags *diags = &before->diags;
+    return !is_stopped(e) && e->diags->count == diags->count && e->diags->errors == diags->errors &&
+           e->diags->warnings == diags->warnings &&
+           e->scene->slopes.count == before->scene.slopes.count &&
+           e->scene->half_spaces.count == before->scene.half_spaces.count &&
            e->checked.count == before->checked && function_count(e->graph) == before->functions;
 }
 
 static void put_back(Elaboration *e, const Before *before)
 {
-    e->diags->count             = before->said;
-    e->diags->errors            = before->errors;
-    e->diags->warnings          = before->warnings;
-    e->graph->parameters.count  = before->parameters;
-    e->scene->slopes.count      = before->slopes;
-    e->scene->materials.count   = before->materials;
-    e->scene->half_spaces.count = before->half_spaces;
-    e->checked.count            = before->checked;
-    e->steps                    = before->steps;
-    e->printed                  = before->printed;
-    e->builder->nodes_before    = before->nodes_before;
-    e->builder->stopped         = false;
-    e->graph->here              = before->here;
+    *e->diags                  = before->diags;
+    *e->scene                  = before->scene;
+    e->graph->parameters.count = before->parameters;
+    e->checked.count           = before->checked;
+    e->printed                 = before->printed;
+    e->graph->here             = before->here;
     for (size_t i = before->defined; i < e->iterations->defined.count; i++)
         e->iterations->defined.items[i]->state = DEFINITION_NEW;
-    if (function_count(e->graph) != before->functions) {
-        graph_keep(e->graph); /* they have nodes */
-        return;
+    ShapeBuilder builder = before->builder;
+    if (function_count(e->graph) !=
+        before->functions) { /* outlines know them, and they have nodes */
+        builder.outlines = e->builder->outlines;
+        graph_keep(e->graph);
+    } else {
+        graph_release(e->graph, before->graph);
     }
-    e->builder->outlines.count = before->outlines;
-    graph_release(e->graph, before->graph);
+    *e->builder = builder;
 }
 
 bool iterations_require(Elaboration *e, Node condition)
@@ -400,16 +392,53 @@ static bool find_iterations(Elaboration *e, Iterated *t, const Before *before)
     return good;
 }
 
+/* By what the evaluator makes one iteration by itself. */
+typedef struct IterationSource {
+    IterationBody body;
+    Environment   env; /* that of the body, kept */
+    size_t        part, part_count;
+} IterationSource;
+
+static const IterationSource *source_of(Elaboration *e, const Iterated *t, size_t part)
+{
+    const Environment top    = {NULL, t->body->env->scope};
+    IterationSource  *source = arena_new(e->arena, IterationSource);
+    *source = (IterationSource){*t->body, keep_names(e, t->body->env, &top), part, t->part_count};
+    source->body.env = &source->env;
+    return source;
+}
+
 static void make_parts(Elaboration *e, Iterated *t)
 {
     graph_keep(e->graph);
     for (size_t k = 0; k < t->part_count; k++) {
         IterationPart *part = &t->parts[k];
         part->iterations    = arena_new_array(e->arena, const Shape *, t->count);
-        make_iterations(e->builder, part->shape, t->leaf, t->iterations, part->boxes, t->count,
-                        part->iterations);
+        make_iterations(e->builder, part->shape, source_of(e, t, k), t->leaf, t->iterations,
+                        part->boxes, t->count, part->iterations);
     }
     e->iterations->loops++;
+}
+
+const Shape *iteration_alone(Elaboration *e, const Shape *shape)
+{
+    if (shape->kind != SHAPE_ITERATION)
+        return shape;
+    const IterationSource *source    = shape->source;
+    const EvaluationMark   mark      = evaluation_mark(e);
+    const Node             iteration = e->iteration;
+    const Syntax          *joining   = e->joining;
+    const Span             here      = e->graph->here;
+    Iterated               t         = {.body = &source->body, .part_count = source->part_count};
+    Environment env = bind(e, &source->env, source->body.variable, value_number(shape->number));
+    e->iteration    = NODE_NONE;
+    e->joining      = NULL;
+    const bool good = source->body.evaluate(e, &env, &t) && t.found == t.part_count;
+    e->iteration    = iteration;
+    e->joining      = joining;
+    e->graph->here  = here;
+    evaluation_forget(e, mark, NULL);
+    return good ? t.parts[source->part].shape : NULL;
 }
 
 bool iterations_try(Elaboration *e, Iterated *t)

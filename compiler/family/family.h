@@ -88,7 +88,8 @@ const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32
 
 /* ---- iteration.c: shapes that a loop makes, which differ in numbers only ---- */
 /* In these iterations the leaf is the number; the boxes are theirs. */
-void make_iterations(ShapeBuilder *builder, const Shape *shared, Node leaf, const double *numbers,
+void make_iterations(ShapeBuilder *builder, const Shape *shared,
+                     const struct IterationSource *source, Node leaf, const double *numbers,
                      const Box *boxes, size_t count, const Shape **iterations);
 
 /* ---- fractal.c: iterations are a whole number of frame time, `most` the most there can be ---- */

@@ -9,12 +9,14 @@
 #include "compiler/family/vary.h"
 #include "compiler/graph/instances/iterations.h"
 
-void make_iterations(ShapeBuilder *builder, const Shape *shared, Node leaf, const double *numbers,
+void make_iterations(ShapeBuilder *builder, const Shape *shared,
+                     const struct IterationSource *source, Node leaf, const double *numbers,
                      const Box *boxes, size_t count, const Shape **iterations)
 {
     Shape *first = shape_new(builder, SHAPE_ITERATION, shared->name, shared->span, NULL, 0);
     shape_takes_over(first, shared);
     first->iterated  = shared;
+    first->source    = source;
     first->iteration = leaf;
     Shape *all       = arena_new_array(builder->arena, Shape, count);
     for (size_t i = 0; i < count; i++) {

@@ -96,53 +96,40 @@ uint32_t min_instances(const Compilation *c)
     return c->request->min_instances ? c->request->min_instances : MIN_INSTANCES;
 }
 
-static void elaborate_with(Compilation *c, IterationTrials *iterations)
-{
-    Graph *graph         = graph_new(&c->work);
-    c->elaborated        = (Scene){.graph = graph,
-                                   .sky   = {.zenith = NODE_NONE},
-                                   .zone  = NODE_NONE,
-                                   .fog   = {.color = NODE_NONE}};
-    ShapeBuilder builder = {.arena      = &c->work,
-                            .scratch    = &c->scratch,
-                            .diags      = &c->diags,
-                            .graph      = graph,
-                            .parameters = &c->elaborated.parameters,
-                            .slopes     = &c->elaborated.slopes,
-                            .for_meshes = c->options->outlines};
-    Elaboration  e       = {.builder       = &builder,
-                            .arena         = &c->work,
-                            .values        = &c->values,
-                            .scratch       = &c->scratch,
-                            .diags         = &c->diags,
-                            .sources       = &c->sources,
-                            .files         = &c->files,
-                            .graph         = graph,
-                            .scene         = &c->elaborated,
-                            .loader        = c->loader,
-                            .iterations    = iterations,
-                            .studio        = c->options->studio,
-                            .figures       = c->options->figures,
-                            .beams         = c->options->beams,
-                            .outlines      = c->options->outlines,
-                            .parameterises = parameterises(c),
-                            .textures      = {.arena = &c->scene->arena}};
-    elaborate(&e);
-    graph_drop_older(graph);
-}
-
-/* Where something asks for the numbers of single iterations, all begins again, iteration by iteration. */
 KrsStatus pass_elaborate(Compilation *c)
 {
-    const Diags     before     = c->diags;
     IterationTrials iterations = {.least = min_instances(c)};
-    elaborate_with(c, c->request->single_iterations ? NULL : &iterations);
-    if (iterations.refused) {
-        c->diags.count    = before.count;
-        c->diags.errors   = before.errors;
-        c->diags.warnings = before.warnings;
-        elaborate_with(c, NULL);
-    }
+    Graph          *graph      = graph_new(&c->work);
+    c->elaborated              = (Scene){.graph = graph,
+                                         .sky   = {.zenith = NODE_NONE},
+                                         .zone  = NODE_NONE,
+                                         .fog   = {.color = NODE_NONE}};
+    ShapeBuilder builder       = {.arena      = &c->work,
+                                  .scratch    = &c->scratch,
+                                  .diags      = &c->diags,
+                                  .graph      = graph,
+                                  .parameters = &c->elaborated.parameters,
+                                  .slopes     = &c->elaborated.slopes,
+                                  .for_meshes = c->options->outlines};
+    Elaboration  e             = {.builder       = &builder,
+                                  .arena         = &c->work,
+                                  .values        = &c->values,
+                                  .scratch       = &c->scratch,
+                                  .diags         = &c->diags,
+                                  .sources       = &c->sources,
+                                  .files         = &c->files,
+                                  .graph         = graph,
+                                  .scene         = &c->elaborated,
+                                  .loader        = c->loader,
+                                  .iterations    = c->request->single_iterations ? NULL : &iterations,
+                                  .studio        = c->options->studio,
+                                  .figures       = c->options->figures,
+                                  .beams         = c->options->beams,
+                                  .outlines      = c->options->outlines,
+                                  .parameterises = parameterises(c),
+                                  .textures      = {.arena = &c->scene->arena}};
+    elaborate(&e);
+    graph_drop_older(graph);
     if (!c->request->inspect) {
         arena_free(&c->syntax);
         arena_free(&c->values);

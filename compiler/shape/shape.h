@@ -226,7 +226,9 @@ struct Shape {
         *iterated;  /* ITERATION: what all iterations of a loop have in common; else NULL.  It is no
                                    child: numbers in it depend on the leaf `iteration` */
     Node iteration; /* ITERATION: the leaf that is `number` in this one; else NODE_NONE */
-    double               number;
+    double number;
+    const struct IterationSource
+                        *source;  /* ITERATION: what the evaluator knows of its loop; else NULL */
     const struct Shape  *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
     const Material      *material;
     const SequenceStage *stages;

@@ -94,6 +94,15 @@ static const Loop at_once[] = {
      "if k != 3 { show ball(i).paint(pick(i)); } } } else { show ball(i); } }"},
     {"statements that show nothing at first",
      "for i in -10..40 { if i > 0 { show ball(i).paint(pick(i)); } }"},
+    {"a hull", "hull(union([sphere(0.2).move(spot(i)) for i in 0..40]))"},
+    {"a hull of some", "hull(union([ball(i) for i in 0..60 if hue(i) < 0.7]))"},
+    {"a hull that is moved",
+     "hull(union([ball(i) for i in 0..40]).move([1, 0, 0])).paint(pick(3))"},
+    {"fillets",
+     "union(box([6, 0.2, 6]), union([ball(i) for i in 0..40]), blend: 0.05, kind: \"fillet\")"},
+    {"fillets, painted and moved",
+     "union(box([6, 0.2, 6]), union([brick(i).move(spot(i)).paint(pick(i)) for i in 0..40])"
+     ".rotate([0, 1, 0], 0.3), blend: 0.05, kind: \"fillet\")"},
     {"noise", "union([sphere(0.3).move(spot(i) + [noise(i + 0.3), 0, 0]) for i in 0..40])"},
 };
 
@@ -130,7 +139,6 @@ static const Loop by_iterations[] = {
     {"a statement behind a condition",
      "for i in 0..40 { if hue(i) < 0.5 { let a = 1; } show ball(i); }"},
     {"statements by the time", "for i in 0..40 { show ball(i).move([sin(time + i), 0, 0]); }"},
-    {"a hull", "hull(union([sphere(0.2).move(spot(i)) for i in 0..40]))"},
 };
 
 typedef struct Asked {

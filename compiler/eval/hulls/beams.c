@@ -58,10 +58,7 @@ static bool add_beams(Beams *b, const Shape *shape)
     switch (shape->kind) {
     case SHAPE_PRIMITIVE: return add_beam(b, shape);
     case SHAPE_TRANSFORM: return add_moved(b, shape);
-    case SHAPE_ITERATION: /* its numbers are known iteration by iteration only */
-        if (b->e->iterations)
-            b->e->iterations->refused = true;
-        return false;
+    case SHAPE_ITERATION: shape = iteration_alone(b->e, shape); return shape && add_beams(b, shape);
     case SHAPE_UNION:
         if (shape->blend.width != NODE_NONE)
             return false;

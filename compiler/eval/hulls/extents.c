@@ -308,7 +308,6 @@ static bool flat_extents(const Gathering *g, const Shape *figure, Extents *flat)
 {
     flat->figure = true;
     extents_add(g->e, figure, flat);
-    g->extents->wants_iterations = g->extents->wants_iterations || flat->wants_iterations;
     return !flat->endless && flat->half_spaces.count == 0;
 }
 
@@ -393,7 +392,11 @@ static void add_shape(const Gathering *g, const Shape *shape, const Placing *pla
     case SHAPE_OFFSET: add_grown(g, shape, placing, shape->values[0], grown); return;
     case SHAPE_TRANSFORM: inner = placing_of_map(graph, &shape->map); break;
     case SHAPE_STRETCH: inner = placing_of_stretch(graph, shape->values[0]); break;
-    case SHAPE_ITERATION: g->extents->wants_iterations = true; return;
+    case SHAPE_ITERATION:
+        shape = iteration_alone(g->e, shape);
+        if (shape)
+            add_shape(g, shape, placing, grown);
+        return;
     case SHAPE_DIFFERENCE: add_children(g, shape, 1, placing, grown); return;
     case SHAPE_CLIP: /* of a CSG node that does not leave the hull of its parts */
         add_children(g, shape->children[0], shape->children[0]->child_count, placing, grown);

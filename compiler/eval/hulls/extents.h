@@ -38,8 +38,6 @@ typedef struct Extents {
     ExtentLines half_spaces; /* of which it is made, beside balls and rims */
     bool        figure;      /* in the plane z = 0 */
     bool        endless;     /* nothing that it is within is known */
-    bool
-        wants_iterations; /* it has an ITERATION: its numbers are known iteration by iteration only */
 } Extents;
 
 /* Adds those of a shape. */

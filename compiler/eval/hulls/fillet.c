@@ -85,6 +85,9 @@ static bool add_parts(Elaboration *e, const Shape *shape, Shapes *parts)
     const bool sharp = shape->kind == SHAPE_UNION && shape->blend.width == NODE_NONE;
     if (parts->count > MAX_PARTS)
         return true; /* reported below */
+    shape = iteration_alone(e, shape);
+    if (!shape)
+        return false;
     if (sharp || wrapper) {
         for (uint32_t i = 0; i < shape->child_count; i++)
             if (!add_parts(e, shape->children[i], parts))
@@ -124,10 +127,6 @@ static bool add_shape_parts(Filleting *f, const Shape *shape, uint32_t owner)
         if (f->parts.count == MAX_PARTS)
             return refuse_many(f, "fillets between more than 20,000 parts");
         extents_add(e, part.shape, &part.extents);
-        if (part.extents.wants_iterations) {
-            e->iterations->refused = true;
-            return false;
-        }
         array_push(e->values, &f->parts, part);
     }
     return true;

@@ -226,7 +226,9 @@ static bool add_shape(const Gathering *g, const Shape *shape, const Place *place
             return refuse_shape(g, shape);
         break;
     case SHAPE_PAINT: warn_of_paint(g, shape); break;
-    case SHAPE_ITERATION: g->e->iterations->refused = true; return false;
+    case SHAPE_ITERATION:
+        shape = iteration_alone(g->e, shape);
+        return shape && add_shape(g, shape, place, grown);
     case SHAPE_EMPTY:
     case SHAPE_SMOOTH: break;
     default: return refuse_shape(g, shape);
