@@ -25,15 +25,27 @@ KrsStatus krs_compile_file_sized(const char *path, const KrsOptions *options, si
     return krs_compile_file(path, options ? &own : NULL, scene);
 }
 
-KrsStatus krs_format_sized(const char *path, const KrsOptions *options, size_t size,
-                           char **formatted, bool *same)
+KrsStatus krs_format_text_sized(const char *text, size_t length, const char *name,
+                                const KrsOptions *options, size_t size, char **formatted,
+                                bool *same)
 {
     KrsOptions own;
     *formatted = NULL;
     *same      = false;
     if (!sized_take(&own, sizeof own, options, size))
         return KRS_BAD_ARGUMENT;
-    return krs_format(path, options ? &own : NULL, formatted, same);
+    return krs_format_text(text, length, name, options ? &own : NULL, formatted, same);
+}
+
+KrsStatus krs_format_file_sized(const char *path, const KrsOptions *options, size_t size,
+                                char **formatted, bool *same)
+{
+    KrsOptions own;
+    *formatted = NULL;
+    *same      = false;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_format_file(path, options ? &own : NULL, formatted, same);
 }
 
 KrsStatus krs_scene_update_sized(const KrsScene *scene, const char *text, size_t length,

@@ -80,17 +80,6 @@ KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsState *frame, const KrsRays 
     return krs_film_add_rays(film, frame, rays ? &own : NULL);
 }
 
-KrsStatus krs_sample_sized(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
-                           size_t count, float *distances, KrsSurfacePoint *surfaces, size_t size)
-{
-    SizedArray array;
-    if (!sized_open(&array, surfaces, size, sizeof(KrsSurfacePoint), count))
-        return KRS_OUT_OF_MEMORY;
-    const KrsStatus status = krs_sample(rendering, frame, points, count, distances, array.own);
-    sized_close(&array, status == KRS_OK ? count : 0);
-    return status;
-}
-
 KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsState *frame,
                                  const double (*points)[3], size_t count, KrsHit *hits, size_t size)
 {

@@ -18,8 +18,10 @@ const SceneRow scene_rows[] = {
 const size_t scene_count = sizeof scene_rows / sizeof scene_rows[0];
 
 static const KrsRenderOptions methods[] = {
-#define METHOD(how, dealt, with_beams) \
-    {.trace = KRS_TRACE_##how, .schedule = KRS_SCHEDULE_##dealt, .no_beams = !(with_beams)},
+#define METHOD(how, dealt, with_beams)         \
+    {.methods.trace    = KRS_TRACE_##how,      \
+     .methods.schedule = KRS_SCHEDULE_##dealt, \
+     .methods.no_beams = !(with_beams)},
 #include "bench/methods.def"
 #undef METHOD
 };
@@ -90,10 +92,11 @@ static void add_methods(Bench *bench, Contest *contest)
         Entry *entry         = add_entry(bench, contest);
         entry->options       = methods[i];
         entry->options.error = entry->error = PERMITTED_ERROR;
-        bool is_default                     = methods[i].trace == KRS_TRACE_DEFAULT;
-        snprintf(entry->name, sizeof entry->name, "%s%s%s%s", krs_trace_names[methods[i].trace],
-                 is_default ? "" : " ", is_default ? "" : krs_schedule_names[methods[i].schedule],
-                 !is_default && !methods[i].no_beams ? " beams" : "");
+        bool is_default                     = methods[i].methods.trace == KRS_TRACE_DEFAULT;
+        snprintf(entry->name, sizeof entry->name, "%s%s%s%s",
+                 krs_trace_names[methods[i].methods.trace], is_default ? "" : " ",
+                 is_default ? "" : krs_schedule_names[methods[i].methods.schedule],
+                 !is_default && !methods[i].methods.no_beams ? " beams" : "");
     }
     contest->methods = contest->count;
 }
@@ -144,10 +147,10 @@ static void add_handwritten(Bench *bench, Contest *contest, const Subject *subje
 
 static void draw_reference(Bench *bench, Contest *contest, Subject *subject, Image *reference)
 {
-    const KrsRenderOptions options = {.trace    = KRS_TRACE_PLAIN,
-                                      .schedule = KRS_SCHEDULE_PIXEL,
-                                      .no_beams = true,
-                                      .error    = REFERENCE_ERROR};
+    const KrsRenderOptions options = {.methods.trace    = KRS_TRACE_PLAIN,
+                                      .methods.schedule = KRS_SCHEDULE_PIXEL,
+                                      .methods.no_beams = true,
+                                      .error            = REFERENCE_ERROR};
     KrsRenderStats         stats;
     subject_render(bench, subject, &options, &stats, reference);
     contest->reference_coverage            = image_coverage(reference);

@@ -37,7 +37,7 @@ Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text, 
                               : krs_compile_file(name, &options, &fixture.scene);
     if (status != KRS_OK || krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
         give_up(name, "it does not compile");
-    if (krs_rendering_new(renderer, fixture.scene, &fixture.rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering) != KRS_OK)
         give_up(name, krs_renderer_message(renderer));
     return fixture;
 }

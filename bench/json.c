@@ -79,9 +79,9 @@ static void add_entry(Text *json, const Results *results, const Contest *contest
     add_text(json, "method", entry->name);
     add_truth(json, "by_hand", entry->written != NULL);
     if (!entry->written) {
-        add_text(json, "trace", krs_trace_names[entry->options.trace]);
-        add_text(json, "schedule", krs_schedule_names[entry->options.schedule]);
-        add_truth(json, "beams", !entry->options.no_beams);
+        add_text(json, "trace", krs_trace_names[entry->options.methods.trace]);
+        add_text(json, "schedule", krs_schedule_names[entry->options.methods.schedule]);
+        add_truth(json, "beams", !entry->options.methods.no_beams);
         add_number(json, "gflops", entry->gflops);
         add_number(json, "peak_share", entry->gflops / results->peak.gflops);
     } else {

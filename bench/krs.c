@@ -22,46 +22,54 @@ static const uint32_t all_levels[] = {4, 8, 14, 20, 28}, quick_levels[] = {4};
 #define NEAR     "bench/scenes/bundle-near.krs"
 #define COMPOUND "bench/scenes/compound.krs"
 #define THICKET  "bench/scenes/thicket.krs"
-#define TOGETHER                              \
-    {                                         \
-        .components = KRS_COMPONENTS_TOGETHER \
+#define TOGETHER                                      \
+    {                                                 \
+        .methods.components = KRS_COMPONENTS_TOGETHER \
     }
-#define PACKED                              \
-    {                                       \
-        .components = KRS_COMPONENTS_PACKED \
+#define PACKED                                      \
+    {                                               \
+        .methods.components = KRS_COMPONENTS_PACKED \
     }
-#define APART                              \
-    {                                      \
-        .components = KRS_COMPONENTS_APART \
+#define APART                                      \
+    {                                              \
+        .methods.components = KRS_COMPONENTS_APART \
     }
-#define BY_PIXEL .schedule = KRS_SCHEDULE_PIXEL
+#define BY_PIXEL .methods.schedule = KRS_SCHEDULE_PIXEL
 const StandRow stand_rows[STAND_COUNT] = {
     [STAND_TREE_STRAIGHTFORWARD] = {"tree, straightforward",
                                     TREE,
                                     28,
                                     STAND_TREE_STRAIGHTFORWARD,
-                                    {.trace = KRS_TRACE_PLAIN, BY_PIXEL, .no_beams = true}},
+                                    {.methods.trace = KRS_TRACE_PLAIN,
+                                     BY_PIXEL,
+                                     .methods.no_beams = true}},
     [STAND_TREE_BEAMS]           = {"tree, the same and beams",
                                     TREE,
                                     28,
                                     STAND_TREE_STRAIGHTFORWARD,
-                                    {.trace = KRS_TRACE_PLAIN, BY_PIXEL}},
+                                    {.methods.trace = KRS_TRACE_PLAIN, BY_PIXEL}},
     [STAND_TREE]                 = {"tree", TREE, 28, STAND_TREE_STRAIGHTFORWARD, {0}},
     [STAND_STRAIGHT]             = {"similarities", STRAIGHT, 28, STAND_STRAIGHT, {0}},
     [STAND_BENT_STRAIGHTFORWARD] = {"Moebius, straightforward",
                                     BENT,
                                     28,
                                     STAND_STRAIGHT,
-                                    {.trace = KRS_TRACE_BINARY, BY_PIXEL, .no_beams = true}},
+                                    {.methods.trace = KRS_TRACE_BINARY,
+                                     BY_PIXEL,
+                                     .methods.no_beams = true}},
     [STAND_BENT_BINARY] =
-        {"Moebius, binary", BENT, 28, STAND_STRAIGHT, {.trace = KRS_TRACE_BINARY}},
+        {"Moebius, binary", BENT, 28, STAND_STRAIGHT, {.methods.trace = KRS_TRACE_BINARY}},
     [STAND_BENT_PREDICTED] =
-        {"Moebius, predicted", BENT, 28, STAND_STRAIGHT, {.trace = KRS_TRACE_PREDICTED}},
-    [STAND_BENT_DIRECTIONAL] =
-        {"Moebius, directional", BENT, 28, STAND_STRAIGHT, {.trace = KRS_TRACE_DIRECTIONAL}},
-    [STAND_BENT_PLAIN] = {"Moebius, centred", BENT, 28, STAND_STRAIGHT, {.trace = KRS_TRACE_PLAIN}},
-    [STAND_BENT]       = {"Moebius", BENT, 28, STAND_STRAIGHT, {0}},
-    [STAND_BUNDLE]     = {"eight kernels a level", BUNDLE, 28, STAND_BUNDLE, {0}},
+        {"Moebius, predicted", BENT, 28, STAND_STRAIGHT, {.methods.trace = KRS_TRACE_PREDICTED}},
+    [STAND_BENT_DIRECTIONAL] = {"Moebius, directional",
+                                BENT,
+                                28,
+                                STAND_STRAIGHT,
+                                {.methods.trace = KRS_TRACE_DIRECTIONAL}},
+    [STAND_BENT_PLAIN] =
+        {"Moebius, centred", BENT, 28, STAND_STRAIGHT, {.methods.trace = KRS_TRACE_PLAIN}},
+    [STAND_BENT]              = {"Moebius", BENT, 28, STAND_STRAIGHT, {0}},
+    [STAND_BUNDLE]            = {"eight kernels a level", BUNDLE, 28, STAND_BUNDLE, {0}},
     [STAND_COMPOUND_TOGETHER] = {"eight trees, as one", COMPOUND, 14, STAND_BUNDLE, TOGETHER},
     [STAND_COMPOUND_PACKED]   = {"eight trees, packed", COMPOUND, 8, STAND_BUNDLE, PACKED},
     [STAND_COMPOUND]          = {"eight trees, apart", COMPOUND, 28, STAND_BUNDLE, APART},

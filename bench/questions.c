@@ -29,8 +29,7 @@ static void inquiry_open(Bench *bench, Inquiry *in, size_t count)
     if (krs_compile_file(path, NULL, &in->scene) != KRS_OK ||
         krs_state_new(in->scene, &in->frame) != KRS_OK)
         fail("cannot compile %s", path);
-    if (krs_rendering_new_for(bench->renderer, in->scene, KRS_FOR_QUESTIONS, &in->rendering) !=
-        KRS_OK)
+    if (krs_rendering_new(bench->renderer, in->scene, KRS_FOR_QUESTIONS, &in->rendering) != KRS_OK)
         fail("%s", krs_renderer_message(bench->renderer));
     in->points = arena_alloc(bench->arena, count * sizeof *in->points, sizeof(double));
     in->aims   = arena_alloc(bench->arena, count * sizeof *in->aims, sizeof(double));

@@ -44,7 +44,8 @@ void subject_open(Bench *bench, Subject *subject, const char *path, uint32_t lev
     if (krs_state_new(subject->scene, &subject->frame) != KRS_OK ||
         krs_state_view(subject->frame, 0, &subject->view) != KRS_OK)
         fail("%s: out of memory", path);
-    if (krs_rendering_new(bench->renderer, subject->scene, &subject->rendering) != KRS_OK)
+    if (krs_rendering_new(bench->renderer, subject->scene, KRS_FOR_PICTURES, &subject->rendering) !=
+        KRS_OK)
         fail("%s: %s", path, krs_renderer_message(bench->renderer));
     subject->program = krs_scene_program(subject->scene);
     subject->pixel   = 2 * tan(subject->view.camera.fov / 2) / bench->height;

@@ -44,7 +44,8 @@ KrsStatus command_dump(Options *options)
     DiagnosticSink sink = {.options = options};
     KrsOptions     with = scene_options(&sink, path);
     scene_enter_compile(path);
-    status = krs_dump(path, options->after, &with, &text);
+    status = krs_dump(scene_input(options, path), options->input_length, path, options->after,
+                      &with, &text);
     scene_print_counts(&sink);
     stage_enter(STAGE_ANSWER);
     if (text)

@@ -37,7 +37,9 @@ static KrsStatus format_file(const Options *options, const char *path)
     DiagnosticSink sink = {.options = options};
     KrsOptions     with = scene_options(&sink, path);
     scene_enter_compile(path);
-    status = krs_format(path, &with, &text, &same);
+    const char *input = scene_input(options, path);
+    status = input ? krs_format_text(input, options->input_length, path, &with, &text, &same)
+                   : krs_format_file(path, &with, &text, &same);
     scene_print_counts(&sink);
     if (status == KRS_OK)
         status = deliver(options, path, text, same);

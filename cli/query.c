@@ -259,7 +259,7 @@ static KrsStatus open_device(Query *query, const KrsScene *scene)
     if (status != KRS_OK)
         return status;
     stage_enter(STAGE_SHADERS);
-    status = krs_rendering_new_for(query->renderer, scene, KRS_FOR_QUESTIONS, &query->rendering);
+    status = krs_rendering_new(query->renderer, scene, KRS_FOR_QUESTIONS, &query->rendering);
     if (status != KRS_OK)
         say("%s", krs_renderer_message(query->renderer));
     return status;

@@ -362,8 +362,8 @@ KrsStatus render_compile(Render *render)
     const Options *options = render->options;
     stage_enter(STAGE_SHADERS);
     console_doing(options, "compiling the shaders");
-    KrsStatus status = krs_rendering_new_for(render->renderer, render->scene, purpose_of(render),
-                                             &render->rendering);
+    KrsStatus status = krs_rendering_new(render->renderer, render->scene, purpose_of(render),
+                                         &render->rendering);
     console_doing(options, NULL);
     if (status != KRS_OK)
         say("%s", krs_renderer_message(render->renderer));

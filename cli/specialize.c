@@ -89,7 +89,7 @@ static KrsScene *compile_structure(const Options *options)
     with.diagnostic = NULL;
     with.specialize = KRS_SPECIALIZE_STRUCTURE;
     scene_enter_compile(path);
-    krs_compile_file(path, &with, &scene); /* NULL where it cannot be compiled */
+    scene_compile(options, path, &with, &scene); /* NULL where it cannot be compiled */
     stage_enter(STAGE_START);
     return scene;
 }

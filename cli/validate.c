@@ -276,8 +276,8 @@ static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *
     for (size_t i = 0; i < BATCH; i++)
         for (int axis = 0; axis < 3; axis++)
             rounded[i][axis] = given[i][axis] = (float)v->points[i][axis];
-    KrsStatus status = krs_sample(rendering, v->frame, (const float(*)[3])given, BATCH, answered,
-                                  NULL);
+    KrsStatus status = krs_device_distance(rendering, v->frame, (const float(*)[3])given, BATCH,
+                                           answered);
     if (status != KRS_OK) {
         say("%s", krs_renderer_message(renderer));
         return status;
@@ -400,7 +400,8 @@ static KrsStatus try_search(Validation *v)
                             .user        = &progress};
     stage_enter(STAGE_VALIDATE);
     progress_start(&progress, options, 1);
-    KrsStatus status = krs_refute(v->path, &with, &how, &result);
+    KrsStatus status = krs_refute(scene_input(options, v->path), options->input_length, v->path,
+                                  &with, &how, &result);
     progress_end(&progress);
     scene_print_counts(&sink);
     return report_search(v, status, &result);
@@ -421,7 +422,7 @@ static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
         status = try_modules(v);
     if (status == KRS_OK && renderer) {
         stage_enter(STAGE_SHADERS);
-        status = krs_rendering_new(renderer, v->scene, &rendering);
+        status = krs_rendering_new(renderer, v->scene, KRS_FOR_PICTURES, &rendering);
         if (status != KRS_OK)
             say("%s", krs_renderer_message(renderer));
     }

@@ -133,7 +133,7 @@ static Fixture fixture_open(KrsRenderer *renderer, const char *name, const char 
     if (krs_compile_text(text, strlen(text), name, &options, &fixture.scene) != KRS_OK ||
         krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
         give_up(name, "it does not compile");
-    if (krs_rendering_new(renderer, fixture.scene, &fixture.rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering) != KRS_OK)
         give_up(name, krs_renderer_message(renderer));
     return fixture;
 }
@@ -149,12 +149,12 @@ static void fixture_close(Fixture *fixture)
 static KrsPicture *shoot(const Fixture *fixture, const struct Variant *variant)
 {
     KrsPicture      *picture;
-    KrsRenderOptions options = {.width        = WIDTH,
-                                .height       = HEIGHT,
-                                .trace        = variant->trace,
-                                .normals      = variant->normals,
-                                .no_occlusion = true,
-                                .aovs         = KRS_AOV_COLOR};
+    KrsRenderOptions options = {.width           = WIDTH,
+                                .height          = HEIGHT,
+                                .methods.trace   = variant->trace,
+                                .methods.normals = variant->normals,
+                                .no_occlusion    = true,
+                                .aovs            = KRS_AOV_COLOR};
     if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
         give_up(variant->name, krs_renderer_message(fixture->renderer));
     return picture;

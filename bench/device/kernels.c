@@ -31,7 +31,7 @@ void print_shaders(KrsRenderer *renderer, const char *path)
         krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
         give_up(path, "it does not compile");
     printf("| %s | front end | %.0f | |\n", name, clock_ms() - start);
-    if (krs_rendering_new_for(renderer, fixture.scene, KRS_FOR_QUESTIONS, &fixture.rendering))
+    if (krs_rendering_new(renderer, fixture.scene, KRS_FOR_QUESTIONS, &fixture.rendering))
         give_up(path, krs_renderer_message(renderer));
     KrsRendering *r = fixture.rendering;
     rendering_choose(r, &trace, &schedule);

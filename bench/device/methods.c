@@ -16,14 +16,14 @@ typedef struct Method {
 
 static const Method methods[] = {
     {"default", {0}, 0},
-    {"schedule pixel", {.schedule = KRS_SCHEDULE_PIXEL}, 0},
-    {"schedule refill", {.schedule = KRS_SCHEDULE_REFILL}, 0},
-    {"schedule queue", {.schedule = KRS_SCHEDULE_QUEUE}, 0},
-    {"without beams", {.no_beams = true}, 0},
-    {"plain steps", {.trace = KRS_TRACE_PLAIN}, 0},
-    {"components together", {.components = KRS_COMPONENTS_TOGETHER}, 0},
-    {"components apart", {.components = KRS_COMPONENTS_APART}, 0},
-    {"components packed", {.components = KRS_COMPONENTS_PACKED}, 0},
+    {"schedule pixel", {.methods.schedule = KRS_SCHEDULE_PIXEL}, 0},
+    {"schedule refill", {.methods.schedule = KRS_SCHEDULE_REFILL}, 0},
+    {"schedule queue", {.methods.schedule = KRS_SCHEDULE_QUEUE}, 0},
+    {"without beams", {.methods.no_beams = true}, 0},
+    {"plain steps", {.methods.trace = KRS_TRACE_PLAIN}, 0},
+    {"components together", {.methods.components = KRS_COMPONENTS_TOGETHER}, 0},
+    {"components apart", {.methods.components = KRS_COMPONENTS_APART}, 0},
+    {"components packed", {.methods.components = KRS_COMPONENTS_PACKED}, 0},
     {"bands of 2^14 pixels", {0}, 1 << 14},
     {"bands of 2^16 pixels", {0}, 1 << 16},
     {"slices of 5 ms", {.slice_ms = 5}, 0},
@@ -76,7 +76,7 @@ void print_methods(KrsRenderer *renderer, const char *path, Size size, bool earl
         options.samples          = 1;
         krs_rendering_free(fixture.rendering); /* and its band */
         limit_band(renderer, methods[i].band, usual);
-        if (krs_rendering_new_for(renderer, fixture.scene, KRS_FOR_QUESTIONS, &fixture.rendering))
+        if (krs_rendering_new(renderer, fixture.scene, KRS_FOR_QUESTIONS, &fixture.rendering))
             give_up(path, krs_renderer_message(renderer));
         KrsPicture *picture = render_best(&fixture, &options);
         print_row(methods[i].name, early_outs, picture, first ? first : picture);

@@ -54,26 +54,26 @@ static double mean_light(const KrsPicture *picture)
 
 static KrsRenderOptions of_path(KrsTrace trace, KrsStarts starts)
 {
-    return (KrsRenderOptions){.width      = WIDTH,
-                              .height     = HEIGHT,
-                              .samples    = PATH_SAMPLES,
-                              .integrator = KRS_INTEGRATOR_PATH,
-                              .aovs       = KRS_AOV_COLOR,
-                              .trace      = trace,
-                              .starts     = starts};
+    return (KrsRenderOptions){.width          = WIDTH,
+                              .height         = HEIGHT,
+                              .samples        = PATH_SAMPLES,
+                              .integrator     = KRS_INTEGRATOR_PATH,
+                              .aovs           = KRS_AOV_COLOR,
+                              .methods.trace  = trace,
+                              .methods.starts = starts};
 }
 
 static void compare_steps(const Fixture *fixture)
 {
     static const KrsTrace methods[] = {KRS_TRACE_PLAIN, KRS_TRACE_RELAXED, KRS_TRACE_AUTO};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-        KrsRenderOptions primary = {.width    = WIDTH,
-                                    .height   = HEIGHT,
-                                    .samples  = 1,
-                                    .no_beams = true,
-                                    .aovs     = KRS_AOV_DEPTH,
-                                    .trace    = methods[i],
-                                    .schedule = KRS_SCHEDULE_PIXEL};
+        KrsRenderOptions primary = {.width            = WIDTH,
+                                    .height           = HEIGHT,
+                                    .samples          = 1,
+                                    .methods.no_beams = true,
+                                    .aovs             = KRS_AOV_DEPTH,
+                                    .methods.trace    = methods[i],
+                                    .methods.schedule = KRS_SCHEDULE_PIXEL};
         KrsRenderOptions paths   = of_path(methods[i], KRS_STARTS_PRECISION);
         double           first, all;
         KrsPicture *seen = shoot(fixture, &primary, &first), *lit = shoot(fixture, &paths, &all);
@@ -120,12 +120,12 @@ static const char corner[] =
 /* The mean light of the whole picture, this many pixels a side. */
 static double corner_light(const Fixture *fixture, uint32_t side, KrsStarts starts)
 {
-    KrsRenderOptions options = {.width      = side,
-                                .height     = side,
-                                .samples    = 65536 * 16 / side / side,
-                                .integrator = KRS_INTEGRATOR_PATH,
-                                .aovs       = KRS_AOV_COLOR,
-                                .starts     = starts};
+    KrsRenderOptions options = {.width          = side,
+                                .height         = side,
+                                .samples        = 65536 * 16 / side / side,
+                                .integrator     = KRS_INTEGRATOR_PATH,
+                                .aovs           = KRS_AOV_COLOR,
+                                .methods.starts = starts};
     KrsPicture      *picture = fixture_render(fixture, &options);
     double           sum     = 0;
     for (size_t i = 0; i < side * side; i++)
@@ -254,13 +254,13 @@ static void compare_hits(KrsRenderer *renderer)
     for (int m = 0; m < 3; m++)
         for (int e = 0; e < 2; e++)
             for (int i = 0; i < 4; i++) {
-                KrsRenderOptions options = {.width        = WIDTH,
-                                            .height       = HEIGHT,
-                                            .samples      = 1,
-                                            .no_occlusion = true,
-                                            .error        = errors[e],
-                                            .trace        = methods[m],
-                                            .even_hits    = iterations[i]};
+                KrsRenderOptions options = {.width             = WIDTH,
+                                            .height            = HEIGHT,
+                                            .samples           = 1,
+                                            .no_occlusion      = true,
+                                            .error             = errors[e],
+                                            .methods.trace     = methods[m],
+                                            .methods.even_hits = iterations[i]};
                 double           all;
                 KrsPicture      *picture = shoot(&fixture, &options, &all);
                 find_distances(&fixture, picture, distances);
@@ -310,16 +310,16 @@ static void compare_few_steps(KrsRenderer *renderer)
                 "\n| %s, steps | rays not ended after %d | after %d |\n| --- | --- | --- |\n",
                 scenes[0] + 9, FEW, FEWER);
     for (int i = 0; i < 3; i++) {
-        KrsRenderOptions options = {.width        = WIDTH,
-                                    .height       = HEIGHT,
-                                    .samples      = 1,
-                                    .no_beams     = true,
-                                    .no_occlusion = true,
-                                    .max_steps    = FEW,
-                                    .trace        = methods[i]};
-        KrsPicture      *few     = fixture_render(&fixture, &options);
-        options.max_steps        = FEWER;
-        KrsPicture *fewer        = fixture_render(&fixture, &options);
+        KrsRenderOptions options  = {.width             = WIDTH,
+                                     .height            = HEIGHT,
+                                     .samples           = 1,
+                                     .methods.no_beams  = true,
+                                     .no_occlusion      = true,
+                                     .methods.max_steps = FEW,
+                                     .methods.trace     = methods[i]};
+        KrsPicture      *few      = fixture_render(&fixture, &options);
+        options.methods.max_steps = FEWER;
+        KrsPicture *fewer         = fixture_render(&fixture, &options);
         sheet_print(&sheet, "| %s | %llu | %llu |\n", krs_trace_names[methods[i]],
                     (unsigned long long)few->stats.unresolved,
                     (unsigned long long)fewer->stats.unresolved);

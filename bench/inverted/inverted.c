@@ -44,13 +44,13 @@ static Sheet sheet;
 
 static KrsPicture *shoot(const Fixture *fixture, KrsTrace trace, bool beams, double error)
 {
-    return fixture_render(fixture, &(KrsRenderOptions){.width         = WIDTH,
-                                                       .height        = HEIGHT,
-                                                       .samples       = 1,
-                                                       .trace         = trace,
-                                                       .no_beams      = !beams,
-                                                       .error         = error,
-                                                       .no_upsampling = true,
+    return fixture_render(fixture, &(KrsRenderOptions){.width                 = WIDTH,
+                                                       .height                = HEIGHT,
+                                                       .samples               = 1,
+                                                       .methods.trace         = trace,
+                                                       .methods.no_beams      = !beams,
+                                                       .error                 = error,
+                                                       .methods.no_upsampling = true,
                                                        .aovs = KRS_AOV_DEPTH | KRS_AOV_IDS});
 }
 

@@ -73,13 +73,13 @@ static void tell(const KrsPicture *picture, KrsTrace method)
 
 static void shoot(const Fixture *fixture, KrsTrace method, int place)
 {
-    KrsRenderOptions options = {.width    = WIDTH,
-                                .height   = HEIGHT,
-                                .samples  = 1,
-                                .no_beams = true,
-                                .aovs     = KRS_AOV_COLOR | KRS_AOV_STEPS,
-                                .trace    = method,
-                                .schedule = KRS_SCHEDULE_PIXEL};
+    KrsRenderOptions options = {.width            = WIDTH,
+                                .height           = HEIGHT,
+                                .samples          = 1,
+                                .methods.no_beams = true,
+                                .aovs             = KRS_AOV_COLOR | KRS_AOV_STEPS,
+                                .methods.trace    = method,
+                                .methods.schedule = KRS_SCHEDULE_PIXEL};
     KrsPicture      *picture = fixture_render(fixture, &options);
     put(picture, place);
     tell(picture, method);

@@ -73,12 +73,12 @@ static Fixture fixture_of(KrsRenderer *renderer, const struct Flight *flight)
 
 static void shoot(const Fixture *fixture, int frame, uint32_t samples, bool plain, Shot *shot)
 {
-    KrsRenderOptions options = {.width     = WIDTH,
-                                .height    = HEIGHT,
-                                .samples   = samples,
-                                .aovs      = KRS_AOV_COLOR,
-                                .no_filter = plain,
-                                .seed      = samples > 16 ? 7 : 0};
+    KrsRenderOptions options = {.width             = WIDTH,
+                                .height            = HEIGHT,
+                                .samples           = samples,
+                                .aovs              = KRS_AOV_COLOR,
+                                .methods.no_filter = plain,
+                                .seed              = samples > 16 ? 7 : 0};
     krs_state_set_time(fixture->frame, frame);
     KrsPicture *picture = fixture_render(fixture, &options);
     shot->ms            = 0;
@@ -203,11 +203,11 @@ enum { LARGE_WIDTH = 1280, LARGE_HEIGHT = 720, TURNS = 7 };
 
 static void time_once(const Fixture *fixture, bool plain, double *normals, double *all)
 {
-    KrsRenderOptions options = {.width     = LARGE_WIDTH,
-                                .height    = LARGE_HEIGHT,
-                                .samples   = 1,
-                                .aovs      = KRS_AOV_COLOR,
-                                .no_filter = plain};
+    KrsRenderOptions options = {.width             = LARGE_WIDTH,
+                                .height            = LARGE_HEIGHT,
+                                .samples           = 1,
+                                .aovs              = KRS_AOV_COLOR,
+                                .methods.no_filter = plain};
     KrsPicture      *picture = fixture_render(fixture, &options);
     *normals                 = picture->stats.phase_ms[KRS_PHASE_NORMALS];
     *all                     = picture->stats.total_ms;
@@ -236,11 +236,11 @@ static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
 static void widen(KrsRenderer *renderer, const struct Flight *flight)
 {
     Fixture          fixture = fixture_of(renderer, flight);
-    KrsRenderOptions options = {.width     = FINE * WIDTH,
-                                .height    = FINE * HEIGHT,
-                                .samples   = 1,
-                                .aovs      = KRS_AOV_COLOR,
-                                .no_filter = true};
+    KrsRenderOptions options = {.width             = FINE * WIDTH,
+                                .height            = FINE * HEIGHT,
+                                .samples           = 1,
+                                .aovs              = KRS_AOV_COLOR,
+                                .methods.no_filter = true};
     krs_state_set_time(fixture.frame, 0);
     KrsPicture *fine = fixture_render(&fixture, &options);
     pixel_filter_rows(&sheet, flight->name, fine);

@@ -26,11 +26,11 @@ static Sheet sheet;
 
 static KrsPicture *shoot(const Fixture *fixture, KrsNormals normals, double error, bool plain)
 {
-    return fixture_render(fixture, &(KrsRenderOptions){.width     = WIDTH,
-                                                       .height    = HEIGHT,
-                                                       .error     = error,
-                                                       .normals   = normals,
-                                                       .no_filter = plain});
+    return fixture_render(fixture, &(KrsRenderOptions){.width             = WIDTH,
+                                                       .height            = HEIGHT,
+                                                       .error             = error,
+                                                       .methods.normals   = normals,
+                                                       .methods.no_filter = plain});
 }
 
 /* Degrees. */
@@ -133,8 +133,8 @@ static void find_normals(const Fixture *fixture, KrsNormals normals, float reach
         points[i][1]   = p[1] + reach * v.y;
         points[i][2]   = p[2] + reach * v.z;
     }
-    if (krs_sample(fixture->rendering, fixture->frame, (const float(*)[3])points,
-                   count * stencil.taps, distances, NULL) != KRS_OK)
+    if (krs_device_distance(fixture->rendering, fixture->frame, (const float(*)[3])points,
+                            count * stencil.taps, distances) != KRS_OK)
         give_up("cannot sample", krs_renderer_message(fixture->renderer));
     for (size_t i = 0; i < count; i++) {
         float sum[3] = {0};

@@ -33,8 +33,13 @@ typedef struct DiagnosticSink {
     size_t         errors, warnings; /* printed so far */
 } DiagnosticSink;
 
-/* For krs_compile_file and krs_dump of that scene; `sink` must outlive the call. */
+/* For compiling that scene; `sink` must outlive the call. */
 KrsOptions scene_options(DiagnosticSink *sink, const char *path);
+/* The text of a scene that is standard input; NULL: it is the file. */
+const char *scene_input(const Options *options, const char *path);
+/* Compiles the one or the other. */
+KrsStatus scene_compile(const Options *options, const char *path, const KrsOptions *with,
+                        KrsScene **scene);
 /* The folder that the scene may read from; NULL: any. */
 const char *scene_root(const Options *options, const char *path);
 /* From here on the scene of that file is compiled. */

@@ -78,8 +78,8 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
     return (KrsOptions){.diagnostic   = print_diagnostic,
                         .user         = sink,
                         .specialize   = find_specialize(options),
-                        .gradients    = options->how.normals == KRS_NORMALS_ANALYTIC,
-                        .research     = options->how.trace >= KRS_TRACE_TAYLOR,
+                        .gradients    = options->how.methods.normals == KRS_NORMALS_ANALYTIC,
+                        .research     = options->how.methods.trace >= KRS_TRACE_TAYLOR,
                         .memory_limit = options->limits.memory,
                         .studio       = shows_pictures(options) && !options->no_studio,
                         .pictures     = shows_pictures(options),
@@ -88,9 +88,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .beams        = options->command == COMMAND_MESH && options->mesh_beams,
                         .figures      = takes_figures(options),
                         .outlines     = options->command == COMMAND_MESH,
-                        .root         = scene_root(options, path),
-                        .text         = is_input(options, path) ? options->input : NULL,
-                        .text_length  = options->input_length};
+                        .root         = scene_root(options, path)};
 }
 
 void scene_print_counts(const DiagnosticSink *sink)
@@ -172,6 +170,19 @@ void scene_enter_compile(const char *path)
     stage_enter(STAGE_COMPILE);
 }
 
+const char *scene_input(const Options *options, const char *path)
+{
+    return is_input(options, path) ? options->input : NULL;
+}
+
+KrsStatus scene_compile(const Options *options, const char *path, const KrsOptions *with,
+                        KrsScene **scene)
+{
+    const char *input = scene_input(options, path);
+    return input ? krs_compile_text(input, options->input_length, path, with, scene)
+                 : krs_compile_file(path, with, scene);
+}
+
 KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
 {
     *scene           = NULL;
@@ -182,7 +193,7 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
     DiagnosticSink sink = {.options = options};
     KrsOptions     with = scene_options(&sink, path);
     console_doing(options, "compiling the scene");
-    status = krs_compile_file(path, &with, scene);
+    status = scene_compile(options, path, &with, scene);
     console_doing(options, NULL);
     scene_print_counts(&sink);
     if (status == KRS_OK)

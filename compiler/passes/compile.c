@@ -236,8 +236,8 @@ static KrsStatus load_and_compile(const char *text, size_t length, const char *n
                           .options = options,
                           .loader  = &loader,
                           .name    = name,
-                          .loaded  = {.text = text, .length = length}};
-    if (!text && options->text)
+                          .loaded  = {.text = text, .length = text ? length : 0}};
+    if (!text && options->text) /* as programs of before 0.3 */
         c.loaded = (Loaded){.text = options->text, .length = options->text_length};
     if (loader_open(&loader, options->root, name))
         status = compile(&c, scene);
@@ -267,52 +267,76 @@ KrsStatus krs_check_text(const char *text, size_t length, const char *name,
     return status;
 }
 
-static KrsStatus compile_path(const char *path, const KrsOptions *options, const Request *request,
-                              KrsScene **scene)
-{
-    return load_and_compile(NULL, 0, path, options, request, scene);
-}
-
 KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene)
 {
-    return compile_path(path, options, &scene_alone, scene);
+    return load_and_compile(NULL, 0, path, options, &scene_alone, scene);
 }
 
-KrsStatus krs_dump(const char *path, const char *after, const KrsOptions *options, char **dump)
+KrsStatus krs_dump(const char *text, size_t length, const char *name, const char *after,
+                   const KrsOptions *options, char **dump)
 {
     KrsScene *scene;
     Request   request = {.after = find_pass(after), .end = PASS_COUNT, .dump = dump};
     *dump             = NULL;
     if (request.after == PASS_COUNT)
         return KRS_BAD_ARGUMENT;
-    KrsStatus status = compile_path(path, options, &request, &scene);
+    KrsStatus status = load_and_compile(text, length, name, options, &request, &scene);
     scene_free(scene);
     return status;
 }
 
-KrsStatus krs_format(const char *path, const KrsOptions *options, char **formatted, bool *same)
+/* Copies a text to memory of the caller's allocator. */
+static KrsStatus hand_out(const KrsOptions *options, const char *text, char **copy)
+{
+    const KrsAllocator *allocator = options ? &options->allocator : NULL;
+    const size_t        size      = strlen(text) + 1;
+    *copy = allocator && allocator->allocate ? allocator->allocate(allocator->user, size)
+                                             : malloc(size);
+    if (!*copy)
+        return KRS_OUT_OF_MEMORY;
+    memcpy(*copy, text, size);
+    return KRS_OK;
+}
+
+static KrsStatus format_text(const char *text, size_t length, const char *name,
+                             const KrsOptions *options, char **formatted, bool *same)
 {
     KrsScene *scene;
-    Request   request = {
-          .after = PASS_COUNT, .end = PASS_parse + 1, .dump = formatted, .format = same};
+    char     *found  = NULL;
+    Request request  = {.after = PASS_COUNT, .end = PASS_parse + 1, .dump = &found, .format = same};
     *formatted       = NULL;
     *same            = false;
-    KrsStatus status = compile_path(path, options, &request, &scene);
+    KrsStatus status = load_and_compile(text, length, name, options, &request, &scene);
     scene_free(scene);
-    if (status == KRS_OK && !*formatted)
+    if (status == KRS_OK && !found)
         status = KRS_OUT_OF_MEMORY;
-    if (status != KRS_OK) {
-        free(*formatted);
-        *formatted = NULL;
-    }
+    if (status == KRS_OK)
+        status = hand_out(options, found, formatted);
+    free(found);
     return status;
 }
 
-KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *visit, void *user)
+KrsStatus krs_format_text(const char *text, size_t length, const char *name,
+                          const KrsOptions *options, char **formatted, bool *same)
+{
+    *formatted = NULL;
+    *same      = false;
+    if (!text && length > 0)
+        return KRS_BAD_ARGUMENT;
+    return format_text(text ? text : "", length, name, options, formatted, same);
+}
+
+KrsStatus krs_format_file(const char *path, const KrsOptions *options, char **formatted, bool *same)
+{
+    return format_text(NULL, 0, path, options, formatted, same);
+}
+
+KrsStatus inspect_text(const char *text, size_t length, const char *name, const KrsOptions *options,
+                       Inspect *visit, void *user)
 {
     KrsScene *scene;
     Request   request = {.after = PASS_COUNT, .end = PASS_COUNT, .inspect = visit, .user = user};
-    KrsStatus status  = compile_path(path, options, &request, &scene);
+    KrsStatus status  = load_and_compile(text, length, name, options, &request, &scene);
     scene_free(scene);
     return status;
 }

@@ -43,10 +43,10 @@ typedef struct KrsRefutation {
     size_t   estimates;   /* shapes whose distance is an estimate */
 } KrsRefutation;
 
-/* Runs the search.  KRS_BAD_SCENE: refuted, or the scene does not compile; KRS_INTERRUPTED: `progress`
+/* Runs the search in a text or, where that is NULL, in the file `name`.  KRS_BAD_SCENE: refuted, or the scene does not compile; KRS_INTERRUPTED: `progress`
    ended the search. */
-KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
-                     KrsRefutation *result);
+KrsStatus krs_refute(const char *text, size_t length, const char *name, const KrsOptions *options,
+                     const KrsRefuteOptions *how, KrsRefutation *result);
 
 /* As krs_distance, but as shaders find it: where the clearance of a grid's cell is less than the
    distance to the parts that its list has, it is that clearance (graph/grid.h). */
@@ -71,9 +71,10 @@ const KrsPass *krs_find_pass(const char *word);
 KrsStatus krs_check_text(const char *text, size_t length, const char *name,
                          const KrsOptions *options);
 
-/* Compiles a file, and writes the result of the pass `after` as text, which the caller frees with
+/* Compiles a text or, where that is NULL, the file `name`, and writes the result of the pass `after` as text, which the caller frees with
    free().  If a pass refuses the scene, the text is that of `after` if it ran before, else "".
    KRS_BAD_ARGUMENT, and NULL: there is no such pass. */
-KrsStatus krs_dump(const char *path, const char *after, const KrsOptions *options, char **text);
+KrsStatus krs_dump(const char *text, size_t length, const char *name, const char *after,
+                   const KrsOptions *options, char **dump);
 
 #endif

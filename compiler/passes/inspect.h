@@ -19,9 +19,10 @@ typedef struct Inspected {
 
 typedef KrsStatus Inspect(void *user, const Inspected *what);
 
-/* Compiles a file, calls `inspect` and returns its status.  The compiled scene is freed.  Warnings
+/* Compiles a text or, where that is NULL, the file `name`, calls `inspect` and returns its status.  The compiled scene is freed.  Warnings
    of the compiler are not reported. */
-KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *inspect, void *user);
+KrsStatus inspect_text(const char *text, size_t length, const char *name, const KrsOptions *options,
+                       Inspect *inspect, void *user);
 
 /* The same of a text, for which only the passes up to `elaborate` run. */
 KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,

@@ -284,10 +284,10 @@ static KrsStatus refute(void *user, const Inspected *in)
     return refute_inspected(in, attempt->how, attempt->result);
 }
 
-KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
-                     KrsRefutation *result)
+KrsStatus krs_refute(const char *text, size_t length, const char *name, const KrsOptions *options,
+                     const KrsRefuteOptions *how, KrsRefutation *result)
 {
     Attempt attempt = {how, result};
     *result         = (KrsRefutation){0};
-    return inspect_file(path, options, refute, &attempt);
+    return inspect_text(text, length, name, options, refute, &attempt);
 }

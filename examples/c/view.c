@@ -68,7 +68,7 @@ static void *prepare(void *at)
     if ((stage->renderer || krs_renderer_new(NULL, &stage->renderer) == KRS_OK) &&
         krs_compile_file(path, &options, &stage->scene) == KRS_OK &&
         krs_state_new(stage->scene, &stage->frame) == KRS_OK)
-        krs_rendering_new(stage->renderer, stage->scene, &stage->rendering);
+        krs_rendering_new(stage->renderer, stage->scene, KRS_FOR_PICTURES, &stage->rendering);
     atomic_store(&ends, true);
     glfwPostEmptyEvent();
     return NULL;

@@ -92,6 +92,55 @@ typedef enum KrsCatcher {
 } KrsCatcher;
 extern const char *const krs_catcher_names[KRS_MAX_CHOICES];
 
+/*
+ * How a picture is found, for who compares methods: pictures are the same within the permitted error, but take other
+ * times.  Zero asks for the fastest that is known.
+ */
+typedef struct KrsMethods {
+    uint32_t      max_steps;     /* of a primary ray; 0: 16384, which is also the most */
+    uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
+    KrsTrace      trace;
+    KrsSchedule   schedule;
+    KrsComponents components;
+    KrsNormals    normals;
+    KrsStarts     starts;
+    uint32_t      even_hits; /* iterations that even hits out along their rays (Keinert et al. 2014,
+                                 3.4); 0: none; at most KRS_MAX_EVEN_HITS */
+    bool          no_beams;  /* rays of a tile do not share the marching of empty space */
+    bool          no_upsampling; /* neighbours do not share rays to lights, and such rays are sent
+                                    even where a light is proven to be visible */
+    bool          no_filter;   /* detail finer than a pixel changes neither normals nor roughness */
+    uint64_t      reserved[8]; /* 0: this is a part of KrsRenderOptions, and keeps its size */
+} KrsMethods;
+
+/* They were members of KrsRenderOptions itself before 0.3. */
+#ifdef KRS_NO_DEPRECATED
+#define KRS_WITH_OLD_METHODS(member) member
+#else
+#ifdef __GNUC__
+#define KRS_UNNAMED __extension__
+#else
+#define KRS_UNNAMED
+#endif
+#define KRS_WITH_OLD_METHODS(member)                                          \
+    KRS_UNNAMED union {                                                       \
+        member;                                                               \
+        KRS_UNNAMED struct {                                                  \
+            uint32_t most_steps      KRS_DEPRECATED("methods.max_steps");     \
+            uint32_t steps_at_once   KRS_DEPRECATED("methods.steps_at_once"); \
+            KrsTrace trace           KRS_DEPRECATED("methods.trace");         \
+            KrsSchedule schedule     KRS_DEPRECATED("methods.schedule");      \
+            KrsComponents components KRS_DEPRECATED("methods.components");    \
+            KrsNormals normals       KRS_DEPRECATED("methods.normals");       \
+            KrsStarts starts         KRS_DEPRECATED("methods.starts");        \
+            uint32_t even_hits       KRS_DEPRECATED("methods.even_hits");     \
+            bool no_beams            KRS_DEPRECATED("methods.no_beams");      \
+            bool no_upsampling       KRS_DEPRECATED("methods.no_upsampling"); \
+            bool no_filter           KRS_DEPRECATED("methods.no_filter");     \
+        };                                                                    \
+    }
+#endif
+
 #ifdef __GNUC__
 #pragma GCC visibility pop
 #endif

@@ -51,6 +51,9 @@ KRS_RENAMED(KrsStatus, krs_frame_set_zones, krs_state_set_zones,
 KRS_RENAMED(KrsStatus, krs_frame_camera, krs_state_camera,
             (KrsState * state, size_t index, KrsCamera *camera), (state, index, camera))
 
+KRS_RENAMED(KrsStatus, krs_format, krs_format_file,
+            (const char *path, const KrsOptions *options, char **formatted, bool *same),
+            (path, options, formatted, same))
 typedef KrsLocation KrsPlace    KRS_DEPRECATED("KrsLocation");
 typedef KrsTransform KrsPlacing KRS_DEPRECATED("KrsTransform");
 KRS_RENAMED(KrsStatus, krs_camera_place, krs_camera_location,

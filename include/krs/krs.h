@@ -47,7 +47,7 @@ extern "C" {
 #ifdef KRS_LIBRARY
 #define KRS_NO_DEPRECATED
 #endif
-#if defined __GNUC__ && !defined KRS_NO_DEPRECATION_WARNINGS
+#if defined __GNUC__ && !defined KRS_NO_DEPRECATION_WARNINGS && !defined KRS_LIBRARY
 #define KRS_DEPRECATED(instead) __attribute__((deprecated("use " instead)))
 #else
 #define KRS_DEPRECATED(instead)
@@ -164,11 +164,11 @@ typedef struct KrsOptions {
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
        must be in the folder for `use` to work.  NULL: all files may be read. */
     const char *root;
-    /* The text of the scene, where krs_compile_file has only its name; NULL: it is read. */
-    const char      *text;
-    size_t           text_length;
-    KrsLoadCallback *load;      /* supplies the files that are used; NULL: they are read */
-    void            *load_user; /* handed to `load` */
+    /* The text of the scene, where krs_compile_file has only its name: use krs_compile_text. */
+    const char *text   KRS_DEPRECATED("krs_compile_text");
+    size_t text_length KRS_DEPRECATED("krs_compile_text");
+    KrsLoadCallback   *load;      /* supplies the files that are used; NULL: they are read */
+    void              *load_user; /* handed to `load` */
     /* To know whether a scene must be compiled again, as after an edit.  The text of the scene and
        files of the standard library are not told of where they are not read from disk. */
     KrsOpenedCallback *opened;      /* may be NULL */
@@ -190,15 +190,17 @@ void krs_scene_free(KrsScene *scene);
 
 /*
  * Lays out the text of a scene in the canonical way, which docs/language.md describes: blanks change, but
- * no word, comment or break between lines.  Of the options, those count that say how the text is read;
- * files that it uses are not read.
+ * no word, comment or break between lines.  It is a text in memory, or a file, as of krs_compile_text.  Of the options,
+ * those count that say how the text is read; files that it uses are not read.
  *
- * On KRS_OK the caller frees *formatted with free(), and *same says whether it is equal to the text
- * that was read.  On any other status *formatted is NULL.  KRS_BAD_SCENE: the text is no scene, and
+ * On KRS_OK the caller releases *formatted by the allocator of the options, or by free() where there is none, and *same
+ * says whether it is equal to the text that was read.  On any other status *formatted is NULL.  KRS_BAD_SCENE: the text is no scene, and
  * diagnostics say why; KRS_IO_ERROR: it cannot be read; KRS_OUT_OF_MEMORY.
  */
-KRS_SIZED KrsStatus krs_format(const char *path, const KrsOptions *options, char **formatted,
-                               bool *same);
+KRS_SIZED KrsStatus krs_format_text(const char *text, size_t length, const char *name,
+                                    const KrsOptions *options, char **formatted, bool *same);
+KRS_SIZED KrsStatus krs_format_file(const char *path, const KrsOptions *options, char **formatted,
+                                    bool *same);
 
 /* What is different in an edited scene. */
 typedef enum KrsChange {

@@ -17,8 +17,11 @@ KrsStatus krs_compile_text_sized(const char *text, size_t length, const char *na
                                  const KrsOptions *options, size_t size, KrsScene **scene);
 KrsStatus krs_compile_file_sized(const char *path, const KrsOptions *options, size_t size,
                                  KrsScene **scene);
-KrsStatus krs_format_sized(const char *path, const KrsOptions *options, size_t size,
-                           char **formatted, bool *same);
+KrsStatus krs_format_text_sized(const char *text, size_t length, const char *name,
+                                const KrsOptions *options, size_t size, char **formatted,
+                                bool *same);
+KrsStatus krs_format_file_sized(const char *path, const KrsOptions *options, size_t size,
+                                char **formatted, bool *same);
 KrsStatus krs_scene_update_sized(const KrsScene *scene, const char *text, size_t length,
                                  KrsScene **updated, KrsChanges *changes, size_t size);
 KrsStatus krs_scene_reload_sized(const KrsScene *scene, KrsScene **updated, KrsChanges *changes,
@@ -67,10 +70,15 @@ KRS_SIZED KrsStatus krs_compile_file(const char *path, const KrsOptions *options
 {
     return krs_compile_file_sized(path, options, sizeof *options, scene);
 }
-KRS_SIZED KrsStatus krs_format(const char *path, const KrsOptions *options, char **formatted,
-                               bool *same)
+KRS_SIZED KrsStatus krs_format_text(const char *text, size_t length, const char *name,
+                                    const KrsOptions *options, char **formatted, bool *same)
 {
-    return krs_format_sized(path, options, sizeof *options, formatted, same);
+    return krs_format_text_sized(text, length, name, options, sizeof *options, formatted, same);
+}
+KRS_SIZED KrsStatus krs_format_file(const char *path, const KrsOptions *options, char **formatted,
+                                    bool *same)
+{
+    return krs_format_file_sized(path, options, sizeof *options, formatted, same);
 }
 KRS_SIZED KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
                                      KrsScene **updated, KrsChanges *changes)

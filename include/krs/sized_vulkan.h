@@ -26,8 +26,6 @@ KrsStatus krs_film_new_sized(KrsRendering *rendering, const KrsRenderOptions *op
 KrsStatus krs_film_add_sized(KrsFilm *film, KrsState *state, const KrsCamera *camera, size_t size,
                              uint32_t samples);
 KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsState *state, const KrsRays *rays, size_t size);
-KrsStatus krs_sample_sized(KrsRendering *rendering, KrsState *state, const float (*points)[3],
-                           size_t count, float *distances, KrsSurfacePoint *surfaces, size_t size);
 KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsState *state,
                                  const double (*points)[3], size_t count, KrsHit *hits,
                                  size_t size);
@@ -74,11 +72,6 @@ KRS_SIZED KrsStatus krs_film_add(KrsFilm *film, KrsState *state, const KrsCamera
 KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsRays *rays)
 {
     return krs_film_add_rays_sized(film, state, rays, sizeof *rays);
-}
-KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsState *state, const float (*points)[3],
-                               size_t count, float *distances, KrsSurfacePoint *surfaces)
-{
-    return krs_sample_sized(rendering, state, points, count, distances, surfaces, sizeof *surfaces);
 }
 KRS_SIZED KrsStatus krs_device_probe(KrsRendering *rendering, KrsState *state,
                                      const double (*points)[3], size_t count, KrsHit *hits)

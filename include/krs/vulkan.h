@@ -112,14 +112,13 @@ typedef enum KrsPurpose {
                               earlier, and are slower.  Pictures differ within the permitted error */
 } KrsPurpose;
 
-/* Compiles the scene's shaders, for pictures.  The scene must outlive the rendering.  On any status
+/* Compiles the scene's shaders, for a purpose.  The scene must outlive the rendering.  On any status
    but KRS_OK *rendering is NULL: KRS_OUT_OF_MEMORY, KRS_INTERRUPTED, KRS_INTERNAL.
 
    To go on rendering meanwhile, compile by a second renderer, in a thread of its own: whichever
    rendering is ready is shown, and the other renderer is free for the next edit. */
-KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **rendering);
-KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
-                                KrsRendering **rendering);
+KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
+                            KrsRendering **rendering);
 void      krs_rendering_free(KrsRendering *rendering);
 
 /* A compute shader that a picture or a query is made by. */
@@ -233,24 +232,12 @@ typedef struct KrsRenderOptions {
     double     catcher_reflectance; /* head on, from 0 to KRS_MAX_REFLECTANCE; 0: 0.04 */
     KRS_WAS(uint32_t aovs, uint32_t planes, "aovs"); /* bits of KrsAov; 0: all but noise, which is
                                     there where samples end by it */
-    KRS_WAS(uint32_t max_steps, uint32_t most_steps,
-            "max_steps");        /* of a primary ray; 0: 16384, which is also the most */
-    uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
-    KrsTrace      trace;
-    KrsSchedule   schedule;
-    KrsShadows    shadows;
-    KrsComponents components;
-    KrsNormals    normals;
-    KrsStarts     starts;
-    uint32_t      even_hits; /* iterations that even hits out along their rays (Keinert et al. 2014,
-                                 3.4); 0: none; at most KRS_MAX_EVEN_HITS */
-    KrsPixelFilter pixel_filter;  /* not of rays of a list, which stand where the caller has them */
-    bool           no_beams;      /* rays of a tile do not share the marching of empty space */
-    bool           no_upsampling; /* neighbours do not share rays to lights, and such rays are sent
-                                    even where a light is proven to be visible */
-    bool           no_occlusion;  /* corners get as much light of the sky as open places */
-    bool           no_filter; /* detail finer than a pixel changes neither normals nor roughness */
-    double         slice_ms;  /* how long a dispatch should take; 0: 50 */
+    KrsShadows     shadows;
+    KrsPixelFilter pixel_filter; /* not of rays of a list, which stand where the caller has them */
+    bool           no_occlusion; /* corners get as much light of the sky as open places */
+    double         slice_ms;     /* how long a dispatch should take; 0: 50 */
+    KRS_WITH_OLD_METHODS(
+        KrsMethods methods);       /* by which the picture is found; {0}: the fastest known */
     KrsProgressCallback *progress; /* may be NULL */
     void                *user;     /* handed to `progress` */
 } KrsRenderOptions;
@@ -406,30 +393,10 @@ KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsR
    KRS_BAD_ARGUMENT: there is no sample, or no such AOV; KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
 KrsStatus krs_film_read(KrsFilm *film, uint32_t aovs, KrsPicture **picture);
 
-/* The material and surface at a point, as the device computes them: the members of KrsHit that
-   surface.def has, and these. */
-typedef struct KrsSurfacePoint {
-    float distance;  /* as the function of the surface computes it */
-    float normal[3]; /* for lighting */
-#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
-#include "krs/surface.def"
-#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
-    float name KRS_NUMBERS_##type;
-#include "krs/surface.def"
-} KrsSurfacePoint;
-
-/* Evaluates the scene on the device at `count` points in world units: distances, as krs_distance
-   in single precision, and what is there; either may be NULL.  In scenes with many parts that are
-   alike, a distance may be less far from them, never more; near surfaces it is as on the host.
-   Where it is constant around a point the normal by differences is 0, and what is there is that of
-   some part.  KRS_BAD_ARGUMENT: `points` is NULL and `count` is not 0; KRS_OUT_OF_MEMORY,
-   KRS_INTERNAL. */
-KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsState *state, const float (*points)[3],
-                               size_t count, float *distances, KrsSurfacePoint *surfaces);
-
 /*
- * Queries of the device, for large batches: krs_probe and krs_raycast (krs.h) in single
- * precision, with the same arguments and answers.  Numbers beyond 1e18 are refused as well.
+ * Queries of the device, for large batches: krs_distance, krs_probe and krs_raycast (krs.h) in single
+ * precision.  Points and distances of krs_device_distance are of single precision themselves, since there may be
+ * millions of them; the others have the same arguments and answers.  Numbers beyond 1e18 are refused as well.
  *
  * In simple scenes distances are accurate to a few units in the last place of the coordinates,
  * and so is t beyond the tolerance.  For sequences of dozens of mirrors it is some hundred
@@ -437,12 +404,14 @@ KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsState *state, const f
  * box.  What is far from the origin for its size is asked about relative to a point near it, so that
  * normals are those of the same thing at the origin: differences over a thousandth of what a batch
  * of 16384 sees, or of its coordinates where those are no more than ten times as large.  At points far from
- * many alike parts, distances and normals are those of krs_sample.  A tolerance of 0 asks for
+ * many alike parts, distances may be less, never more, and where they are constant the normal is 0.  A tolerance of 0 asks for
  * the accuracy of single precision.  A ray is unresolved after 8192 steps.
  *
  * KRS_BAD_ARGUMENT (nothing is answered), KRS_OUT_OF_MEMORY, KRS_INTERNAL; what is written to
  * `hits` is then undefined.  Memory does not grow with `count`.
  */
+KrsStatus krs_device_distance(KrsRendering *rendering, KrsState *state, const float (*points)[3],
+                              size_t count, float *distances);
 KRS_SIZED KrsStatus krs_device_probe(KrsRendering *rendering, KrsState *state,
                                      const double (*points)[3], size_t count, KrsHit *hits);
 KRS_SIZED KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *state,

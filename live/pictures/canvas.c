@@ -193,8 +193,8 @@ static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool path
     KrsRendering *rendering = NULL;
     KrsStatus     status    = krs_state_new(scene, &frame);
     if (status == KRS_OK)
-        status = krs_rendering_new_for(canvas->renderer, scene,
-                                       paths ? KRS_FOR_PATHS : KRS_FOR_PICTURES, &rendering);
+        status = krs_rendering_new(canvas->renderer, scene,
+                                   paths ? KRS_FOR_PATHS : KRS_FOR_PICTURES, &rendering);
     if (status != KRS_OK) {
         krs_state_free(frame);
         return status;
@@ -260,7 +260,7 @@ static KrsStatus try_out(Canvas *canvas, const View *view)
         return status;
     const float point[1][3] = {{0, 0, 0}};
     float       distance;
-    return krs_sample(canvas->rendering, canvas->frame, point, 1, &distance, NULL);
+    return krs_device_distance(canvas->rendering, canvas->frame, point, 1, &distance);
 }
 
 KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsProgressCallback *compiling,
@@ -383,8 +383,8 @@ float *canvas_slopes(Canvas *canvas, const KrsPicture *picture)
     bool   good      = points && steps && slopes && distances;
     if (good) {
         const size_t used = place_points(picture, points, steps);
-        good = krs_sample(canvas->rendering, canvas->frame, (const float(*)[3])points, 2 * used,
-                          distances, NULL) == KRS_OK;
+        good = krs_device_distance(canvas->rendering, canvas->frame, (const float(*)[3])points,
+                                   2 * used, distances) == KRS_OK;
         for (size_t i = 0, at = 0; good && i < count; i++)
             if (picture->component[i] != 0) {
                 slopes[i] = fabsf(distances[2 * at + 1] - distances[2 * at]) / (2 * steps[at]);

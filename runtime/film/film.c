@@ -314,7 +314,7 @@ static KrsStatus add_moment(KrsFilm *film, const Addition *a)
                .gpu            = &film->rendering->renderer->gpu,
                .options        = film->options,
                .asked_schedule = film->asked_schedule,
-               .schedule       = film->options.schedule,
+               .schedule       = film->options.methods.schedule,
                .rays           = a->rays,
                .cover          = resident_cover(&film->options),
                .part_begun     = a->part_begun,

@@ -38,27 +38,38 @@ static int find_name(const char *const *names, const char *name, int otherwise)
     return otherwise;
 }
 
+/* Tells whether methods have nothing that only later libraries know. */
+static bool methods_are_known(const KrsMethods *methods)
+{
+    for (size_t i = 0; i < sizeof methods->reserved / sizeof *methods->reserved; i++)
+        if (methods->reserved[i] != 0)
+            return false;
+    return true;
+}
+
 /* Checks the choices of choices.def, and replaces defaults among them. */
 static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *asked)
 {
-    if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
+    if ((unsigned)o->methods.trace >= KRS_TRACE_COUNT ||
+        (unsigned)o->methods.schedule >= KRS_SCHEDULE_COUNT ||
         (unsigned)o->shadows >= KRS_SHADOWS_COUNT ||
-        (unsigned)o->components >= KRS_COMPONENTS_COUNT ||
-        (unsigned)o->normals >= KRS_NORMALS_COUNT ||
+        (unsigned)o->methods.components >= KRS_COMPONENTS_COUNT ||
+        (unsigned)o->methods.normals >= KRS_NORMALS_COUNT ||
         (unsigned)o->pixel_filter >= KRS_PIXEL_FILTER_COUNT ||
-        (unsigned)o->starts >= KRS_STARTS_COUNT || (unsigned)o->catcher >= KRS_CATCHER_COUNT ||
-        o->even_hits > KRS_MAX_EVEN_HITS || (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
+        (unsigned)o->methods.starts >= KRS_STARTS_COUNT ||
+        (unsigned)o->catcher >= KRS_CATCHER_COUNT || o->methods.even_hits > KRS_MAX_EVEN_HITS ||
+        (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT || !methods_are_known(&o->methods))
         return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow, "
                                  "filter or integrator");
-    if (research_trace(o->trace) && !rendering->program->research)
+    if (research_trace(o->methods.trace) && !rendering->program->research)
         return refuse(rendering, "this method wants a scene that was compiled with `research`");
-    if (o->normals == KRS_NORMALS_ANALYTIC && !rendering->program->gradients)
+    if (o->methods.normals == KRS_NORMALS_ANALYTIC && !rendering->program->gradients)
         return refuse(rendering,
                       "analytic normals need a scene that was compiled with `gradients`");
-    o->normals = rendering_normals(rendering, o->normals);
-    *asked     = o->schedule;
-    rendering_choose(rendering, &o->trace, &o->schedule);
-    if (o->schedule == KRS_SCHEDULE_REFILL && rendering->renderer->gpu.refill_lanes == 0)
+    o->methods.normals = rendering_normals(rendering, o->methods.normals);
+    *asked             = o->methods.schedule;
+    rendering_choose(rendering, &o->methods.trace, &o->methods.schedule);
+    if (o->methods.schedule == KRS_SCHEDULE_REFILL && rendering->renderer->gpu.refill_lanes == 0)
         return refuse(rendering,
                       "the device's lanes cannot exchange numbers, which `refill` needs");
     return true;
@@ -82,9 +93,9 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     o->bounces = first_nonzero(o->bounces, image->bounces, KRS_DEFAULT_BOUNCES);
     o->aovs    = first_nonzero(o->aovs, 0, KRS_AOV_ALL & ~KRS_AOV_NOISE) |
               (o->noise > 0 ? KRS_AOV_NOISE : 0);
-    o->max_steps     = first_nonzero(o->max_steps, 0, MAX_STEPS);
-    o->steps_at_once = first_nonzero(o->steps_at_once, 0,
-                                     o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
+    o->methods.max_steps     = first_nonzero(o->methods.max_steps, 0, MAX_STEPS);
+    o->methods.steps_at_once = first_nonzero(
+        o->methods.steps_at_once, 0, o->methods.schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
     if (o->pixel_filter == KRS_PIXEL_FILTER_DEFAULT)
         o->pixel_filter = (KrsPixelFilter)find_name(krs_pixel_filter_names, image->pixel_filter,
@@ -129,7 +140,8 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
         return refuse(rendering, "the roughness of a plate is at most 1, its reflectance 0.99");
     if (!(o->max_radiance >= 0))
         return refuse(rendering, "the most radiance of a ray must be above 0");
-    if (!(o->slice_ms > 0) || o->max_steps > MAX_STEPS || o->steps_at_once > MAX_STEPS_AT_ONCE)
+    if (!(o->slice_ms > 0) || o->methods.max_steps > MAX_STEPS ||
+        o->methods.steps_at_once > MAX_STEPS_AT_ONCE)
         return refuse(rendering,
                       "slices must be longer than nothing, and rays have at most 16384 steps");
     return true;

@@ -303,8 +303,8 @@ static bool find_secondary(Preview *p)
     const KrsRenderOptions *options = &p->job->options;
     if (!needs_secondary(p->job))
         return true;
-    p->by_roots  = rendering_has_roots(p->job->rendering, options->trace);
-    p->secondary = rendering_secondary(p->job->rendering, options->schedule, p->by_roots);
+    p->by_roots  = rendering_has_roots(p->job->rendering, options->methods.trace);
+    p->secondary = rendering_secondary(p->job->rendering, options->methods.schedule, p->by_roots);
     if (!options->no_occlusion)
         p->occluders = rendering_occluders(p->job->rendering);
     return p->secondary && (options->no_occlusion || p->occluders);
@@ -315,7 +315,7 @@ bool preview_plan(Job *job, Plan *plan)
     const KrsRenderOptions *options = &job->options;
     Preview                 p       = {.job = job, .plan = plan};
     Primary                 primary;
-    p.filters_shadows = !options->no_upsampling && options->shadows == KRS_SHADOWS_SOFT;
+    p.filters_shadows = !options->methods.no_upsampling && options->shadows == KRS_SHADOWS_SOFT;
     bool shares       = !options->no_occlusion || (p.filters_shadows && needs_secondary(job));
     plan->halo        = shares ? TILE : 0;
     plan->has_paths   = job->rendering->program->mirrors;

@@ -26,7 +26,7 @@ static_assert(sizeof(NextDispatchBlock) <= sizeof(WorkBlock), "push constants");
 
 bool dispatch_chains(const Job *job)
 {
-    return !gpu_is_cpu(job->gpu) && job->options.schedule != KRS_SCHEDULE_REFILL;
+    return !gpu_is_cpu(job->gpu) && job->options.methods.schedule != KRS_SCHEDULE_REFILL;
 }
 
 /* ---- Slices ---- */
@@ -176,7 +176,7 @@ static bool run_in_slices(Job *job, const Dispatch *dispatch)
 /* The cost of a workgroup, in items: later passes of rays have more steps. */
 static double weight_of(const Job *job, const Dispatch *dispatch)
 {
-    double steps = job->options.steps_at_once;
+    double steps = job->options.methods.steps_at_once;
     return dispatch->in_group *
            (dispatch->phase == KRS_PHASE_PRIMARY ? fmax(dispatch->work.steps / steps, 1) : 1);
 }
@@ -363,7 +363,7 @@ LaneBudget pixel_budget(const Job *job)
 
 LaneBudget lane_budget(const Job *job)
 {
-    uint32_t steps = job->options.steps_at_once;
+    uint32_t steps = job->options.methods.steps_at_once;
     if (job->schedule == KRS_SCHEDULE_REFILL)
         steps = 8 * steps < MAX_LANE_STEPS ? 8 * steps : MAX_LANE_STEPS;
     steps = rendering_steps_within(job->rendering, steps);

@@ -32,9 +32,10 @@ const Shader *job_pixel_shader(const Job *job, PixelShader shader)
 bool job_has_beams(const Job *job)
 {
     const uint32_t least = MAX_BEAM_STEPS / 2;
-    return !job->options.no_beams && !job->rays && job->view.camera.projection != KRS_PANORAMA &&
+    return !job->options.methods.no_beams && !job->rays &&
+           job->view.camera.projection != KRS_PANORAMA &&
            job->view.camera.aperture == 0 && /* else the rays of a tile do not meet in the eye */
-           rendering_has_beams(job->rendering, job->options.trace) &&
+           rendering_has_beams(job->rendering, job->options.methods.trace) &&
            rendering_steps_within(job->rendering, least) == least;
 }
 
@@ -47,9 +48,9 @@ uint32_t tiles_of_band(const WorkBlock *work)
    is finer than a pixel, which several samples do by themselves.  bench/minify found the number. */
 static float normal_reach(const KrsRenderOptions *options)
 {
-    bool one_sided = options->normals == KRS_NORMALS_FORWARD ||
-                     options->normals == KRS_NORMALS_ANALYTIC;
-    return options->no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
+    bool one_sided = options->methods.normals == KRS_NORMALS_FORWARD ||
+                     options->methods.normals == KRS_NORMALS_ANALYTIC;
+    return options->methods.no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
 }
 
 static bool is_camera_relative(const Job *job)
@@ -103,7 +104,7 @@ static bool prepare_frame_block(Job *job)
     if (view.sky.map)
         job->frame.sky_power = (float)(view.sky.intensity * sky_table_irradiance(job->rendering));
     job->frame.error        = (float)job->options.error;
-    job->frame.max_steps    = job->options.max_steps;
+    job->frame.max_steps    = job->options.methods.max_steps;
     job->frame.normal_reach = normal_reach(&job->options);
     job->frame.snaps        = job->options.integrator != KRS_INTEGRATOR_PREVIEW;
     return true;

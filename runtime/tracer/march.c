@@ -113,7 +113,7 @@ static bool run_beams(Job *job, const March *march, const WorkBlock *work)
 static uint32_t next_steps(const Job *job, const ControlBlock *control, uint32_t steps)
 {
     if (control->source != ITEMS_QUEUED)
-        steps = job->options.steps_at_once;
+        steps = job->options.methods.steps_at_once;
     else if (steps < MAX_PASS_STEPS)
         steps *= 2;
     return rendering_steps_within(job->rendering, steps);
@@ -165,8 +165,8 @@ static LaneBudget ray_budget(const Job *job)
     LaneBudget     budget = lane_budget(job);
     const uint32_t most   = rendering_steps_within(job->rendering, UINT32_MAX);
     if (!rendering_saves_rays(job->rendering, job->schedule) &&
-        budget.steps > most - job->options.max_steps)
-        budget.steps = most - job->options.max_steps;
+        budget.steps > most - job->options.methods.max_steps)
+        budget.steps = most - job->options.methods.max_steps;
     return budget;
 }
 
@@ -229,7 +229,7 @@ bool march_run(Job *job, const March *march, const WorkBlock *work)
     bool good                              = !march->beams || run_beams(job, march, work);
     job->progress_share                    = progress_share;
     good                                   = good && trace(job, march, work);
-    job->schedule                          = job->options.schedule;
+    job->schedule                          = job->options.methods.schedule;
     memcpy(frame->low, job->frame.low, sizeof frame->low);
     memcpy(frame->high, job->frame.high, sizeof frame->high);
     return good;

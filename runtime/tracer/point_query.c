@@ -31,7 +31,7 @@ bool point_query_prepare(KrsRendering *rendering)
     return true;
 }
 
-static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePoint *surface)
+static void take_answer(const AnswerBlock *answer, float *distance, SurfacePoint *surface)
 {
     if (distance)
         *distance = answer->distance;
@@ -67,8 +67,8 @@ bool point_query_run(KrsRendering *rendering, uint32_t count, double step)
     return gpu_finish(gpu, &ms);
 }
 
-KrsStatus krs_sample(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
-                     size_t count, float *distances, KrsSurfacePoint *surfaces)
+KrsStatus point_query_sample(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
+                             size_t count, float *distances, SurfacePoint *surfaces)
 {
     renderer_clear(rendering->renderer);
     if (!points && count > 0) {
@@ -93,4 +93,10 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsState *frame, const float (*poi
                         surfaces ? &surfaces[first + i] : NULL);
     }
     return KRS_OK;
+}
+
+KrsStatus krs_device_distance(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
+                              size_t count, float *distances)
+{
+    return point_query_sample(rendering, frame, points, count, distances, NULL);
 }

@@ -54,7 +54,7 @@ static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
     KrsRendering        *r   = job->rendering;
     const KrsMarchGroup *own = &r->program->march_groups[group - 1];
     KrsSchedule schedule     = rendering_schedule_of_march_group(r, job->asked_schedule, group);
-    Shader     *shader       = rendering_trace(r, job->options.trace, schedule, group);
+    Shader     *shader       = rendering_trace(r, job->options.methods.trace, schedule, group);
     *march                   = (March){.rays     = shader,
                                        .beams    = job_has_beams(job) ? shader : NULL,
                                        .schedule = schedule,
@@ -72,7 +72,7 @@ static bool find_normals(Job *job, Primary *primary)
 {
     if (!primary)
         return true;
-    primary->normals = rendering_normals_shader(job->rendering, job->options.normals, 0);
+    primary->normals = rendering_normals_shader(job->rendering, job->options.methods.normals, 0);
     return primary->normals != NULL;
 }
 
@@ -82,7 +82,7 @@ static bool add_planes(Job *job, Primary *primary)
     OwnGroup *group = &primary->groups[primary->group_count];
     if (!rendering_knows_planes(job->rendering))
         return true;
-    *group = (OwnGroup){0, rendering_normals_shader(job->rendering, job->options.normals,
+    *group = (OwnGroup){0, rendering_normals_shader(job->rendering, job->options.methods.normals,
                                                     KRS_MARCH_GROUP_OF_PLANES)};
     primary->group_count++;
     return group->normals != NULL;
@@ -92,7 +92,8 @@ static bool add_planes(Job *job, Primary *primary)
 static bool find_own_normals(Job *job, uint32_t march_group, OwnGroup *group)
 {
     *group = (OwnGroup){
-        march_group, rendering_normals_shader(job->rendering, job->options.normals, march_group)};
+        march_group,
+        rendering_normals_shader(job->rendering, job->options.methods.normals, march_group)};
     return group->normals != NULL;
 }
 
@@ -100,7 +101,7 @@ static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
 {
     uint32_t     groups[KRS_MAX_MARCH_GROUPS];
     const size_t count       = sort_groups(job, groups);
-    const bool   own_normals = primary && job->options.normals != KRS_NORMALS_ANALYTIC;
+    const bool   own_normals = primary && job->options.methods.normals != KRS_NORMALS_ANALYTIC;
     for (size_t i = 0; i < count; i++) {
         March march;
         if (!march_of_group(job, groups[i], i == 0, &march))
@@ -130,14 +131,16 @@ static bool add_whole(Job *job, Plan *plan, float weight)
 {
     const KrsRenderOptions *options = &job->options;
     KrsRendering           *r       = job->rendering;
-    const bool outside = job->begins_outside, planes = rendering_knows_planes(r) && outside;
-    const bool packed = outside && rendering_marches_packed(r, options->components, options->trace);
-    const uint32_t group = packed ? MARCH_PACKED : planes ? MARCH_WITHOUT_PLANES : 0;
-    March          march = {
-                 .schedule = options->schedule, .phase = KRS_PHASE_PRIMARY, .flops = r->program->flops};
-    march.rays = rendering_trace(r, options->trace, options->schedule, group);
+    const bool     outside = job->begins_outside, planes = rendering_knows_planes(r) && outside;
+    const bool     packed = outside && rendering_marches_packed(r, options->methods.components,
+                                                                options->methods.trace);
+    const uint32_t group  = packed ? MARCH_PACKED : planes ? MARCH_WITHOUT_PLANES : 0;
+    March          march  = {.schedule = options->methods.schedule,
+                             .phase    = KRS_PHASE_PRIMARY,
+                             .flops    = r->program->flops};
+    march.rays = rendering_trace(r, options->methods.trace, options->methods.schedule, group);
     if (job_has_beams(job))
-        march.beams = rendering_beams(r, options->trace, options->schedule, group);
+        march.beams = rendering_beams(r, options->methods.trace, options->methods.schedule, group);
     if (planes)
         clip_to_rest(job, &march);
     plan_add_march(plan, &march, weight);
@@ -147,7 +150,7 @@ static bool add_whole(Job *job, Plan *plan, float weight)
 March primary_march_of_paths(const Job *job, Shader *shader)
 {
     March march = {.rays     = shader,
-                   .schedule = job->options.schedule,
+                   .schedule = job->options.methods.schedule,
                    .phase    = KRS_PHASE_BOUNCES,
                    .of_paths = true,
                    .flops    = job->rendering->program->flops};
@@ -201,12 +204,12 @@ bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
 {
     KrsRendering *r             = job->rendering;
     const bool    per_component = job->begins_outside &&
-                               rendering_marches_per_component(r, job->options.components);
+                               rendering_marches_per_component(r, job->options.methods.components);
     if (primary)
         *primary = (Primary){0};
-    const ResearchTrace *research = research_trace(job->options.trace);
+    const ResearchTrace *research = research_trace(job->options.methods.trace);
     if (research && !job->begins_outside)
-        job->options.trace = research->from_inside;
+        job->options.methods.trace = research->from_inside;
     if (per_component || job_has_beams(job))
         plan_add(plan, (Pass){.kind = PASS_CLEAR, .phase = KRS_PHASE_BEAMS});
     bool added = per_component ? add_groups(job, plan, weight, primary)

@@ -10,6 +10,20 @@
 enum { POINTS_AT_ONCE = 16384 };
 /* Makes room for that many points, and their answers. */
 bool point_query_prepare(KrsRendering *rendering);
+/* The material and surface at a point, as shaders compute them: the members of KrsHit that surface.def has, and these. */
+typedef struct SurfacePoint {
+    float distance;  /* as the function of the surface computes it */
+    float normal[3]; /* for lighting */
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
+#include "krs/surface.def"
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    float name KRS_NUMBERS_##type;
+#include "krs/surface.def"
+} SurfacePoint;
+/* As krs_device_distance, and what is at the points; either may be NULL.  Where the distance is constant around a point
+   the normal by differences is 0, and what is there is that of some part. */
+KrsStatus point_query_sample(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
+                             size_t count, float *distances, SurfacePoint *surfaces);
 /* Tells how large what is asked about is: the longest side of the box around all but planes; 1 where that has
    no end. */
 double point_query_size(const KrsRendering *rendering);

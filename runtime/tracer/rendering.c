@@ -150,13 +150,8 @@ static void set_scene(KrsRendering *rendering, const KrsScene *scene)
     rendering->rays       = rendering->scene_rays;
 }
 
-KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
-{
-    return krs_rendering_new_for(renderer, scene, KRS_FOR_PICTURES, out);
-}
-
-KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
-                                KrsRendering **out)
+KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
+                            KrsRendering **out)
 {
     *out = NULL;
     renderer_clear(renderer);

@@ -156,21 +156,21 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
                      PathShaders *shaders)
 {
     const RayKind rays  = rendering->rays;
-    const bool    roots = rendering_has_roots(rendering, options->trace);
+    const bool    roots = rendering_has_roots(rendering, options->methods.trace);
     const bool    paths = purpose == KRS_FOR_PATHS;
     rendering->rays     = rendering_mixes_rays(rendering) ? rays : RAYS_OF_PATHS;
-    shaders->march   = rendering_trace(rendering, trace_of_paths(options->trace), options->schedule,
-                                       group_of_paths(rendering));
-    rendering->rays  = paths ? RAYS_OF_PATHS : rendering->rays;
-    shaders->normals = rendering_normals_shader(rendering, options->normals, 0);
-    rendering->rays  = paths ? RAYS_OF_PATHS : rays; /* those of pictures are for paths, too */
-    shaders->scatter = paths ? find_shader(rendering, "scatter.comp",
-                                           variant_of_scatter(rendering, options->starts,
-                                                              options->integrator))
-                             : rendering_shade(rendering);
-    shaders->shadows = find_shader(
-        rendering, "secondary.comp",
-        variant_of_rays(rendering, options->schedule, roots, options->integrator));
+    shaders->march      = rendering_trace(rendering, trace_of_paths(options->methods.trace),
+                                          options->methods.schedule, group_of_paths(rendering));
+    rendering->rays     = paths ? RAYS_OF_PATHS : rendering->rays;
+    shaders->normals    = rendering_normals_shader(rendering, options->methods.normals, 0);
+    rendering->rays     = paths ? RAYS_OF_PATHS : rays; /* those of pictures are for paths, too */
+    shaders->scatter    = paths ? find_shader(rendering, "scatter.comp",
+                                              variant_of_scatter(rendering, options->methods.starts,
+                                                                 options->integrator))
+                                : rendering_shade(rendering);
+    shaders->shadows    = find_shader(
+           rendering, "secondary.comp",
+           variant_of_rays(rendering, options->methods.schedule, roots, options->integrator));
     rendering->rays = rays;
     return shaders->march && shaders->normals && shaders->scatter && shaders->shadows;
 }

@@ -94,7 +94,34 @@ static void use_members(void)
         .most_radiance = 2, .most_steps = 99, .planes = KRS_PLANE_COLOR | KRS_PLANE_DEPTH};
     const KrsPlane color = KRS_PLANE_COLOR;
     check(options.aovs == (KRS_AOV_COLOR | KRS_AOV_DEPTH) && color == KRS_AOV_COLOR, "AOVs");
-    check(options.max_radiance == 2 && options.max_steps == 99, "options of pictures");
+    check(options.max_radiance == 2 && options.methods.max_steps == 99, "options of pictures");
+    const KrsRenderOptions methods = {.steps_at_once = 7,
+                                      .trace         = KRS_TRACE_PLAIN,
+                                      .schedule      = KRS_SCHEDULE_QUEUE,
+                                      .components    = KRS_COMPONENTS_TOGETHER,
+                                      .normals       = KRS_NORMALS_FORWARD,
+                                      .starts        = KRS_STARTS_DISTANCE,
+                                      .even_hits     = 3,
+                                      .no_beams      = true,
+                                      .no_upsampling = true,
+                                      .no_filter     = true};
+    const KrsMethods       same    = {.steps_at_once = 7,
+                                      .trace         = KRS_TRACE_PLAIN,
+                                      .schedule      = KRS_SCHEDULE_QUEUE,
+                                      .components    = KRS_COMPONENTS_TOGETHER,
+                                      .normals       = KRS_NORMALS_FORWARD,
+                                      .starts        = KRS_STARTS_DISTANCE,
+                                      .even_hits     = 3,
+                                      .no_beams      = true,
+                                      .no_upsampling = true,
+                                      .no_filter     = true};
+    check(methods.methods.steps_at_once == same.steps_at_once &&
+              methods.methods.trace == same.trace && methods.methods.schedule == same.schedule &&
+              methods.methods.components == same.components &&
+              methods.methods.normals == same.normals && methods.methods.starts == same.starts &&
+              methods.methods.even_hits == same.even_hits && methods.methods.no_beams &&
+              methods.methods.no_upsampling && methods.methods.no_filter,
+          "methods");
     const KrsRenderStats stats = {.most_evaluations_per_ray = 5, .kernels = 7};
     check(stats.max_evaluations_per_ray == 5 && stats.shaders == 7, "statistics");
     const KrsRendererOptions renderer = {.complaint      = hear,
@@ -122,7 +149,7 @@ static void use_texts(const KrsScene *scene, KrsFrame *frame)
           "there is no texture");
 }
 
-static void use_device(const KrsScene *scene)
+static void use_device(const KrsScene *scene, KrsFrame *frame)
 {
     KrsRenderer       *renderer;
     KrsRendering      *rendering;
@@ -136,13 +163,40 @@ static void use_device(const KrsScene *scene)
     check(krs_rendering_kernels(rendering, kernels, 2) > 2, "kernels");
     check(krs_renderer_complaints(renderer) == 0, "no complaints");
     krs_rendering_free(rendering);
+    check(krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering) == KRS_OK,
+          "a rendering for questions");
+    const float     points[2][3] = {{0, 0, 3}, {0, 2, 0}};
+    float           distances[2];
+    KrsSurfacePoint surfaces[2];
+    check(krs_sample(rendering, frame, points, 2, distances, surfaces) == KRS_OK &&
+              fabs(distances[0] - 1.5) < 1e-4 && surfaces[1].component == 1 &&
+              fabs(surfaces[1].distance - 0.5) < 1e-4 && surfaces[1].normal[1] > 0.99F &&
+              surfaces[1].color[0] > 0,
+          "samples");
+    krs_rendering_free(rendering);
     krs_renderer_free(renderer);
+}
+
+/* A file that is none: its text is in the options. */
+static void use_files(void)
+{
+    const KrsOptions options = {.text = "show  sphere(1);\n", .text_length = 17};
+    KrsScene        *scene;
+    char            *formatted;
+    bool             same;
+    check(krs_compile_file("no-such.krs", &options, &scene) == KRS_OK, "a text of the options");
+    krs_scene_free(scene);
+    check(krs_format("no-such.krs", &options, &formatted, &same) == KRS_OK && !same &&
+              strcmp(formatted, "show sphere(1);\n") == 0,
+          "the layout of a text");
+    free(formatted);
 }
 
 int main(void)
 {
     use_limits();
     use_members();
+    use_files();
     KrsScene *scene;
     KrsFrame *frame;
     if (krs_compile_text(text, strlen(text), "a.krs", NULL, &scene) != KRS_OK ||
@@ -152,7 +206,7 @@ int main(void)
     use_values(scene, frame);
     use_places(frame);
     use_texts(scene, frame);
-    use_device(scene);
+    use_device(scene, frame);
     krs_frame_free(frame);
     krs_scene_free(scene);
     return failures > 0;

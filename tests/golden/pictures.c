@@ -56,21 +56,21 @@ static void render(Show *show, const char *option, const char *name,
 static void render_all(Show *show)
 {
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
-    for (int i = 0; i < KRS_TRACE_COUNT; i++, options.trace = (KrsTrace)i)
+    for (int i = 0; i < KRS_TRACE_COUNT; i++, options.methods.trace = (KrsTrace)i)
         render(show, "trace", krs_trace_names[i], &options);
-    options.trace = KRS_TRACE_DEFAULT;
+    options.methods.trace = KRS_TRACE_DEFAULT;
     for (int i = 1; i < KRS_SCHEDULE_COUNT; i++) {
-        options.schedule = (KrsSchedule)i;
+        options.methods.schedule = (KrsSchedule)i;
         render(show, "schedule", krs_schedule_names[i], &options);
     }
-    options.schedule = KRS_SCHEDULE_DEFAULT;
+    options.methods.schedule = KRS_SCHEDULE_DEFAULT;
     for (int i = 1; i < KRS_COMPONENTS_COUNT; i++) {
-        options.components = (KrsComponents)i;
+        options.methods.components = (KrsComponents)i;
         render(show, "components", krs_components_names[i], &options);
     }
-    options.components = KRS_COMPONENTS_DEFAULT;
+    options.methods.components = KRS_COMPONENTS_DEFAULT;
     for (int i = 1; i < KRS_NORMALS_COUNT; i++) {
-        options.normals = (KrsNormals)i;
+        options.methods.normals = (KrsNormals)i;
         render(show, "normals", krs_normals_names[i], &options);
     }
 }
@@ -82,7 +82,7 @@ static bool show_scene(KrsRenderer *renderer, const char *path)
     KrsScene        *scene;
     bool             good = krs_compile_file(path, &options, &scene) == KRS_OK &&
                 krs_state_new(scene, &show.frame) == KRS_OK &&
-                krs_rendering_new(renderer, scene, &show.rendering) == KRS_OK;
+                krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &show.rendering) == KRS_OK;
     if (good)
         render_all(&show);
     else

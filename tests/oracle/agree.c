@@ -47,7 +47,8 @@ static void fixture_open(Fixture *fixture, KrsStatus status)
     if (status != KRS_OK)
         fail_msg("%s does not compile", fixture->name);
     assert_int_equal(krs_state_new(fixture->scene, &fixture->frame), KRS_OK);
-    if (krs_rendering_new(renderer, fixture->scene, &fixture->rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, fixture->scene, KRS_FOR_PICTURES, &fixture->rendering) !=
+        KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(krs_state_view(fixture->frame, 0, &fixture->view), KRS_OK);
     const KrsCamera *camera = &fixture->view.camera;
@@ -324,7 +325,7 @@ static size_t wrong_positions(const Fixture *fixture, const KrsPicture *picture)
 
 static size_t wrong_scene(Fixture *fixture, KrsTrace trace)
 {
-    KrsPicture *picture = fixture_render(fixture, (KrsRenderOptions){.trace = trace});
+    KrsPicture *picture = fixture_render(fixture, (KrsRenderOptions){.methods.trace = trace});
     size_t      wrong   = wrong_rays(fixture, picture) + wrong_positions(fixture, picture);
     if (picture->stats.unresolved)
         print_message("# %s: %llu rays are unresolved\n", fixture->name,

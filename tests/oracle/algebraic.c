@@ -117,13 +117,14 @@ static void judge_by(const char *name, KrsTrace first, KrsTrace last, double pla
     Vec            eye     = vec_scale(3.2 * surface->radius, vec_unit(eye_direction));
     Product        product = open_surface(surface, eye, planted);
     KrsRendering  *rendering;
-    assert_int_equal(krs_rendering_new(renderer, product.scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, product.scene, KRS_FOR_PICTURES, &rendering),
+                     KRS_OK);
     look(surface, eye, pixels);
     for (KrsTrace trace = first; trace <= last; trace++) {
-        KrsRenderOptions options = {.width  = WIDTH,
-                                    .height = HEIGHT,
-                                    .trace  = trace,
-                                    .aovs   = KRS_AOV_POSITION | KRS_AOV_IDS};
+        KrsRenderOptions options = {.width         = WIDTH,
+                                    .height        = HEIGHT,
+                                    .methods.trace = trace,
+                                    .aovs          = KRS_AOV_POSITION | KRS_AOV_IDS};
         KrsPicture      *picture;
         if (krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
             fail_msg("%s: %s", name, krs_renderer_message(renderer));

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
+#include "runtime/tracer/query.h"
 #include "tests/oracle/product.h"
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
@@ -91,18 +92,19 @@ static void on_host(const Placed *placed, const Product *product)
 
 static void on_device(const Placed *placed, const Product *product)
 {
-    static float           points[POINTS][3];
-    static KrsSurfacePoint found[POINTS];
-    KrsRendering          *rendering;
-    Random                 random = {4};
+    static float        points[POINTS][3];
+    static SurfacePoint found[POINTS];
+    KrsRendering       *rendering;
+    Random              random = {4};
     for (int i = 0; i < POINTS; i++) {
         Vec at       = place_on(placed, &random);
         points[i][0] = (float)at.x, points[i][1] = (float)at.y, points[i][2] = (float)at.z;
     }
-    assert_int_equal(krs_rendering_new(renderer, product->scene, &rendering), KRS_OK);
-    assert_int_equal(
-        krs_sample(rendering, product->frame, (const float(*)[3])points, POINTS, NULL, found),
-        KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering),
+                     KRS_OK);
+    assert_int_equal(point_query_sample(rendering, product->frame, (const float(*)[3])points,
+                                        POINTS, NULL, found),
+                     KRS_OK);
     for (int i = 0; i < POINTS; i++) {
         const double normal[3] = {(double)found[i].normal[0], (double)found[i].normal[1],
                                   (double)found[i].normal[2]};

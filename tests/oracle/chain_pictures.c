@@ -237,7 +237,7 @@ static void check_rays(const Chain *chain, const SceneText *text, const Product 
         memcpy(origins[i], (double[]){o.x, o.y, o.z}, sizeof *origins);
         memcpy(directions[i], (double[]){d.x, d.y, d.z}, sizeof *directions);
     }
-    assert_int_equal(krs_rendering_new_for(renderer, product->scene, KRS_FOR_QUESTIONS, &rendering),
+    assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_QUESTIONS, &rendering),
                      KRS_OK);
     assert_int_equal(krs_device_raycast(rendering, product->frame, (const double(*)[3])origins,
                                         (const double(*)[3])directions, RAYS, farthest, tolerance,

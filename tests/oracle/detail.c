@@ -37,12 +37,12 @@ static const char mirrored[] = STEEL
 
 static KrsPicture *take(const PathFixture *fixture, uint32_t samples, bool filters)
 {
-    KrsRenderOptions options = {.width        = SIDE,
-                                .height       = SIDE,
-                                .samples      = samples,
-                                .no_filter    = !filters,
-                                .no_occlusion = true,
-                                .aovs         = KRS_AOV_COLOR};
+    KrsRenderOptions options = {.width             = SIDE,
+                                .height            = SIDE,
+                                .samples           = samples,
+                                .methods.no_filter = !filters,
+                                .no_occlusion      = true,
+                                .aovs              = KRS_AOV_COLOR};
     return path_fixture_render(fixture, &options);
 }
 

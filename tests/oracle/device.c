@@ -18,6 +18,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
+#include "runtime/tracer/query.h"
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
 
@@ -58,19 +59,20 @@ static Comparison compare_scene(const char *text, double roughness, double plant
     KrsRendering *rendering;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    KrsStatus status = krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering);
+    KrsStatus status = krs_rendering_new(renderer, scene, KRS_FOR_QUESTIONS, &rendering);
     if (status != KRS_OK)
         fprintf(stderr, "%s\n", krs_renderer_message(renderer));
     assert_int_equal(status, KRS_OK);
 
-    double(*points)[3]        = malloc(POINTS * sizeof *points);
-    float(*rounded)[3]        = malloc(POINTS * sizeof *rounded);
-    float           *device   = malloc(POINTS * sizeof *device);
-    double          *host     = malloc(POINTS * sizeof *host);
-    KrsHit          *hits     = malloc(IDENTITIES * sizeof *hits);
-    KrsSurfacePoint *surfaces = malloc(POINTS * sizeof *surfaces);
+    double(*points)[3]     = malloc(POINTS * sizeof *points);
+    float(*rounded)[3]     = malloc(POINTS * sizeof *rounded);
+    float        *device   = malloc(POINTS * sizeof *device);
+    double       *host     = malloc(POINTS * sizeof *host);
+    KrsHit       *hits     = malloc(IDENTITIES * sizeof *hits);
+    SurfacePoint *surfaces = malloc(POINTS * sizeof *surfaces);
     scatter(points, rounded);
-    status = krs_sample(rendering, frame, (const float(*)[3])rounded, POINTS, device, surfaces);
+    status = point_query_sample(rendering, frame, (const float(*)[3])rounded, POINTS, device,
+                                surfaces);
     assert_int_equal(status, KRS_OK);
     krs_distance(frame, (const double(*)[3])points, POINTS, host);
     krs_probe(frame, (const double(*)[3])points, IDENTITIES, hits);
@@ -242,7 +244,7 @@ static void functions_agree(void **context)
 
 /* The sine, cosine and tangent that the device finds of scale x at points along x, through the
    emission of a surface; scale is a power of two, so that arguments are exact. */
-static void sample_sines(double scale, double *arguments, KrsSurfacePoint *found)
+static void sample_sines(double scale, double *arguments, SurfacePoint *found)
 {
     char          text[200];
     KrsScene     *scene;
@@ -260,9 +262,10 @@ static void sample_sines(double scale, double *arguments, KrsSurfacePoint *found
              scale, scale, scale);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
     assert_int_equal(
-        krs_sample(rendering, frame, (const float(*)[3])points, POINTS, distances, found), KRS_OK);
+        point_query_sample(rendering, frame, (const float(*)[3])points, POINTS, distances, found),
+        KRS_OK);
     krs_rendering_free(rendering);
     krs_state_free(frame);
     krs_scene_free(scene);
@@ -277,7 +280,7 @@ static void sines_are_accurate(void **context)
     static const double scales[]  = {1,      0x1p4,  0x1p8,  0x1p11, 0x1p14,
                                      0x1p15, 0x1p18, 0x1p21, 0x1p60};
     double             *arguments = malloc(POINTS * sizeof *arguments);
-    KrsSurfacePoint    *found     = malloc(POINTS * sizeof *found);
+    SurfacePoint       *found     = malloc(POINTS * sizeof *found);
     (void)context;
     for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
         double worst = 0, worst_tangent = 0, largest = 0;
@@ -409,12 +412,12 @@ static double compare_frames(KrsRendering *rendering, KrsState *frame, bool late
             for (int k = 0; k < 3; k++)
                 points[i][k] = rounded[i][k] = (float)uniform(-2, 2);
         if (late)
-            krs_sample(rendering, frame, (const float(*)[3])rounded, FEW, device, NULL);
+            krs_device_distance(rendering, frame, (const float(*)[3])rounded, FEW, device);
         double k = 2 + times[f];
         assert_int_equal(krs_state_set(frame, "k", &k, 1), KRS_OK);
         assert_int_equal(krs_state_set_time(frame, times[f]), KRS_OK);
         if (!late)
-            krs_sample(rendering, frame, (const float(*)[3])rounded, FEW, device, NULL);
+            krs_device_distance(rendering, frame, (const float(*)[3])rounded, FEW, device);
         krs_distance(frame, (const double(*)[3])points, FEW, host);
         for (size_t i = 0; i < FEW; i++)
             worst = fmax(worst, fabs(device[i] - host[i]) / (64 * 0x1p-23 * (7 + fabs(host[i]))));
@@ -436,7 +439,7 @@ static void frames_agree(void **context)
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_state_slope_count(scene), 3);
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     assert_true(compare_frames(rendering, frame, false) <= 1);
     assert_true(compare_frames(rendering, frame, true) > 100); /* the frame before */
     krs_rendering_free(rendering);

@@ -23,7 +23,7 @@ Scene scene_ready(KrsStatus status, KrsScene *scene, KrsPurpose purpose)
     Scene s = {.scene = scene};
     assert_int_equal(status, KRS_OK);
     assert_int_equal(krs_state_new(scene, &s.frame), KRS_OK);
-    status = krs_rendering_new_for(renderer, scene, purpose, &s.rendering);
+    status = krs_rendering_new(renderer, scene, purpose, &s.rendering);
     if (status != KRS_OK)
         print_message("%s\n", krs_renderer_message(renderer));
     assert_int_equal(status, KRS_OK);

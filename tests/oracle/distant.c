@@ -205,7 +205,8 @@ static Subject subject_new(const struct Form *form, const Shot *literal)
     subject.product = product_format("%s\nshow %s;\n"
                                      "camera { eye: o + s * e, target: o, fov: f }\n",
                                      numbers, form->text);
-    if (krs_rendering_new(renderer, subject.product.scene, &subject.rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, subject.product.scene, KRS_FOR_PICTURES, &subject.rendering) !=
+        KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return subject;
 }

@@ -54,7 +54,7 @@ static KrsPicture *render_on(KrsRenderer *on, const KrsScene *scene)
     KrsState     *frame;
     KrsPicture   *picture = NULL;
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    if (krs_rendering_new(on, scene, &rendering) != KRS_OK ||
+    if (krs_rendering_new(on, scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
         krs_render(rendering, frame, &options, &picture) != KRS_OK)
         print_message("# %s: %s\n", krs_renderer_device(on).name, krs_renderer_message(on));
     krs_rendering_free(rendering);

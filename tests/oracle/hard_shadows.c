@@ -97,11 +97,11 @@ static Shot hard_shot(const struct HardCase *hard, int camera)
                   hard->light,
                   0,
                   0.04,
-                  {.width         = WIDTH,
-                   .height        = HEIGHT,
-                   .crop          = {0, 0, WIDTH, HEIGHT},
-                   .camera        = (size_t)camera,
-                   .no_upsampling = true},
+                  {.width                 = WIDTH,
+                   .height                = HEIGHT,
+                   .crop                  = {0, 0, WIDTH, HEIGHT},
+                   .camera                = (size_t)camera,
+                   .methods.no_upsampling = true},
                   0};
 }
 
@@ -228,7 +228,8 @@ static void symmetric_scenes_have_symmetric_pictures(void **state)
         "show sphere(0.6).move([1.2, 0.6, 0.3]) | sphere(0.6).move([-1.2, 0.6, 0.3]);\n";
     for (int plain = 0; plain < 2; plain++) {
         KrsPicture *picture = picture_of(
-            text, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = plain});
+            text,
+            &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .methods.no_upsampling = plain});
         double most = asymmetry(picture);
         print_message("# symmetry: off by %.2g%s\n", most, plain ? "" : " with upsampling");
         assert_true(most < MAX_ASYMMETRY);

@@ -107,7 +107,8 @@ static Fixture open_fixture(const Room *room)
                 where, wide, where, wide, room->eye.x, room->eye.y, room->eye.z, room->target.x,
                 room->target.y, room->target.z, room->fov, room->text);
     fixture.product = product_compile(text.bytes);
-    if (krs_rendering_new(renderer, fixture.product.scene, &fixture.rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, fixture.product.scene, KRS_FOR_PICTURES, &fixture.rendering) !=
+        KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return fixture;
 }

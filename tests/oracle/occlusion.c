@@ -65,7 +65,8 @@ static Vec position_of(const KrsPicture *picture, int k)
 
 /* ---- What exact rays see ---- */
 
-static const KrsRenderOptions WALL_VIEW = {.width = 160, .height = 48, .no_upsampling = true};
+static const KrsRenderOptions WALL_VIEW = {
+    .width = 160, .height = 48, .methods.no_upsampling = true};
 
 static int count_closed(const KrsPicture *picture)
 {
@@ -128,11 +129,11 @@ static void a_wall_closes_the_ground_at_its_foot(void **state)
     (void)state;
     static const bool upsampled[2] = {true, false};
     for (int i = 0; i < 2; i++) {
-        KrsRenderOptions options = WALL_VIEW;
-        options.no_upsampling    = upsampled[i];
-        options.samples          = 16;
-        KrsPicture *picture      = picture_of(
-                 OPEN_SKY "show box([40, 3, 80]).move([-20, 1.5, 0]).paint(striped);", &options);
+        KrsRenderOptions options      = WALL_VIEW;
+        options.methods.no_upsampling = upsampled[i];
+        options.samples               = 16;
+        KrsPicture *picture           = picture_of(
+                      OPEN_SKY "show box([40, 3, 80]).move([-20, 1.5, 0]).paint(striped);", &options);
         double row[160], place[160];
         int    count = ground_of_rows(picture, row, place);
         print_message("# occlusion: %.3f at the foot of a wall, then %.3f, %.3f, %.3f\n", row[0],
@@ -169,7 +170,7 @@ static void shared_rays_see_a_wall_where_it_is(void **state)
     (void)state;
     KrsPicture *picture = picture_of(
         OPEN_SKY "show box([40, 3, 80]).move([-20, 1.5, 0]).paint(striped);",
-        &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_filter = true});
+        &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .methods.no_filter = true});
     double wrong = misjudge_wall(picture, 3);
     print_message("# occlusion before a wall, one ray a pixel: off by %.4f\n", wrong);
     assert_true(wrong < MAX_BESIDE_WALL);
@@ -189,8 +190,8 @@ static KrsPicture *take_room(double slope, double radius)
                 "camera { eye: [9, 6, 7], target: [1, 0.5, 1], fov: 30deg }\n"
                 "show room().paint(striped);\n",
                 radius, slope);
-    return picture_of(text.bytes,
-                      &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_filter = true});
+    return picture_of(text.bytes, &(KrsRenderOptions){
+                                      .width = WIDTH, .height = HEIGHT, .methods.no_filter = true});
 }
 
 /* Whether a ray from within the room meets nothing within its reach; of its walls so many count. */
@@ -318,7 +319,7 @@ static void convex_solids_are_open(void **state)
                     solids[i].text);
         KrsPicture *picture = picture_of(
             text.bytes,
-            &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = true});
+            &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .methods.no_upsampling = true});
         int    seen  = 0;
         double least = 1;
         for (int k = 0; k < WIDTH * HEIGHT; k++)
@@ -512,7 +513,7 @@ static bool form_is_right(PathFixture *fixture, const Form *form, uint32_t width
     }
     path_fixture_set(fixture, "shade", shade);
     path_fixture_set(fixture, "back", back);
-    KrsRenderOptions options = {.width = width, .height = width * 3 / 4, .no_filter = true};
+    KrsRenderOptions options = {.width = width, .height = width * 3 / 4, .methods.no_filter = true};
     KrsPicture      *picture = path_fixture_render(fixture, &options);
     Wrong            wrong   = judge_form(picture, form, numbers, shade, back);
     krs_picture_free(picture);
@@ -611,11 +612,11 @@ static bool room_is_right(const Setting *setting, double part)
     for (int k = 0; k < PIXELS; k++)
         open[k] *= part;
     for (int i = 0; i < 2; i++) {
-        KrsPicture *picture = picture_of(text.bytes, &(KrsRenderOptions){.width     = ACROSS,
-                                                                         .height    = DOWN,
-                                                                         .samples   = i ? 4 : 1,
-                                                                         .no_filter = true});
-        wrong[i]            = mean_wrong(picture, open, &mean);
+        KrsPicture *picture = picture_of(
+            text.bytes,
+            &(KrsRenderOptions){
+                .width = ACROSS, .height = DOWN, .samples = i ? 4 : 1, .methods.no_filter = true});
+        wrong[i] = mean_wrong(picture, open, &mean);
         krs_picture_free(picture);
     }
     print_message("# %s: open by %.2f, wrong by %.3f with a ray, %.3f with four\n", room->name,

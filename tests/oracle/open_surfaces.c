@@ -149,16 +149,16 @@ static void must_be_right(const char *name, const char *who, const Verdict *v)
 
 static void judge_picture(const char *name, const Case *c, const Product *product, KrsTrace trace)
 {
-    KrsRenderOptions options = {.width   = WIDTH,
-                                .height  = HEIGHT,
-                                .samples = 1,
-                                .trace   = trace,
-                                .aovs    = KRS_AOV_POSITION | KRS_AOV_IDS | KRS_AOV_NORMAL |
+    KrsRenderOptions options = {.width         = WIDTH,
+                                .height        = HEIGHT,
+                                .samples       = 1,
+                                .methods.trace = trace,
+                                .aovs          = KRS_AOV_POSITION | KRS_AOV_IDS | KRS_AOV_NORMAL |
                                         KRS_AOV_ALBEDO};
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
     Verdict          v       = {0};
-    if (krs_rendering_new(renderer, product->scene, &rendering) != KRS_OK ||
+    if (krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
         krs_render(rendering, product->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int k = 0; k < PIXELS; k++) {
@@ -189,7 +189,7 @@ static void judge_questions(const char *name, const Case *c, const Product *prod
           (*ray_direction)[3] = (const double(*)[3])directions;
     assert_int_equal(krs_raycast(product->frame, from, ray_direction, PIXELS, 1e3, 0, hits[0]),
                      KRS_OK);
-    assert_int_equal(krs_rendering_new_for(renderer, product->scene, KRS_FOR_QUESTIONS, &rendering),
+    assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_QUESTIONS, &rendering),
                      KRS_OK);
     assert_int_equal(krs_device_raycast(rendering, product->frame, from, ray_direction, PIXELS, 1e3,
                                         1e-3 * c->radius, hits[1]),
@@ -251,7 +251,7 @@ static void open_surfaces_cast_shadows(void **state)
     KrsPicture      *picture = NULL;
     int              dark = 0, wrong = 0, edge = 0;
     bool             before = false;
-    if (krs_rendering_new(renderer, product.scene, &rendering) != KRS_OK ||
+    if (krs_rendering_new(renderer, product.scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
         krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int k = 0; k < PIXELS; k++) {
@@ -303,9 +303,9 @@ static void mirrors_show_the_side(void **state)
         KrsRendering *rendering;
         KrsPicture   *picture = NULL;
         int           seen[2] = {0, 0}, wrong = 0;
-        if (krs_rendering_new_for(renderer, product.scene,
-                                  integrator == 0 ? KRS_FOR_PICTURES : KRS_FOR_PATHS,
-                                  &rendering) != KRS_OK ||
+        if (krs_rendering_new(renderer, product.scene,
+                              integrator == 0 ? KRS_FOR_PICTURES : KRS_FOR_PATHS,
+                              &rendering) != KRS_OK ||
             krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
             fail_msg("%s", krs_renderer_message(renderer));
         for (int k = 0; k < PIXELS; k++) {
@@ -424,8 +424,8 @@ static void sides_follow_the_open_surface(void **state)
         KrsHit        hits[2];
         const double  origin[1][3] = {{rows[i].origin.x, rows[i].origin.y, rows[i].origin.z}};
         const double  way[1][3] = {{rows[i].direction.x, rows[i].direction.y, rows[i].direction.z}};
-        assert_int_equal(
-            krs_rendering_new_for(renderer, product.scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
+        assert_int_equal(krs_rendering_new(renderer, product.scene, KRS_FOR_QUESTIONS, &rendering),
+                         KRS_OK);
         assert_int_equal(krs_raycast(product.frame, origin, way, 1, 100, 1e-6, &hits[0]), KRS_OK);
         assert_int_equal(
             krs_device_raycast(rendering, product.frame, origin, way, 1, 100, 1e-4, &hits[1]),

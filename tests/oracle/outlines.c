@@ -360,9 +360,10 @@ static void sample_figure(Fixture *fixture, Bench *bench, OutlineShape *shape)
     fixture->scene->program.table_cells                     = sizes.cells;
     surface_roots(&fixture->scene->roots, 0)[ROOT_DISTANCE] = root;
     assert_int_equal(krs_state_new(fixture->scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(fixture->renderer, fixture->scene, &rendering), KRS_OK);
-    assert_int_equal(krs_sample(rendering, frame, (const float(*)[3])fixture->points, DEVICE_POINTS,
-                                fixture->found, NULL),
+    assert_int_equal(
+        krs_rendering_new(fixture->renderer, fixture->scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
+    assert_int_equal(krs_device_distance(rendering, frame, (const float(*)[3])fixture->points,
+                                         DEVICE_POINTS, fixture->found),
                      KRS_OK);
     krs_rendering_free(rendering);
     krs_state_free(frame);

@@ -12,7 +12,8 @@ const Region everywhere = {0, 0, 1, 1};
 PathFixture path_fixture_open(const char *text)
 {
     PathFixture fixture = {.product = product_compile(text)};
-    if (krs_rendering_new(renderer, fixture.product.scene, &fixture.rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, fixture.product.scene, KRS_FOR_PICTURES, &fixture.rendering) !=
+        KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return fixture;
 }

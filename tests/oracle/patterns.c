@@ -18,6 +18,7 @@
 
 #include "compiler/passes/compile.h"
 #include "runtime/writer/exr.h"
+#include "runtime/tracer/query.h"
 #include "tests/oracle/product.h"
 #include "tests/support/folder.h"
 #include "tests/support/random.h"
@@ -220,7 +221,8 @@ static void show_three(const Product *product, int view, KrsIntegrator integrato
                                 .integrator = integrator};
     KrsRendering    *rendering;
     KrsPicture      *picture;
-    assert_int_equal(krs_rendering_new(renderer, product->scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering),
+                     KRS_OK);
     assert_int_equal(krs_render(rendering, product->frame, &options, &picture), KRS_OK);
     for (int k = 0; k < 3; k++)
         judge(&patterns[first + k], wrong_in(picture, k, &views[view], &patterns[first + k]));
@@ -308,17 +310,18 @@ static void write_color(void)
 
 static void compare_at_points(const Product *product)
 {
-    static float           points[POINTS][3];
-    static KrsSurfacePoint surfaces[POINTS];
-    KrsRendering          *rendering;
-    Random                 random = {11};
+    static float        points[POINTS][3];
+    static SurfacePoint surfaces[POINTS];
+    KrsRendering       *rendering;
+    Random              random = {11};
     for (int i = 0; i < POINTS; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = (float)random_between(&random, -2.5, 2.5);
-    assert_int_equal(krs_rendering_new(renderer, product->scene, &rendering), KRS_OK);
-    assert_int_equal(
-        krs_sample(rendering, product->frame, (const float(*)[3])points, POINTS, NULL, surfaces),
-        KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering),
+                     KRS_OK);
+    assert_int_equal(point_query_sample(rendering, product->frame, (const float(*)[3])points,
+                                        POINTS, NULL, surfaces),
+                     KRS_OK);
     for (int i = 0; i < POINTS; i++) {
         KrsHit hit = product_probe(
             product, vec((double)points[i][0], (double)points[i][1], (double)points[i][2]));
@@ -345,9 +348,9 @@ static void devices_read_what_the_host_reads(void **state)
 
 static void color_is(KrsRendering *rendering, KrsState *frame, double wanted)
 {
-    KrsSurfacePoint found;
-    const float     point[1][3] = {{0.5f / SIDE, 0, 0.5f / SIDE}};
-    assert_int_equal(krs_sample(rendering, frame, point, 1, NULL, &found), KRS_OK);
+    SurfacePoint found;
+    const float  point[1][3] = {{0.5f / SIDE, 0, 0.5f / SIDE}};
+    assert_int_equal(point_query_sample(rendering, frame, point, 1, NULL, &found), KRS_OK);
     assert_true(fabs((double)found.color[0] - wanted) < 1e-3);
 }
 
@@ -362,7 +365,8 @@ static void an_edited_picture_is_read_again(void **state)
     (void)state;
     write_picture(7);
     Product product = product_compile(text);
-    assert_int_equal(krs_rendering_new(renderer, product.scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, product.scene, KRS_FOR_PICTURES, &rendering),
+                     KRS_OK);
     color_is(rendering, product.frame, texel(0, 0));
     assert_int_equal(krs_scene_update(product.scene, text, strlen(text), &edited, &changes),
                      KRS_OK);

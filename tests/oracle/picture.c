@@ -21,7 +21,7 @@
 #include "tests/support/renderer.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
-static const KrsRenderOptions plain = {.width = WIDTH, .height = HEIGHT, .no_filter = true};
+static const KrsRenderOptions plain = {.width = WIDTH, .height = HEIGHT, .methods.no_filter = true};
 
 typedef struct Vec {
     double x, y, z;
@@ -123,7 +123,7 @@ static Verdict compare(const char *text, double planted)
     KrsView       view;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     assert_int_equal(krs_render(rendering, frame, &plain, &picture), KRS_OK);
     assert_int_equal(picture->stats.unresolved, 0);
     assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);

@@ -33,7 +33,8 @@ static void fixture_prepare(Fixture *fixture, KrsStatus status)
 {
     assert_int_equal(status, KRS_OK);
     assert_int_equal(krs_state_new(fixture->scene, &fixture->frame), KRS_OK);
-    if (krs_rendering_new(renderer, fixture->scene, &fixture->rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, fixture->scene, KRS_FOR_PICTURES, &fixture->rendering) !=
+        KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
 }
 
@@ -293,7 +294,10 @@ static void cameras_are_lists(void **state)
     const KrsRenderOptions choices[] = {
         {.width = WIDTH, .height = HEIGHT},
         {.width = WIDTH, .height = HEIGHT, .crop = {11, 7, 40, 30}},
-        {.width = WIDTH, .height = HEIGHT, .schedule = KRS_SCHEDULE_QUEUE, .steps_at_once = 3},
+        {.width                 = WIDTH,
+         .height                = HEIGHT,
+         .methods.schedule      = KRS_SCHEDULE_QUEUE,
+         .methods.steps_at_once = 3},
     };
     KrsPicture *seen, *whole = picture_of_rays(&fixture, &rays, &choices[0]);
     assert_int_equal(krs_render(fixture.rendering, fixture.frame, &choices[0], &seen), KRS_OK);

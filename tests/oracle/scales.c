@@ -55,7 +55,8 @@ static Scene *use_scene(Kind kind)
         "camera { eye: eye, target: at, fov: %.17g }\n"
         "light sun { direction: [1, 2, 1], shadow: false }\n%s",
         FOV, texts[kind]);
-    if (krs_rendering_new(renderer, scene->product.scene, &scene->rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, scene->product.scene, KRS_FOR_PICTURES, &scene->rendering) !=
+        KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return scene;
 }
@@ -80,7 +81,7 @@ static KrsPicture *shot_render(const Shot *shot)
 {
     Scene           *scene   = use_scene(shot->kind);
     KrsRenderOptions options = {
-        .width = WIDTH, .height = HEIGHT, .samples = 1, .trace = shot->trace};
+        .width = WIDTH, .height = HEIGHT, .samples = 1, .methods.trace = shot->trace};
     KrsPicture *picture;
     set_vector(scene, "at", shot->at);
     set_vector(scene, "eye", shot->eye);

@@ -96,7 +96,7 @@ static void a_pixel_is_the_least_width(void **state)
              "%s show sphere(1).move([-0.6, 0, 0])"
              ".mirror(plane([1, 0, 0], 0));",
              CAMERA);
-    KrsRenderOptions sharp  = {.no_filter = true};
+    KrsRenderOptions sharp  = {.methods.no_filter = true};
     KrsPicture      *smooth = take(text, sharp), *hard = take(plain, sharp);
     double           pixel   = 2 * tan(12 * acos(-1) / 180) * 7.3 / HEIGHT;
     size_t           changed = 0;
@@ -153,7 +153,8 @@ static double filtering(const char *shown, uint32_t samples, double *worst)
              "%s material steel { color: [0.9, 0.9, 0.9], metallic: 1, roughness: 0.15 } show %s;",
              CAMERA, shown);
     KrsPicture *soft  = take(text, (KrsRenderOptions){.samples = samples});
-    KrsPicture *hard  = take(text, (KrsRenderOptions){.samples = samples, .no_filter = true});
+    KrsPicture *hard  = take(text,
+                             (KrsRenderOptions){.samples = samples, .methods.no_filter = true});
     double      sum   = 0;
     size_t      count = 0;
     *worst            = 0;

@@ -113,7 +113,7 @@ static void write_view(SceneText *text, const Fixture *fixture)
 
 void open_rendering(const Product *product, KrsRendering **rendering)
 {
-    if (krs_rendering_new(renderer, product->scene, rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
 }
 
@@ -212,12 +212,12 @@ Shot edge_shot(const Lighting *lighting, KrsShadows shadows, uint32_t samples)
                   lighting->edge_light,
                   lighting->wide,
                   0,
-                  {.width         = 640,
-                   .height        = 360,
-                   .crop          = {192, 174, 448, 12},
-                   .shadows       = shadows,
-                   .samples       = samples,
-                   .no_upsampling = true},
+                  {.width                 = 640,
+                   .height                = 360,
+                   .crop                  = {192, 174, 448, 12},
+                   .shadows               = shadows,
+                   .samples               = samples,
+                   .methods.no_upsampling = true},
                   0};
 }
 
@@ -227,12 +227,12 @@ Shot ball_shot(const Lighting *lighting, KrsShadows shadows, uint32_t samples)
                   lighting->ball_light,
                   lighting->wide,
                   0,
-                  {.width         = 320,
-                   .height        = 180,
-                   .crop          = {110, 65, 165, 90},
-                   .shadows       = shadows,
-                   .samples       = samples,
-                   .no_upsampling = true},
+                  {.width                 = 320,
+                   .height                = 180,
+                   .crop                  = {110, 65, 165, 90},
+                   .shadows               = shadows,
+                   .samples               = samples,
+                   .methods.no_upsampling = true},
                   0};
 }
 

@@ -98,11 +98,11 @@ static void soft_shadows_are_shares_of_the_disc(void **state)
     (void)state;
     size_t wrong = 0;
     for (int i = 0; i < 2 * LIGHTINGS; i++) {
-        const Lighting *lighting   = &lightings[i / 2];
-        Shot            edge       = edge_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
-        Shot            ball       = ball_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
-        edge.options.no_upsampling = ball.options.no_upsampling = false;
-        edge.options.crop.height                                = 24;
+        const Lighting *lighting           = &lightings[i / 2];
+        Shot            edge               = edge_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
+        Shot            ball               = ball_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
+        edge.options.methods.no_upsampling = ball.options.methods.no_upsampling = false;
+        edge.options.crop.height                                                = 24;
         KrsPicture *of_edge = shoot(&edge), *of_ball = shoot(&ball);
         print_message("# %s\n", lighting->name);
         wrong += !shared_is_right("edge", of_edge, &edge, share_above_edge);
@@ -135,9 +135,9 @@ static double find_fraying(const KrsPicture *picture, const Shot *shot, int *cou
 static void edges_of_narrow_shadows_are_not_frayed(void **state)
 {
     (void)state;
-    Shot ball                  = ball_shot(&lightings[0], KRS_SHADOWS_SOFT, 1);
-    ball.wide                  = NARROW;
-    ball.options.no_upsampling = false;
+    Shot ball                          = ball_shot(&lightings[0], KRS_SHADOWS_SOFT, 1);
+    ball.wide                          = NARROW;
+    ball.options.methods.no_upsampling = false;
     int         count;
     KrsPicture *picture = shoot(&ball);
     double      frayed  = find_fraying(picture, &ball, &count);
@@ -153,12 +153,12 @@ static void soft_shadows_of_bounds_are_the_same(void **state)
     (void)state;
     size_t wrong = 0;
     for (int i = 0; i < 2 * (FIXTURES - BOUNDS); i++) {
-        const Lighting *lighting   = &lightings[i / (FIXTURES - BOUNDS)];
-        Shot            ball       = ball_shot(lighting, KRS_SHADOWS_SOFT, 1);
-        ball.fixture               = (FixtureKind)(BOUNDS + i % (FIXTURES - BOUNDS));
-        ball.options.no_upsampling = false;
-        KrsPicture    *picture     = shoot(&ball);
-        const Fixture *fixture     = &fixtures[ball.fixture];
+        const Lighting *lighting           = &lightings[i / (FIXTURES - BOUNDS)];
+        Shot            ball               = ball_shot(lighting, KRS_SHADOWS_SOFT, 1);
+        ball.fixture                       = (FixtureKind)(BOUNDS + i % (FIXTURES - BOUNDS));
+        ball.options.methods.no_upsampling = false;
+        KrsPicture    *picture             = shoot(&ball);
+        const Fixture *fixture             = &fixtures[ball.fixture];
         print_message("# %s, %s / %g\n", lighting->name, fixture->ball ? fixture->ball : "distance",
                       fmax(fixture->slope, 1));
         wrong += !shared_is_right("ball", picture, &ball, share_by_rays);
@@ -170,9 +170,9 @@ static void soft_shadows_of_bounds_are_the_same(void **state)
 static void wrong_soft_shadows_are_found(void **state)
 {
     (void)state;
-    Shot ball                  = ball_shot(&lightings[1], KRS_SHADOWS_SOFT, 4), wrong;
-    ball.options.no_upsampling = false;
-    KrsPicture *picture        = shoot(&ball);
+    Shot ball                          = ball_shot(&lightings[1], KRS_SHADOWS_SOFT, 4), wrong;
+    ball.options.methods.no_upsampling = false;
+    KrsPicture *picture                = shoot(&ball);
     assert_true(shared_is_right("ball", picture, &ball, share_by_rays));
     wrong      = ball;
     wrong.wide = 1.5 * ball.wide;
@@ -219,9 +219,9 @@ static KrsPicture *take_recess(const Recess *recess)
                 "camera { eye: [0, %.9g, 0], target: [-1, %.9g, 0], "
                 "projection: \"orthographic\", height: 1.2 }\n",
                 recess->wall, recess->ceiling + 0.5, recess->radius, recess->ceiling, edge, edge);
-    return picture_of(
-        text.bytes,
-        &(KrsRenderOptions){.width = RECESS_WIDTH, .height = RECESS_HEIGHT, .no_filter = true});
+    return picture_of(text.bytes, &(KrsRenderOptions){.width             = RECESS_WIDTH,
+                                                      .height            = RECESS_HEIGHT,
+                                                      .methods.no_filter = true});
 }
 
 static double lamp_seen(const Recess *recess, Vec place)

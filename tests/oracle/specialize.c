@@ -287,7 +287,7 @@ static KrsPicture *render(const KrsScene *scene)
     KrsRendering          *rendering;
     KrsPicture            *picture;
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    if (krs_rendering_new(renderer, scene, &rendering) != KRS_OK ||
+    if (krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
         krs_render(rendering, frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     krs_rendering_free(rendering);

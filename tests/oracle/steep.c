@@ -155,14 +155,14 @@ static int count_wrong(const KrsPicture *picture, const Line *rays, const double
 
 static KrsPicture *take(const Product *product, KrsTrace trace)
 {
-    KrsRenderOptions options = {.width   = WIDTH,
-                                .height  = HEIGHT,
-                                .samples = 1,
-                                .trace   = trace,
-                                .aovs    = KRS_AOV_POSITION | KRS_AOV_IDS};
+    KrsRenderOptions options = {.width         = WIDTH,
+                                .height        = HEIGHT,
+                                .samples       = 1,
+                                .methods.trace = trace,
+                                .aovs          = KRS_AOV_POSITION | KRS_AOV_IDS};
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
-    if (krs_rendering_new(renderer, product->scene, &rendering) != KRS_OK ||
+    if (krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
         krs_render(rendering, product->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     krs_rendering_free(rendering);

@@ -49,7 +49,8 @@ static Fixture fixture_open(const char *text)
     if (krs_compile_text(text, strlen(text), "scene.krs", &options, &fixture.scene) != KRS_OK)
         fail_msg("does not compile: %s", text);
     assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, fixture.scene, &fixture.rendering), KRS_OK);
+    assert_int_equal(
+        krs_rendering_new(renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering), KRS_OK);
     return fixture;
 }
 
@@ -63,13 +64,13 @@ static void fixture_close(Fixture *fixture)
 static KrsPicture *shoot(Fixture *fixture, KrsNormals normals)
 {
     KrsPicture      *picture;
-    KrsRenderOptions options = {.width     = WIDTH,
-                                .height    = HEIGHT,
-                                .error     = 0.01,
-                                .no_filter = true,
-                                .aovs      = KRS_AOV_NORMAL | KRS_AOV_POSITION | KRS_AOV_DEPTH |
+    KrsRenderOptions options = {.width             = WIDTH,
+                                .height            = HEIGHT,
+                                .error             = 0.01,
+                                .methods.no_filter = true,
+                                .aovs = KRS_AOV_NORMAL | KRS_AOV_POSITION | KRS_AOV_DEPTH |
                                         KRS_AOV_IDS,
-                                .normals = normals};
+                                .methods.normals = normals};
     if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;
@@ -335,14 +336,15 @@ static void analytic_normals_are_asked_for_in_time(void **state)
     const char      *text = "show sphere(1);";
     Fixture          fixture;
     KrsPicture      *picture;
-    KrsRenderOptions options = {.width = 16, .height = 16, .normals = KRS_NORMALS_ANALYTIC};
+    KrsRenderOptions options = {.width = 16, .height = 16, .methods.normals = KRS_NORMALS_ANALYTIC};
     assert_int_equal(krs_compile_text(text, strlen(text), "s.krs", NULL, &fixture.scene), KRS_OK);
     assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, fixture.scene, &fixture.rendering), KRS_OK);
+    assert_int_equal(
+        krs_rendering_new(renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering), KRS_OK);
     assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &picture),
                      KRS_BAD_ARGUMENT);
     assert_non_null(strstr(krs_renderer_message(renderer), "gradients"));
-    options.normals = KRS_NORMALS_COUNT;
+    options.methods.normals = KRS_NORMALS_COUNT;
     assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &picture),
                      KRS_BAD_ARGUMENT);
     fixture_close(&fixture);
@@ -382,12 +384,12 @@ static void pixels_on_edges_show_one_side(void **state)
         "show (box([4, 3, 4]).move([0, 1.5, 0]) & half_space([0, 1, 1], 2.8))\n"
         "    .rotate([0, 1, 0], 0.3).move([40, 0, 0]);\n");
     KrsPicture *picture = NULL;
-    assert_int_equal(
-        krs_render(
-            fixture.rendering, fixture.frame,
-            &(KrsRenderOptions){.width = ACROSS, .height = DOWN, .normals = KRS_NORMALS_OCTAHEDRON},
-            &picture),
-        KRS_OK);
+    assert_int_equal(krs_render(fixture.rendering, fixture.frame,
+                                &(KrsRenderOptions){.width           = ACROSS,
+                                                    .height          = DOWN,
+                                                    .methods.normals = KRS_NORMALS_OCTAHEDRON},
+                                &picture),
+                     KRS_OK);
     int between = count_between(picture, ACROSS * DOWN);
     print_message("# %d pixels on edges have a normal between two sides\n", between);
     assert_true(between <= MOST);

@@ -185,7 +185,8 @@ Scene *use_scene(SceneKind kind)
     default: make_thicket(scene, "");
     }
     scene->product = product_compile(scene->text.bytes);
-    if (krs_rendering_new(renderer, scene->product.scene, &scene->rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, scene->product.scene, KRS_FOR_PICTURES, &scene->rendering) !=
+        KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return scene;
 }

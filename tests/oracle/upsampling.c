@@ -70,7 +70,8 @@ static void take_both(KrsRendering *rendering, KrsState *frame, KrsPicture *pict
     for (int i = 0; i < 2; i++)
         pictures[i] = take_picture(
             rendering, frame,
-            (KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .samples = 1, .no_upsampling = i});
+            (KrsRenderOptions){
+                .width = WIDTH, .height = HEIGHT, .samples = 1, .methods.no_upsampling = i});
 }
 
 static bool upsampling_is_unseen(const char *name, KrsState *frame, KrsPicture *pictures[2])
@@ -93,7 +94,7 @@ static KrsPicture *take_reference(KrsRendering *rendering, KrsState *frame)
     enum { SEEDS = 16 };
     const size_t     numbers = 4 * (size_t)WIDTH * HEIGHT;
     KrsRenderOptions options = {
-        .width = WIDTH, .height = HEIGHT, .samples = 1, .no_upsampling = true};
+        .width = WIDTH, .height = HEIGHT, .samples = 1, .methods.no_upsampling = true};
     KrsPicture *sum = take_picture(rendering, frame, options);
     for (options.seed = 1; options.seed < SEEDS; options.seed++) {
         KrsPicture *picture = take_picture(rendering, frame, options);

@@ -45,7 +45,7 @@ KrsPicture *picture_of(const char *text, const KrsRenderOptions *options)
     KrsPicture   *picture;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     assert_int_equal(krs_render(rendering, frame, options, &picture), KRS_OK);
     krs_rendering_free(rendering);
     krs_state_free(frame);

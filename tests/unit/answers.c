@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/scene/compiled.h"
+#include "runtime/tracer/query.h"
 #include "tests/unit/tracer_fixture.h"
 
 /* ---- The rows ---- */
@@ -49,7 +50,7 @@ static void take_hit(const KrsHit *hit, Material material)
 #include "krs/surface.def"
 }
 
-static void take_surface(const KrsSurfacePoint *surface, Material material)
+static void take_surface(const SurfacePoint *surface, Material material)
 {
     int          i = 0;
     const float *from;
@@ -141,17 +142,17 @@ static void choose_points(void)
 
 static void points_have_materials(void **state)
 {
-    static KrsHit          hits[COUNT], device_hits[COUNT];
-    static KrsSurfacePoint surfaces[COUNT];
-    const Fixture         *fixture = *state;
+    static KrsHit       hits[COUNT], device_hits[COUNT];
+    static SurfacePoint surfaces[COUNT];
+    const Fixture      *fixture    = *state;
     const double(*places)[3]       = (const double(*)[3])points;
     const float(*single_places)[3] = (const float(*)[3])single_points;
     assert_int_equal(krs_probe(fixture->frame, places, COUNT, hits), KRS_OK);
     assert_int_equal(
         krs_device_probe(fixture->rendering, fixture->frame, places, COUNT, device_hits), KRS_OK);
-    assert_int_equal(
-        krs_sample(fixture->rendering, fixture->frame, single_places, COUNT, NULL, surfaces),
-        KRS_OK);
+    assert_int_equal(point_query_sample(fixture->rendering, fixture->frame, single_places, COUNT,
+                                        NULL, surfaces),
+                     KRS_OK);
     for (int i = 0; i < COUNT; i++) {
         Material material;
         take_surface(&surfaces[i], material);

@@ -35,7 +35,7 @@ static KrsStatus prepare_scene(const KrsRendererOptions *options)
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     KrsStatus status = krs_renderer_new(options, &renderer);
     if (status == KRS_OK)
-        status = krs_rendering_new(renderer, scene, &rendering);
+        status = krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering);
     krs_rendering_free(rendering);
     krs_renderer_free(renderer);
     krs_scene_free(scene);
@@ -263,7 +263,7 @@ static void graphics_cards_do_not_rehearse(void **state)
     assert_true(gpu_wait(gpu));
     gpu->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     gpu->prewarm_pool          = VK_NULL_HANDLE;
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     gpu->prewarm_pool = prewarm_pool;
     krs_rendering_free(rendering);
     krs_renderer_free(renderer);

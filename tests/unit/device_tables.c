@@ -141,9 +141,11 @@ static void a_query_brings_tables(void **state)
     const float   points[1][3] = {{0, 0, 3}};
     float         distance;
     KrsRendering *rendering;
-    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
+    assert_int_equal(
+        krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(krs_sample(rendering, fixture.frame, points, 1, &distance, NULL), KRS_OK);
+        assert_int_equal(krs_device_distance(rendering, fixture.frame, points, 1, &distance),
+                         KRS_OK);
         assert_true(device_has_tables(&fixture, rendering));
     }
     /* Other numbers are found out. */
@@ -159,7 +161,8 @@ static void a_picture_brings_tables(void **state)
     KrsRenderOptions options = {.width = 16, .height = 16};
     KrsPicture      *picture;
     KrsRendering    *rendering;
-    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
+    assert_int_equal(
+        krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     assert_int_equal(krs_render(rendering, fixture.frame, &options, &picture), KRS_OK);
     assert_true(device_has_tables(&fixture, rendering));
     krs_picture_free(picture);
@@ -196,8 +199,8 @@ static void assert_frame_is_seen(Bench *bench, const Fixture *fixture, KrsRender
 {
     static float points[MOVING_POINTS][3], found[MOVING_POINTS];
     points_near(bench, time, height, points);
-    assert_int_equal(krs_sample(rendering, fixture->frame, (const float(*)[3])points, MOVING_POINTS,
-                                found, NULL),
+    assert_int_equal(krs_device_distance(rendering, fixture->frame, (const float(*)[3])points,
+                                         MOVING_POINTS, found),
                      KRS_OK);
     assert_true(device_has_tables(fixture, rendering));
     for (int n = 0; n < MOVING_POINTS; n++) {
@@ -214,7 +217,8 @@ static void rows_are_those_of_the_frame(Bench *bench, unsigned emulation)
     KrsRendering       *rendering;
     assert_true(fixture.scene->program.rows_vary);
     assert_int_equal(fixture.renderer->gpu.texels, emulation == 0);
-    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
+    assert_int_equal(
+        krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         bool same = i > 0 && frames[i][0] == frames[i - 1][0] && frames[i][1] == frames[i - 1][1];
         assert_int_equal(krs_state_set_time(fixture.frame, frames[i][0]), KRS_OK);
@@ -247,7 +251,8 @@ static void pictures_are_those_of_the_frame(void **state)
     KrsRenderOptions         options = {.width = 192, .height = 96, .aovs = AGREEMENT_AOVS};
     Fixture                  fixture = open_scene(moving, 0);
     KrsRendering            *rendering;
-    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
+    assert_int_equal(
+        krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     for (int i = 0; i < 2; i++) {
         char text[512];
         snprintf(text, sizeof text,
@@ -259,7 +264,8 @@ static void pictures_are_those_of_the_frame(void **state)
         assert_int_equal(krs_state_set_time(fixture.frame, times[i]), KRS_OK);
         assert_int_equal(krs_render(rendering, fixture.frame, &options, &pictures[0]), KRS_OK);
         KrsRendering *of_other;
-        assert_int_equal(krs_rendering_new(other.renderer, other.scene, &of_other), KRS_OK);
+        assert_int_equal(
+            krs_rendering_new(other.renderer, other.scene, KRS_FOR_PICTURES, &of_other), KRS_OK);
         assert_int_equal(krs_render(of_other, other.frame, &options, &pictures[1]), KRS_OK);
         Agreement agreement = agreement_of(pictures[0], pictures[1], 1);
         assert_true(agreement.solid > agreement.pixels / 50);
@@ -286,11 +292,14 @@ static void compare_with_room(Bench *bench, unsigned emulation, bool enough)
     limits->maxStorageBufferRange  = (uint32_t)(enough ? most : most - 4 * page);
     limits->maxTexelBufferElements = (uint32_t)(cells / 8 + 2 * page / 8 - (enough ? 0 : page / 2));
     if (enough) {
-        assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
+        assert_int_equal(
+            krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering),
+            KRS_OK);
         krs_rendering_free(rendering);
     } else {
-        assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering),
-                         KRS_NO_DEVICE);
+        assert_int_equal(
+            krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering),
+            KRS_NO_DEVICE);
         assert_null(rendering);
         const char *message = krs_renderer_message(fixture.renderer);
         if (!strstr(message, "no room for the tables of the scene"))

@@ -52,8 +52,9 @@ static Fixture open_fixture(const char *text, unsigned emulation)
     if (krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene) != KRS_OK)
         fail_msg("does not compile: %s", text);
     assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &fixture.rendering),
-                     KRS_OK);
+    assert_int_equal(
+        krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering),
+        KRS_OK);
     return fixture;
 }
 
@@ -143,28 +144,28 @@ static const Case cases[] = {
      "light c { direction: [-1, 1, 0.3], intensity: 0.4 }"
      "light d { position: [0, 4, 2], intensity: 4, color: #0000ff }"
      "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);",
-     {.width = 150, .height = 93, .schedule = KRS_SCHEDULE_QUEUE}},
+     {.width = 150, .height = 93, .methods.schedule = KRS_SCHEDULE_QUEUE}},
     {"several bands",
      "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
      "show torus(1.2, 0.3).move([0, 1, 0]); show box([0.7, 0.7, 0.7]);",
-     {.width = 1100, .height = 500, .schedule = KRS_SCHEDULE_QUEUE}},
+     {.width = 1100, .height = 500, .methods.schedule = KRS_SCHEDULE_QUEUE}},
     {"four samples of 12 mirrors",
      "camera { eye: [2, 6, 22], fov: 0.6 }"
      "show krs { kernel sphere(0.45); for i in 0..12 {"
      "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
-     {.width = 131, .height = 70, .samples = 4, .schedule = KRS_SCHEDULE_QUEUE}},
+     {.width = 131, .height = 70, .samples = 4, .methods.schedule = KRS_SCHEDULE_QUEUE}},
     {"area shadows",
      "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
      "show sphere(1).move([0, 1, 0]) - box([0.8, 0.8, 4]); show plane([0, 1, 0], 0);",
-     {.width    = 97,
-      .height   = 61,
-      .samples  = 2,
-      .shadows  = KRS_SHADOWS_AREA,
-      .schedule = KRS_SCHEDULE_PIXEL}},
+     {.width            = 97,
+      .height           = 61,
+      .samples          = 2,
+      .shadows          = KRS_SHADOWS_AREA,
+      .methods.schedule = KRS_SCHEDULE_PIXEL}},
     {"a panorama",
      "camera { eye: [0.1, 0.2, 0.3], projection: \"panorama\" }"
      "show box([4, 3, 5]) - sphere(0.8).move([1.5, 0, 0.2]);",
-     {.width = 120, .height = 60, .schedule = KRS_SCHEDULE_REFILL}},
+     {.width = 120, .height = 60, .methods.schedule = KRS_SCHEDULE_REFILL}},
     {"paths",
      "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
      "light sun { direction: [1, 2, 1], softness: 8deg, intensity: 2 }"
@@ -172,43 +173,43 @@ static const Case cases[] = {
      "material glass { color: white, transmission: 1, roughness: 0.2, absorption: [1, 0.2, 2] }"
      "show sphere(0.8).move([0, 0.8, 0]).paint(glass); show plane([0, 1, 0], 0);"
      "show torus(0.5, 0.2).move([1.3, 0.2, 0.6]);",
-     {.width      = 70,
-      .height     = 50,
-      .samples    = 2,
-      .bounces    = 5,
-      .integrator = KRS_INTEGRATOR_PATH,
-      .schedule   = KRS_SCHEDULE_QUEUE}},
+     {.width            = 70,
+      .height           = 50,
+      .samples          = 2,
+      .bounces          = 5,
+      .integrator       = KRS_INTEGRATOR_PATH,
+      .methods.schedule = KRS_SCHEDULE_QUEUE}},
     {"few steps",
      "camera { eye: [3, 4, 7], fov: 0.6 }"
      "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
-     {.width = 160, .height = 100, .max_steps = 9, .schedule = KRS_SCHEDULE_QUEUE}},
+     {.width = 160, .height = 100, .methods.max_steps = 9, .methods.schedule = KRS_SCHEDULE_QUEUE}},
     {"a polynomial",
      "camera { eye: [3, 2, 3], fov: 0.6 }"
      "show algebraic(x ^ 4 + y ^ 4 + z ^ 4 == 1).within(sphere(1.5));",
-     {.width = 100, .height = 70, .schedule = KRS_SCHEDULE_QUEUE}},
+     {.width = 100, .height = 70, .methods.schedule = KRS_SCHEDULE_QUEUE}},
     /* Rays that take more steps than a chain has. */
     {"the shortest slices",
      "camera { eye: [3, 4, 7], fov: 0.6 }"
      "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
-     {.width         = 60,
-      .height        = 50,
-      .steps_at_once = 1,
-      .slice_ms      = 1e-3,
-      .trace         = KRS_TRACE_PLAIN,
-      .no_beams      = true,
-      .schedule      = KRS_SCHEDULE_QUEUE}},
+     {.width                 = 60,
+      .height                = 50,
+      .methods.steps_at_once = 1,
+      .slice_ms              = 1e-3,
+      .methods.trace         = KRS_TRACE_PLAIN,
+      .methods.no_beams      = true,
+      .methods.schedule      = KRS_SCHEDULE_QUEUE}},
     /* More groups than the first slice has, and rays with more steps than a chain. */
     {"a chain that stops at once",
      "camera { eye: [2, 6, 22], fov: 0.6 }"
      "show krs { kernel sphere(0.45); for i in 0..12 {"
      "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
-     {.width         = 400,
-      .height        = 300,
-      .steps_at_once = 1,
-      .slice_ms      = 1e6,
-      .trace         = KRS_TRACE_PLAIN,
-      .no_beams      = true,
-      .schedule      = KRS_SCHEDULE_QUEUE}},
+     {.width                 = 400,
+      .height                = 300,
+      .methods.steps_at_once = 1,
+      .slice_ms              = 1e6,
+      .methods.trace         = KRS_TRACE_PLAIN,
+      .methods.no_beams      = true,
+      .methods.schedule      = KRS_SCHEDULE_QUEUE}},
     /* What later dispatches of a chain clear must be there when the host goes on before them. */
     {"chains of several lights that stop",
      "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
@@ -216,7 +217,11 @@ static const Case cases[] = {
      "light { direction: [2, 1, 0], softness: 2deg } light { position: [1, 3, 2], intensity: 8 }"
      "show sphere(1).move([0, 1, 0]); show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);"
      "show plane([0, 1, 0], 0);",
-     {.width = 200, .height = 130, .samples = 4, .slice_ms = 1e-3, .schedule = KRS_SCHEDULE_QUEUE}},
+     {.width            = 200,
+      .height           = 130,
+      .samples          = 4,
+      .slice_ms         = 1e-3,
+      .methods.schedule = KRS_SCHEDULE_QUEUE}},
     {"components by themselves",
      "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);"
      "    for i in 0..6 { reflect plane(random_direction(seed + i), 0.12 * i + 0.05);"
@@ -225,10 +230,10 @@ static const Case cases[] = {
      "show bushes[0].move([-4.5, 0, 0]); show bushes[1].move([-1.5, 0, 1.5]);"
      "show bushes[2].move([1.5, 0, 3]); show bushes[3].move([4.5, 0, 4.5]);"
      "show plane([0, 1, 0], -1); camera { eye: [3, 3, 14], target: [0, 0, 0], fov: 0.6 }",
-     {.width      = 90,
-      .height     = 60,
-      .schedule   = KRS_SCHEDULE_QUEUE,
-      .components = KRS_COMPONENTS_APART}},
+     {.width              = 90,
+      .height             = 60,
+      .methods.schedule   = KRS_SCHEDULE_QUEUE,
+      .methods.components = KRS_COMPONENTS_APART}},
 };
 
 /* Renders a case as the device is, and as it is taken for. */

@@ -62,7 +62,7 @@ static Viewer open_viewer(const char *text)
     Viewer           viewer;
     check(krs_compile_text(text, strlen(text), "edited.krs", &how, &viewer.scene));
     check(krs_state_new(viewer.scene, &viewer.frame));
-    check(krs_rendering_new(renderer, viewer.scene, &viewer.rendering));
+    check(krs_rendering_new(renderer, viewer.scene, KRS_FOR_PICTURES, &viewer.rendering));
     check(krs_film_new(viewer.rendering, &options, &viewer.film));
     return viewer;
 }

@@ -446,7 +446,7 @@ static void pointers_that_are_null_are_refused(void **state)
     assert_null(scene);
     assert_int_equal(krs_compile_text(text, sizeof text - 1, NULL, NULL, &scene), KRS_BAD_ARGUMENT);
     assert_int_equal(krs_compile_file(NULL, NULL, &scene), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_format(NULL, NULL, &formatted, &same), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_format_file(NULL, NULL, &formatted, &same), KRS_BAD_ARGUMENT);
     assert_null(formatted);
     assert_int_equal(krs_compile_text(text, sizeof text - 1, "a.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_scene_update(scene, NULL, 3, &other, NULL), KRS_BAD_ARGUMENT);

@@ -84,9 +84,9 @@ static void sample(double width)
     assert_int_equal(krs_compile_text(text, strlen(text), "ends.krs", NULL, &scene), KRS_OK);
     assert_true(some_function_ends(scene->graph->instances));
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
-    assert_int_equal(krs_sample(rendering, frame, (const float(*)[3])points, POINTS, found, NULL),
-                     KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
+    assert_int_equal(
+        krs_device_distance(rendering, frame, (const float(*)[3])points, POINTS, found), KRS_OK);
     krs_rendering_free(rendering);
     krs_state_free(frame);
     krs_scene_free(scene);

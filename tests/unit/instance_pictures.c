@@ -16,6 +16,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/passes/inspect.h"
+#include "runtime/tracer/query.h"
 #include "tests/support/instance_texts.h"
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
@@ -49,7 +50,8 @@ static void look(Seen *seen, const InstanceText *scenes, size_t count, bool apar
     free(text);
     assert_int_equal(status, KRS_OK);
     assert_int_equal(krs_state_new(seen->scene, &seen->frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, seen->scene, &seen->rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, seen->scene, KRS_FOR_PICTURES, &seen->rendering),
+                     KRS_OK);
     if (krs_render(seen->rendering, seen->frame, &options, &seen->picture) != KRS_OK)
         fail_msg("%s: %s", scenes->name, krs_renderer_message(renderer));
 }
@@ -131,20 +133,20 @@ static void pictures_are_as_apart(void **state)
 /* Far from all parts the distance on the device may be less, and has a normal of length 0 or 1. */
 static void answers_of_the_device_are_bounds(void **state)
 {
-    static double          points[SAMPLED][3], wanted[SAMPLED];
-    static float           places[SAMPLED][3], sampled[SAMPLED];
-    static KrsSurfacePoint surfaces[SAMPLED];
-    static KrsHit          hits[SAMPLED];
-    Random                 random = {SEED};
-    Seen                   seen;
-    int                    less = 0, flat = 0;
+    static double       points[SAMPLED][3], wanted[SAMPLED];
+    static float        places[SAMPLED][3], sampled[SAMPLED];
+    static SurfacePoint surfaces[SAMPLED];
+    static KrsHit       hits[SAMPLED];
+    Random              random = {SEED};
+    Seen                seen;
+    int                 less = 0, flat = 0;
     (void)state;
     look(&seen, &instance_texts[0], 1, false);
     for (int i = 0; i < SAMPLED * 3; i++)
         points[i / 3][i % 3] = places[i / 3][i % 3] = (float)random_between(&random, -2, 2);
     assert_int_equal(krs_distance(seen.frame, (const double(*)[3])points, SAMPLED, wanted), KRS_OK);
-    assert_int_equal(krs_sample(seen.rendering, seen.frame, (const float(*)[3])places, SAMPLED,
-                                sampled, surfaces),
+    assert_int_equal(point_query_sample(seen.rendering, seen.frame, (const float(*)[3])places,
+                                        SAMPLED, sampled, surfaces),
                      KRS_OK);
     assert_int_equal(
         krs_device_probe(seen.rendering, seen.frame, (const double(*)[3])points, SAMPLED, hits),

@@ -283,10 +283,10 @@ static void beams_of_shifted_pictures_lose_nothing(void **state)
     set(fixture, "away", 30);
     for (double size = 0.01; size < 1; size *= 2) {
         set(fixture, "size", size);
-        options.no_beams    = false;
-        KrsPicture *with    = fixture_render(fixture, options);
-        options.no_beams    = true;
-        KrsPicture *without = fixture_render(fixture, options);
+        options.methods.no_beams = false;
+        KrsPicture *with         = fixture_render(fixture, options);
+        options.methods.no_beams = true;
+        KrsPicture *without      = fixture_render(fixture, options);
         assert_memory_equal(with->component, without->component, 4 * SIDE * SIDE);
         krs_picture_free(with);
         krs_picture_free(without);

@@ -85,13 +85,14 @@ static void methods_agree(void **state)
     (void)state;
     size_t wrong = 0;
     for (const Scene *scene = traced_scenes; scene < traced_scenes + SCENES; scene++) {
-        KrsPicture *fine = render_scene(
-            scene,
-            (KrsRenderOptions){.trace = KRS_TRACE_PLAIN, .no_beams = true, .error = FINE_ERROR});
+        KrsPicture *fine = render_scene(scene, (KrsRenderOptions){.methods.trace = KRS_TRACE_PLAIN,
+                                                                  .methods.no_beams = true,
+                                                                  .error            = FINE_ERROR});
         for (KrsTrace trace = 0; trace < KRS_TRACE_COUNT; trace++)
             for (int beams = 0; beams < 2 && !is_spared(scene, trace); beams++)
-                wrong += !agrees(scene, fine,
-                                 (KrsRenderOptions){.trace = trace, .no_beams = !beams});
+                wrong += !agrees(
+                    scene, fine,
+                    (KrsRenderOptions){.methods.trace = trace, .methods.no_beams = !beams});
         krs_picture_free(fine);
     }
     assert_int_equal(wrong, 0);
@@ -146,18 +147,18 @@ static void rays_that_run_out_show_nothing(void **state)
         for (unsigned variant = 0; variant < 2 * KRS_TRACE_COUNT; variant++) {
             if (is_spared(scene, variant / 2))
                 continue;
-            KrsRenderOptions options = {.width    = SMALL_WIDTH,
-                                        .height   = SMALL_HEIGHT,
-                                        .trace    = variant / 2,
-                                        .no_beams = variant % 2,
-                                        .schedule = KRS_SCHEDULE_PIXEL};
-            KrsPicture      *full    = render_scene(scene, options);
-            options.max_steps        = FEW_STEPS;
-            KrsPicture *whole        = render_scene(scene, options);
+            KrsRenderOptions options  = {.width            = SMALL_WIDTH,
+                                         .height           = SMALL_HEIGHT,
+                                         .methods.trace    = variant / 2,
+                                         .methods.no_beams = variant % 2,
+                                         .methods.schedule = KRS_SCHEDULE_PIXEL};
+            KrsPicture      *full     = render_scene(scene, options);
+            options.methods.max_steps = FEW_STEPS;
+            KrsPicture *whole         = render_scene(scene, options);
             wrong += !ends_are_hits(scene, full, whole, words(&options));
             for (KrsSchedule i = KRS_SCHEDULE_REFILL; i < KRS_SCHEDULE_COUNT; i++) {
-                options.schedule    = i;
-                KrsPicture *picture = render_scene(scene, options);
+                options.methods.schedule = i;
+                KrsPicture *picture      = render_scene(scene, options);
                 wrong += picture->stats.unresolved != whole->stats.unresolved;
                 wrong += !is_part_of(scene, whole, picture, words(&options));
             }
@@ -180,16 +181,17 @@ static void rays_with_early_outs_that_run_out_show_nothing(void **state)
         Scene scene = traced_scenes[i];
         if (i == LANDSCAPE || i == INSIDE)
             continue; /* nothing in them is left out */
-        assert_int_equal(krs_rendering_new(early, scene.scene, &scene.rendering), KRS_OK);
+        assert_int_equal(krs_rendering_new(early, scene.scene, KRS_FOR_PICTURES, &scene.rendering),
+                         KRS_OK);
         for (int k = 0; k < 2 * KRS_COMPONENTS_COUNT; k++) {
-            KrsRenderOptions rendering = {.width      = SMALL_WIDTH,
-                                          .height     = SMALL_HEIGHT,
-                                          .no_beams   = k % 2,
-                                          .components = k / 2,
-                                          .schedule   = KRS_SCHEDULE_PIXEL};
-            KrsPicture      *full      = render_scene(&scene, rendering);
-            rendering.max_steps        = FEW_STEPS;
-            KrsPicture *picture        = render_scene(&scene, rendering);
+            KrsRenderOptions rendering  = {.width              = SMALL_WIDTH,
+                                           .height             = SMALL_HEIGHT,
+                                           .methods.no_beams   = k % 2,
+                                           .methods.components = k / 2,
+                                           .methods.schedule   = KRS_SCHEDULE_PIXEL};
+            KrsPicture      *full       = render_scene(&scene, rendering);
+            rendering.methods.max_steps = FEW_STEPS;
+            KrsPicture *picture         = render_scene(&scene, rendering);
             wrong += !ends_are_hits(&scene, full, picture, words(&rendering));
             krs_picture_free(picture);
             krs_picture_free(full);

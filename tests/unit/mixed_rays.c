@@ -65,7 +65,7 @@ static Fixture open_fixture(const char *text, KrsPurpose purpose)
     Fixture fixture;
     assert_int_equal(krs_compile_text(text, strlen(text), "mixed", NULL, &fixture.scene), KRS_OK);
     assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new_for(renderer, fixture.scene, purpose, &fixture.rendering),
+    assert_int_equal(krs_rendering_new(renderer, fixture.scene, purpose, &fixture.rendering),
                      KRS_OK);
     return fixture;
 }
@@ -80,11 +80,11 @@ static void close_fixture(Fixture *fixture)
 static KrsPicture *render(const Fixture *fixture, KrsIntegrator integrator,
                           KrsComponents components)
 {
-    const KrsRenderOptions options = {.width      = WIDTH,
-                                      .height     = HEIGHT,
-                                      .bounces    = 3,
-                                      .integrator = integrator,
-                                      .components = components};
+    const KrsRenderOptions options = {.width              = WIDTH,
+                                      .height             = HEIGHT,
+                                      .bounces            = 3,
+                                      .integrator         = integrator,
+                                      .methods.components = components};
     KrsPicture            *picture;
     if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));

@@ -63,10 +63,10 @@ static size_t count_seen(KrsIntegrator integrator)
         options.crop = crops[i];
         wrong += !is_part_of(&lit, whole, render_scene(&lit, options), words(&options));
     }
-    options               = usual(integrator);
-    options.steps_at_once = 3;
-    options.schedule      = KRS_SCHEDULE_QUEUE;
-    options.crop          = (KrsWindow){40, 24, 17, 9};
+    options                       = usual(integrator);
+    options.methods.steps_at_once = 3;
+    options.methods.schedule      = KRS_SCHEDULE_QUEUE;
+    options.crop                  = (KrsWindow){40, 24, 17, 9};
     wrong += !is_part_of(&lit, whole, render_scene(&lit, options), words(&options));
     krs_picture_free(whole);
     return wrong;

@@ -139,7 +139,7 @@ static uint8_t *render(const Fixture *fixture, const char *text, double r)
     assert_int_equal(krs_compile_text(text, strlen(text), "a", &with, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_state_set(frame, "r", &r, 1), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     assert_int_equal(krs_film_new(rendering, &options, &film), KRS_OK);
     assert_int_equal(krs_film_add(film, frame, &fixture->view.camera, 1), KRS_OK);
     assert_int_equal(krs_film_read(film, KRS_AOV_COLOR, &picture), KRS_OK);

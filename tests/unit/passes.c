@@ -19,7 +19,7 @@ static const char example[] = "examples/03-machined-part.krs";
 static char *dump(const char *path, const char *after, KrsStatus expected)
 {
     char *text = NULL;
-    assert_int_equal(krs_dump(path, after, NULL, &text), expected);
+    assert_int_equal(krs_dump(NULL, 0, path, after, NULL, &text), expected);
     return text;
 }
 

@@ -55,12 +55,12 @@ static Scene daylight = {
 
 static KrsRenderOptions usual(void)
 {
-    return (KrsRenderOptions){.width      = SMALL_WIDTH,
-                              .height     = SMALL_HEIGHT,
-                              .samples    = 2,
-                              .bounces    = 6,
-                              .integrator = KRS_INTEGRATOR_PATH,
-                              .schedule   = KRS_SCHEDULE_PIXEL};
+    return (KrsRenderOptions){.width            = SMALL_WIDTH,
+                              .height           = SMALL_HEIGHT,
+                              .samples          = 2,
+                              .bounces          = 6,
+                              .integrator       = KRS_INTEGRATOR_PATH,
+                              .methods.schedule = KRS_SCHEDULE_PIXEL};
 }
 
 static int open_still(void **state) { return open_watched(state) || open_scene(&still) != KRS_OK; }
@@ -78,7 +78,7 @@ static void schedules_are_not_seen(void **state)
     KrsPicture      *whole   = render_scene(&still, options);
     size_t           wrong   = 0;
     for (KrsSchedule schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-        options.schedule = schedule;
+        options.methods.schedule = schedule;
         wrong += !is_part_of(&still, whole, render_scene(&still, options), words(&options));
     }
     assert_int_equal(wrong, 0);
@@ -93,9 +93,9 @@ static void crops_are_not_seen(void **state)
     KrsRenderOptions options = usual();
     size_t           wrong   = 0;
     for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-        options.schedule  = schedule;
-        options.crop      = (KrsWindow){0};
-        KrsPicture *whole = render_scene(&still, options);
+        options.methods.schedule = schedule;
+        options.crop             = (KrsWindow){0};
+        KrsPicture *whole        = render_scene(&still, options);
         for (size_t i = 0; i < sizeof crops / sizeof crops[0]; i++) {
             options.crop = crops[i];
             wrong += !is_part_of(&still, whole, render_scene(&still, options), words(&options));
@@ -109,11 +109,11 @@ static void crops_and_slices_of_daylight_are_not_seen(void **state)
 {
     (void)state;
     assert_int_equal(open_scene(&daylight), KRS_OK);
-    KrsRenderOptions options = usual();
-    KrsPicture      *whole   = render_scene(&daylight, options);
-    options.crop             = (KrsWindow){33, 17, 41, 30};
-    options.steps_at_once    = 64;
-    options.schedule         = KRS_SCHEDULE_REFILL;
+    KrsRenderOptions options      = usual();
+    KrsPicture      *whole        = render_scene(&daylight, options);
+    options.crop                  = (KrsWindow){33, 17, 41, 30};
+    options.methods.steps_at_once = 64;
+    options.methods.schedule      = KRS_SCHEDULE_REFILL;
     bool same = is_part_of(&daylight, whole, render_scene(&daylight, options), words(&options));
     krs_picture_free(whole);
     close_scene(&daylight);
@@ -131,12 +131,12 @@ static void slices_are_not_seen(void **state)
     size_t wrong = 0;
     for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         KrsRenderOptions options = usual();
-        options.schedule         = schedule;
+        options.methods.schedule = schedule;
         KrsPicture *whole        = render_scene(&still, options);
         for (size_t i = 0; i < sizeof slices / sizeof slices[0]; i++) {
-            options.steps_at_once = slices[i].steps_at_once;
-            options.slice_ms      = slices[i].slice_ms;
-            options.crop          = slices[i].crop;
+            options.methods.steps_at_once = slices[i].steps_at_once;
+            options.slice_ms              = slices[i].slice_ms;
+            options.crop                  = slices[i].crop;
             wrong += !is_part_of(&still, whole, render_scene(&still, options), words(&options));
         }
         krs_picture_free(whole);

@@ -111,9 +111,9 @@ static int open_scenes(void **state)
         if (status == KRS_OK && i == ZONED)
             status = krs_state_set_zones(s->frame, &zone, 1);
         if (status == KRS_OK)
-            status = krs_rendering_new(plain, s->scene, &s->plain);
+            status = krs_rendering_new(plain, s->scene, KRS_FOR_PICTURES, &s->plain);
         if (status == KRS_OK)
-            status = krs_rendering_new(early, s->scene, &s->early);
+            status = krs_rendering_new(early, s->scene, KRS_FOR_PICTURES, &s->early);
     }
     return status != KRS_OK;
 }
@@ -202,9 +202,9 @@ static void check_same(const Scene *scene, const KrsPicture *a, const KrsPicture
     assert_int_equal(b->stats.unresolved, 0);
 }
 
-static const KrsRenderOptions together = {.components = KRS_COMPONENTS_TOGETHER};
-static const KrsRenderOptions by_turns = {.components = KRS_COMPONENTS_APART};
-static const KrsRenderOptions packed   = {.components = KRS_COMPONENTS_PACKED};
+static const KrsRenderOptions together = {.methods.components = KRS_COMPONENTS_TOGETHER};
+static const KrsRenderOptions by_turns = {.methods.components = KRS_COMPONENTS_APART};
+static const KrsRenderOptions packed   = {.methods.components = KRS_COMPONENTS_PACKED};
 
 static void parts_make_the_union(void **state)
 {
@@ -256,15 +256,15 @@ static void crops_and_schedules_change_nothing(void **state)
 {
     (void)state;
     const Scene     *scene = &scenes[GROUND];
-    KrsRenderOptions apart = {.components = KRS_COMPONENTS_APART};
+    KrsRenderOptions apart = {.methods.components = KRS_COMPONENTS_APART};
     KrsPicture      *whole = render(scene, false, apart);
     apart.crop             = (KrsWindow){37, 21, 60, 50};
     KrsPicture *part       = render(scene, false, apart);
     check_equal(whole, part);
     krs_picture_free(part);
     for (int schedule = KRS_SCHEDULE_PIXEL; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-        apart.schedule = (KrsSchedule)schedule;
-        part           = render(scene, false, apart);
+        apart.methods.schedule = (KrsSchedule)schedule;
+        part                   = render(scene, false, apart);
         check_equal(whole, part);
         krs_picture_free(part);
     }
@@ -299,7 +299,7 @@ static void spiral_is_the_union(int count, double far, const char *more, const c
     KrsOptions with = {.diagnostic = print_diagnostic};
     assert_int_equal(krs_compile_text(text.bytes, text.length, name, &with, &scene.scene), KRS_OK);
     assert_int_equal(krs_state_new(scene.scene, &scene.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(plain, scene.scene, &scene.plain), KRS_OK);
+    assert_int_equal(krs_rendering_new(plain, scene.scene, KRS_FOR_PICTURES, &scene.plain), KRS_OK);
     assert_int_equal(krs_scene_program(scene.scene)->camera_relative, far > 0);
     KrsPicture *whole = render(&scene, false, together), *turns = render(&scene, false, packed);
     check_same(&scene, whole, turns);
@@ -346,7 +346,7 @@ static void packed_in_every_way(void **state)
     KrsPicture  *whole = render(scene, false, packed);
     for (int schedule = KRS_SCHEDULE_PIXEL; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         KrsRenderOptions options = packed;
-        options.schedule         = (KrsSchedule)schedule;
+        options.methods.schedule = (KrsSchedule)schedule;
         options.crop             = (KrsWindow){41, 21, 70, 50};
         KrsPicture *part         = render(scene, false, options);
         check_equal(whole, part);
@@ -354,8 +354,8 @@ static void packed_in_every_way(void **state)
     }
     for (int trace = KRS_TRACE_PLAIN; trace <= KRS_TRACE_RELAXED; trace++) {
         KrsRenderOptions options = packed;
-        options.trace            = (KrsTrace)trace;
-        options.no_beams         = true;
+        options.methods.trace    = (KrsTrace)trace;
+        options.methods.no_beams = true;
         KrsPicture *other        = render(scene, false, options);
         check_same(scene, whole, other);
         krs_picture_free(other);

@@ -128,7 +128,7 @@ static void beams_see_beside_their_tiles(void **state)
                                 .no_occlusion = true,
                                 .pixel_filter = KRS_PIXEL_FILTER_GAUSSIAN};
     KrsPicture      *with    = fixture_render(&fixture, options);
-    options.no_beams         = true;
+    options.methods.no_beams = true;
     KrsPicture *without      = fixture_render(&fixture, options);
     size_t      differ = 0, seen = 0;
     for (size_t i = 3; i < (size_t)4 * 128 * 128; i += 4) {

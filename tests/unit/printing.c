@@ -460,7 +460,7 @@ static void compare_variants(const char *path)
     KrsRendering *rendering;
     assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_state_set_time(frame, 0.7), KRS_OK);
-    assert_int_equal(krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
     for (int i = 0; i < POINTS; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = 6 * fmod(i * (double[]){0.8191725, 0.6710436, 0.5497005}[k], 1) - 3;

@@ -53,7 +53,7 @@ static KrsStatus refute(const char *text, double seconds, Said *said, KrsRefutat
     *said                    = (Said){0};
     KrsOptions       options = {.diagnostic = take, .user = said};
     KrsRefuteOptions how     = {.seconds = seconds, .seed = 3};
-    KrsStatus        status  = krs_refute(path, &options, &how, result);
+    KrsStatus        status  = krs_refute(NULL, 0, path, &options, &how, result);
     unlink(path);
     return status;
 }
@@ -263,8 +263,9 @@ static void a_search_can_be_stopped(void **state)
     (void)state;
     KrsRefutation    result;
     KrsRefuteOptions how = {.seconds = 1e6, .progress = stop};
-    assert_int_equal(krs_refute("examples/01-hello.krs", NULL, &how, &result), KRS_INTERRUPTED);
-    assert_int_equal(krs_refute("no-such-scene.krs", NULL, &how, &result), KRS_IO_ERROR);
+    assert_int_equal(krs_refute(NULL, 0, "examples/01-hello.krs", NULL, &how, &result),
+                     KRS_INTERRUPTED);
+    assert_int_equal(krs_refute(NULL, 0, "no-such-scene.krs", NULL, &how, &result), KRS_IO_ERROR);
 }
 
 /* ---- broken between compiling and searching ---- */
@@ -292,7 +293,7 @@ static KrsStatus refute_broken(const char *text, Breaking *b, Said *said)
     write_scene(path, text);
     *said              = (Said){0};
     KrsOptions options = {.diagnostic = take, .user = said};
-    KrsStatus  status  = inspect_file(path, &options, break_and_refute, b);
+    KrsStatus  status  = inspect_text(NULL, 0, path, &options, break_and_refute, b);
     unlink(path);
     return status;
 }

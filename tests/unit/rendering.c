@@ -56,9 +56,10 @@ static void progress_goes_forwards(void **state)
     Fixture fixture = {0};
     double  done    = 0;
     fixture_open(&fixture, landscape_text, NULL);
-    krs_picture_free(fixture_render(
-        &fixture, (KrsRenderOptions){
-                      .steps_at_once = 10, .samples = 3, .progress = never_back, .user = &done}));
+    krs_picture_free(fixture_render(&fixture, (KrsRenderOptions){.methods.steps_at_once = 10,
+                                                                 .samples               = 3,
+                                                                 .progress = never_back,
+                                                                 .user     = &done}));
     assert_near(done, 1, 1e-9);
     fixture_close(&fixture);
 }
@@ -90,7 +91,8 @@ static void compiling_is_interrupted(void **state)
     assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
     for (int most = 1;; most += 2) {
         compiling        = (Compiling){.most = most};
-        KrsStatus status = krs_rendering_new(renderer, fixture->scene, &rendering);
+        KrsStatus status = krs_rendering_new(renderer, fixture->scene, KRS_FOR_PICTURES,
+                                             &rendering);
         if (status == KRS_OK)
             break;
         assert_int_equal(status, KRS_INTERRUPTED);
@@ -120,9 +122,9 @@ static void shaders_are_made_ahead(void **state)
     krs_renderer_free(renderer);
     for (int purpose = 0; purpose < 2; purpose++) {
         assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
-        assert_int_equal(krs_rendering_new_for(renderer, fixture->scene,
-                                               purpose ? KRS_FOR_PICTURES : KRS_FOR_QUESTIONS,
-                                               &rendering),
+        assert_int_equal(krs_rendering_new(renderer, fixture->scene,
+                                           purpose ? KRS_FOR_PICTURES : KRS_FOR_QUESTIONS,
+                                           &rendering),
                          KRS_OK);
         assert_int_equal(krs_render(rendering, fixture->frame, &small, &picture), KRS_OK);
         assert_memory_equal(picture->color, meant->color,
@@ -139,7 +141,7 @@ static void shaders_are_made_ahead(void **state)
 static void exhausted_rays_are_counted(void **state)
 {
     Fixture    *fixture  = *state;
-    KrsPicture *picture  = fixture_render(fixture, (KrsRenderOptions){.max_steps = 3});
+    KrsPicture *picture  = fixture_render(fixture, (KrsRenderOptions){.methods.max_steps = 3});
     size_t      creeping = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         assert_true(picture->steps[i] <= 3 + 3); /* a ray that is there may finish */
@@ -162,16 +164,17 @@ static void wrong_use_is_refused(void **state)
         {.error = -1},
         {.error = NAN},
         {.slice_ms = -1},
-        {.steps_at_once = 8193},
-        {.trace = KRS_TRACE_COUNT},
-        {.trace = KRS_TRACE_TAYLOR},    /* the scene was not compiled for that */
-        {.trace = KRS_TRACE_PREDICTED}, /* or for that */
-        {.schedule = KRS_SCHEDULE_COUNT},
+        {.methods.steps_at_once = 8193},
+        {.methods.trace = KRS_TRACE_COUNT},
+        {.methods.trace = KRS_TRACE_TAYLOR},    /* the scene was not compiled for that */
+        {.methods.trace = KRS_TRACE_PREDICTED}, /* or for that */
+        {.methods.schedule = KRS_SCHEDULE_COUNT},
         {.shadows = KRS_SHADOWS_COUNT},
-        {.starts = KRS_STARTS_COUNT},
+        {.methods.starts = KRS_STARTS_COUNT},
+        {.methods.reserved = {1}},
         {.catcher = KRS_CATCHER_COUNT},
         {.catcher = KRS_CATCHER_SHADOWS}, /* on what? */
-        {.even_hits = KRS_MAX_EVEN_HITS + 1},
+        {.methods.even_hits = KRS_MAX_EVEN_HITS + 1},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
@@ -235,7 +238,7 @@ static void planes_do_not_hang_on_others(void **state)
 /* The steps of the first rays are among what the statistics count. */
 static void evaluations_are_counted(void **state)
 {
-    KrsPicture *picture = fixture_render(*state, (KrsRenderOptions){.no_beams = true});
+    KrsPicture *picture = fixture_render(*state, (KrsRenderOptions){.methods.no_beams = true});
     uint64_t    sum     = 0;
     uint32_t    most    = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
@@ -350,7 +353,7 @@ static KrsStatus render_with(Scarce *scarce, Fixture *fixture)
     KrsRendererOptions options = {.device = tested_device(), .allocator = scarce_allocator(scarce)};
     KrsStatus          status  = krs_renderer_new(&options, &renderer);
     if (status == KRS_OK)
-        status = krs_rendering_new(renderer, fixture->scene, &rendering);
+        status = krs_rendering_new(renderer, fixture->scene, KRS_FOR_PICTURES, &rendering);
     if (status == KRS_OK)
         status = krs_render(rendering, fixture->frame, &small, &picture);
     if (status != KRS_OK)

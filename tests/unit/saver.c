@@ -63,7 +63,7 @@ static int set_up(void **state)
     const KrsScene *scene = version_scene(view->version);
     krs_state_new(scene, &stage.frame);
     krs_state_set(stage.frame, "r", values[0], 1);
-    krs_rendering_new(renderer, scene, &stage.rendering);
+    krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &stage.rendering);
     krs_state_set_time(stage.frame, view->time);
     krs_state_camera(stage.frame, 0, &view->camera);
     stage.saver = saver_new(&with, nothing_is_told, NULL);

@@ -24,17 +24,17 @@ static void schedules_are_not_seen(void **state)
             if (is_spared(scene, variant / 2))
                 continue;
             /* Automatic relaxation with several rays a pixel, too. */
-            KrsRenderOptions options = {.width    = SMALL_WIDTH,
-                                        .height   = SMALL_HEIGHT,
-                                        .trace    = variant / 2,
-                                        .no_beams = variant % 2,
-                                        .samples  = variant / 2 == KRS_TRACE_AUTO ? 4 : 1,
-                                        .schedule = KRS_SCHEDULE_PIXEL};
+            KrsRenderOptions options = {.width            = SMALL_WIDTH,
+                                        .height           = SMALL_HEIGHT,
+                                        .methods.trace    = variant / 2,
+                                        .methods.no_beams = variant % 2,
+                                        .samples          = variant / 2 == KRS_TRACE_AUTO ? 4 : 1,
+                                        .methods.schedule = KRS_SCHEDULE_PIXEL};
             KrsPicture      *whole   = render_scene(scene, options);
             /* The default is one of the others, and one that is repeated is the same: once each. */
             KrsSchedule first = variant == 0 ? KRS_SCHEDULE_DEFAULT : KRS_SCHEDULE_REFILL;
             for (KrsSchedule i = first; i < KRS_SCHEDULE_COUNT; i++) {
-                options.schedule = i;
+                options.methods.schedule = i;
                 wrong += !is_part_of(scene, whole, render_scene(scene, options), words(&options));
             }
             krs_picture_free(whole);
@@ -50,7 +50,7 @@ static void crops_are_not_seen(void **state)
     size_t wrong = 0;
     for (const Scene *scene = traced_scenes; scene < traced_scenes + SCENES; scene++)
         for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-            KrsRenderOptions options = {.schedule = schedule, .samples = 4};
+            KrsRenderOptions options = {.methods.schedule = schedule, .samples = 4};
             KrsPicture      *whole   = render_scene(scene, options);
             for (size_t i = 0; i < sizeof crops / sizeof crops[0]; i++) {
                 options.crop = crops[i];
@@ -72,13 +72,15 @@ static void slices_are_not_seen(void **state)
     size_t wrong = 0;
     for (const Scene *scene = traced_scenes; scene < traced_scenes + SCENES; scene++)
         for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-            KrsRenderOptions options = {
-                .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .schedule = schedule, .samples = 2};
-            KrsPicture *whole = render_scene(scene, options);
+            KrsRenderOptions options = {.width            = SMALL_WIDTH,
+                                        .height           = SMALL_HEIGHT,
+                                        .methods.schedule = schedule,
+                                        .samples          = 2};
+            KrsPicture      *whole   = render_scene(scene, options);
             for (size_t i = 0; i < sizeof slices / sizeof slices[0]; i++) {
-                options.steps_at_once = slices[i].steps_at_once;
-                options.slice_ms      = slices[i].slice_ms;
-                options.crop          = slices[i].crop;
+                options.methods.steps_at_once = slices[i].steps_at_once;
+                options.slice_ms              = slices[i].slice_ms;
+                options.crop                  = slices[i].crop;
                 wrong += !is_part_of(scene, whole, render_scene(scene, options), words(&options));
             }
             krs_picture_free(whole);
@@ -93,9 +95,10 @@ static void the_shortest_slices_are_not_seen(void **state)
     const Scene *scene = &traced_scenes[PART];
     size_t       wrong = 0;
     for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-        KrsRenderOptions options = {.schedule = schedule, .steps_at_once = 3, .slice_ms = 1e-3};
-        KrsPicture      *whole   = render_scene(scene, (KrsRenderOptions){.schedule = schedule});
-        options.crop             = (KrsWindow){30, 20, 100, 60};
+        KrsRenderOptions options = {
+            .methods.schedule = schedule, .methods.steps_at_once = 3, .slice_ms = 1e-3};
+        KrsPicture *whole = render_scene(scene, (KrsRenderOptions){.methods.schedule = schedule});
+        options.crop      = (KrsWindow){30, 20, 100, 60};
         wrong += !is_part_of(scene, whole, render_scene(scene, options), words(&options));
         krs_picture_free(whole);
     }
@@ -111,7 +114,7 @@ static void bands_are_not_seen(void **state)
     const Scene *scene = &traced_scenes[LANDSCAPE];
     size_t       wrong = 0;
     for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-        KrsRenderOptions options = {.width = 1000, .height = 600, .schedule = schedule};
+        KrsRenderOptions options = {.width = 1000, .height = 600, .methods.schedule = schedule};
         KrsPicture      *whole   = render_scene(scene, options);
         for (size_t i = 0; i < sizeof crops / sizeof crops[0]; i++) {
             options.crop = crops[i];
@@ -131,9 +134,10 @@ static void loops_within_distances_count(void **state)
                    .text = "camera { eye: [0, 0, -6], projection: \"orthographic\", height: 2.6 }"
                            "show julia(c: [-0.083, 0, -0.83, -0.025], power: 2, iterations: 64);"};
     assert_int_equal(open_scene(&scene), KRS_OK);
-    KrsRenderOptions options = {.width = 240, .height = 136, .schedule = KRS_SCHEDULE_PIXEL};
-    KrsPicture      *whole   = render_scene(&scene, options);
-    options.schedule         = KRS_SCHEDULE_REFILL;
+    KrsRenderOptions options = {
+        .width = 240, .height = 136, .methods.schedule = KRS_SCHEDULE_PIXEL};
+    KrsPicture *whole        = render_scene(&scene, options);
+    options.methods.schedule = KRS_SCHEDULE_REFILL;
     assert_true(is_part_of(&scene, whole, render_scene(&scene, options), words(&options)));
     krs_picture_free(whole);
     close_scene(&scene);

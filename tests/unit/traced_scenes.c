@@ -98,7 +98,8 @@ KrsStatus open_scene(Scene *scene)
     if (status == KRS_OK)
         status = krs_state_new(scene->scene, &scene->frame);
     if (status == KRS_OK)
-        status = krs_rendering_new(watched_renderer, scene->scene, &scene->rendering);
+        status = krs_rendering_new(watched_renderer, scene->scene, KRS_FOR_PICTURES,
+                                   &scene->rendering);
     return status;
 }
 
@@ -168,7 +169,7 @@ KrsPicture *render_scene(const Scene *scene, KrsRenderOptions options)
     }
     if (krs_render(scene->rendering, scene->frame, &options, &picture) != KRS_OK)
         fail_msg("%s: %s", scene->name, krs_renderer_message(watched_renderer));
-    if (options.max_steps == 0)
+    if (options.methods.max_steps == 0)
         assert_int_equal(picture->stats.unresolved, 0);
     return picture;
 }
@@ -221,13 +222,14 @@ bool is_part_of(const Scene *scene, const KrsPicture *whole, KrsPicture *part, c
 const char *words(const KrsRenderOptions *options)
 {
     static char     text[200];
-    const KrsWindow crop = options->crop;
-    int length = snprintf(text, sizeof text, "%s, %s, beams %s", krs_trace_names[options->trace],
-                          krs_schedule_names[options->schedule], options->no_beams ? "off" : "on");
-    if (options->samples > 1 || crop.width > 0 || options->steps_at_once > 0)
+    const KrsWindow crop   = options->crop;
+    int             length = snprintf(
+                    text, sizeof text, "%s, %s, beams %s", krs_trace_names[options->methods.trace],
+                    krs_schedule_names[options->methods.schedule], options->methods.no_beams ? "off" : "on");
+    if (options->samples > 1 || crop.width > 0 || options->methods.steps_at_once > 0)
         snprintf(text + length, sizeof text - (size_t)length,
                  ", %u samples, from (%u, %u) %u by %u, %u steps at once, %g ms", options->samples,
-                 crop.x, crop.y, crop.width, crop.height, options->steps_at_once,
+                 crop.x, crop.y, crop.width, crop.height, options->methods.steps_at_once,
                  options->slice_ms);
     return text;
 }

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
+#include "runtime/tracer/query.h"
 #include "tests/unit/tracer_fixture.h"
 
 /* The same on a ground that has to be marched. */
@@ -204,7 +205,7 @@ static void samples_converge_on_the_area(void **state)
 {
     Fixture         *fixture = *state;
     double           share = 0, pixel = 3.0 / HEIGHT;
-    KrsRenderOptions options = {.camera = FLAT, .error = 0.01, .no_filter = true};
+    KrsRenderOptions options = {.camera = FLAT, .error = 0.01, .methods.no_filter = true};
     KrsPicture      *one     = fixture_render(fixture, options);
     options.samples          = 32;
     KrsPicture *many         = fixture_render(fixture, options);
@@ -231,14 +232,14 @@ static void samples_converge_on_the_area(void **state)
 static void points_are_sampled(void **state)
 {
     enum { COUNT = 40000 };
-    Fixture               *fixture = *state;
-    static float           points[COUNT][3], distances[COUNT];
-    static KrsSurfacePoint surfaces[COUNT];
+    Fixture            *fixture = *state;
+    static float        points[COUNT][3], distances[COUNT];
+    static SurfacePoint surfaces[COUNT];
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = (float)sin(i * (k + 1.7)) * 3;
-    KrsStatus status = krs_sample(fixture->rendering, fixture->frame, (const float(*)[3])points,
-                                  COUNT, distances, surfaces);
+    KrsStatus status = point_query_sample(fixture->rendering, fixture->frame,
+                                          (const float(*)[3])points, COUNT, distances, surfaces);
     assert_int_equal(status, KRS_OK);
     for (int i = 0; i < COUNT; i++) {
         double offset[3];
@@ -248,8 +249,9 @@ static void points_are_sampled(void **state)
         assert_near(surfaces[i].distance, distances[i], 2e-6);
         assert_int_equal(surfaces[i].component, 1);
     }
-    assert_int_equal(krs_sample(fixture->rendering, fixture->frame, NULL, 0, NULL, NULL), KRS_OK);
-    assert_int_equal(krs_sample(fixture->rendering, fixture->frame, NULL, 1, distances, NULL),
+    assert_int_equal(krs_device_distance(fixture->rendering, fixture->frame, NULL, 0, NULL),
+                     KRS_OK);
+    assert_int_equal(krs_device_distance(fixture->rendering, fixture->frame, NULL, 1, distances),
                      KRS_BAD_ARGUMENT);
 }
 
@@ -271,10 +273,10 @@ static void slices_are_not_seen(void **state)
     (void)state;
     Fixture fixture = {0};
     fixture_open(&fixture, landscape_text, NULL);
-    KrsPicture *whole  = fixture_render(&fixture,
-                                        (KrsRenderOptions){.slice_ms = 1e6, .steps_at_once = 8192});
-    KrsPicture *sliced = fixture_render(&fixture,
-                                        (KrsRenderOptions){.slice_ms = 0.001, .steps_at_once = 3});
+    KrsPicture *whole = fixture_render(
+        &fixture, (KrsRenderOptions){.slice_ms = 1e6, .methods.steps_at_once = 8192});
+    KrsPicture *sliced = fixture_render(
+        &fixture, (KrsRenderOptions){.slice_ms = 0.001, .methods.steps_at_once = 3});
     assert_true(whole->stats.max_evaluations_per_ray > 30);
     assert_same_pictures(whole, sliced, (size_t)WIDTH * HEIGHT);
     assert_int_equal(whole->stats.evaluations, sliced->stats.evaluations);
@@ -295,7 +297,7 @@ static void beams_are_not_seen(void **state)
     fixture_open(&fixture, terrace_text, NULL);
     KrsPicture *behind = fixture_render(&fixture, (KrsRenderOptions){.samples = 1});
     KrsPicture *alone  = fixture_render(&fixture,
-                                        (KrsRenderOptions){.samples = 1, .no_beams = true});
+                                        (KrsRenderOptions){.samples = 1, .methods.no_beams = true});
     unsigned    other = 0, apart = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         other += behind->component[i] != alone->component[i];

@@ -62,7 +62,8 @@ static void open_with(Fixture *fixture, const char *text, KrsRendererOptions opt
     assert_int_equal(krs_compile_text(text, strlen(text), "test.krs", &compiling, &fixture->scene),
                      KRS_OK);
     assert_int_equal(krs_state_new(fixture->scene, &fixture->frame), KRS_OK);
-    if (krs_rendering_new(fixture->renderer, fixture->scene, &fixture->rendering) != KRS_OK)
+    if (krs_rendering_new(fixture->renderer, fixture->scene, KRS_FOR_PICTURES,
+                          &fixture->rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture->renderer));
 }
 

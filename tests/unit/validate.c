@@ -78,10 +78,10 @@ KrsStatus krs_probe(KrsState *frame, const double (*points)[3], size_t count, Kr
     return KRS_OK;
 }
 
-KrsStatus krs_sample(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
-                     size_t count, float *distances, KrsSurfacePoint *surfaces)
+KrsStatus krs_device_distance(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
+                              size_t count, float *distances)
 {
-    (void)rendering, (void)frame, (void)surfaces;
+    (void)rendering, (void)frame;
     for (size_t i = 0; i < count; i++) {
         double point[3] = {points[i][0], points[i][1], points[i][2]};
         distances[i]    = (float)(ball(point) + device_error);
@@ -128,11 +128,18 @@ KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
     return KRS_OK;
 }
 
-KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **rendering)
+KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
+                            KrsRendering **rendering)
 {
-    (void)renderer, (void)scene;
+    (void)renderer, (void)scene, (void)purpose;
     *rendering = (KrsRendering *)&something;
     return KRS_OK;
+}
+
+const char *scene_input(const Options *options, const char *path)
+{
+    (void)options, (void)path;
+    return NULL;
 }
 
 KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules *modules)
@@ -143,10 +150,10 @@ KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules
 }
 
 /* The search has tests of its own, search.c and refute.c. */
-KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
-                     KrsRefutation *result)
+KrsStatus krs_refute(const char *text, size_t length, const char *name, const KrsOptions *options,
+                     const KrsRefuteOptions *how, KrsRefutation *result)
 {
-    (void)path, (void)options, (void)how;
+    (void)text, (void)length, (void)name, (void)options, (void)how;
     *result = (KrsRefutation){.refuted = search_refutes};
     return search_refutes ? KRS_BAD_SCENE : KRS_OK;
 }

@@ -27,8 +27,9 @@ bool research_applies(const KrsProgram *program, const ResearchTrace *research)
 
 bool research_pass(const KrsRenderOptions *options, const KrsProgram *program, ResearchPass *pass)
 {
-    *pass = (ResearchPass){"research/even_hits.comp", KRS_FUNCTION_DISTANCE, options->even_hits};
-    return options->even_hits > 0 && !program->open_surfaces;
+    *pass = (ResearchPass){"research/even_hits.comp", KRS_FUNCTION_DISTANCE,
+                           options->methods.even_hits};
+    return options->methods.even_hits > 0 && !program->open_surfaces;
 }
 
 const char *research_starts(KrsStarts starts)

@@ -29,12 +29,12 @@ enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
 static KrsPicture *find_hits(const PathFixture *fixture, uint32_t iterations)
 {
-    const KrsRenderOptions options = {.width     = WIDTH,
-                                      .height    = HEIGHT,
-                                      .samples   = 1,
-                                      .error     = 4,
-                                      .aovs      = KRS_AOV_POSITION | KRS_AOV_DEPTH,
-                                      .even_hits = iterations};
+    const KrsRenderOptions options = {.width             = WIDTH,
+                                      .height            = HEIGHT,
+                                      .samples           = 1,
+                                      .error             = 4,
+                                      .aovs              = KRS_AOV_POSITION | KRS_AOV_DEPTH,
+                                      .methods.even_hits = iterations};
     return path_fixture_render(fixture, &options);
 }
 
@@ -91,13 +91,13 @@ static void starts_bring_all_light(void **state)
     const double expected = (1 - mirrored) * (1 - mirrored) * kept /
                             (1 - mirrored * mirrored * kept * kept);
     PathFixture      fixture = path_fixture_open(slab);
-    KrsRenderOptions options = {.width      = 64,
-                                .height     = 64,
-                                .samples    = 1,
-                                .bounces    = 12,
-                                .aovs       = KRS_AOV_COLOR,
-                                .integrator = KRS_INTEGRATOR_PATH,
-                                .starts     = KRS_STARTS_DISTANCE};
+    KrsRenderOptions options = {.width          = 64,
+                                .height         = 64,
+                                .samples        = 1,
+                                .bounces        = 12,
+                                .aovs           = KRS_AOV_COLOR,
+                                .integrator     = KRS_INTEGRATOR_PATH,
+                                .methods.starts = KRS_STARTS_DISTANCE};
     Estimate         found   = path_fixture_estimate(&fixture, options, everywhere, 6);
     path_fixture_close(&fixture);
     assert_true(must_be_near(found, expected, 0.002, "the slab"));
@@ -114,13 +114,13 @@ static void glass_loses_nothing(void **state)
         "light none { direction: [0, 1, 0], color: black }\n"
         "material glass { color: [1, 1, 1], transmission: 1, roughness: 0 }\n"
         "show (sphere(1) & dodecahedron(1.15)).paint(glass);\n");
-    KrsRenderOptions options = {.width      = 64,
-                                .height     = 64,
-                                .samples    = 4,
-                                .bounces    = 200,
-                                .aovs       = KRS_AOV_COLOR,
-                                .integrator = KRS_INTEGRATOR_PATH,
-                                .starts     = KRS_STARTS_DISTANCE};
+    KrsRenderOptions options = {.width          = 64,
+                                .height         = 64,
+                                .samples        = 4,
+                                .bounces        = 200,
+                                .aovs           = KRS_AOV_COLOR,
+                                .integrator     = KRS_INTEGRATOR_PATH,
+                                .methods.starts = KRS_STARTS_DISTANCE};
     Estimate         found   = path_fixture_estimate(&fixture, options, everywhere, 4);
     path_fixture_close(&fixture);
     assert_true(must_be_near(found, 1, 0.003, "white glass"));
