@@ -374,8 +374,8 @@ static bool part_is_shared(const Elaboration *e, const Iterated *t, const Iterat
 static bool find_boxes(Elaboration *e, const Iterated *t, IterationPart *part)
 {
     part->boxes = arena_new_array(e->values, Box, t->count);
-    return iteration_boxes(e->builder, part->shape, t->leaf, t->iterations, t->count,
-                           part->boxes) &&
+    return iteration_boxes(e->builder, part->shape, t->leaf, t->iterations, t->count, part->boxes,
+                           e->values) &&
            boxes_agree(&part->boxes[0], &part->witness->box) &&
            !any_is_missed(t->body, part->boxes, t->count);
 }

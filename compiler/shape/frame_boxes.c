@@ -21,20 +21,31 @@ enum { ON_PARAMETERS = 1, ON_TIME = 2 };
 
 typedef struct Plan {
     ShapeBuilder  *builder;
+    Arena         *arena;
     FrameBoxes    *boxes;
+    Node           leaf;    /* of iterations, which counts as the one parameter; or NODE_NONE */
     unsigned char *depends; /* by nodes, */
     size_t *places; /* where they are among those that frames are asked for, from 1; 0: not yet */
     size_t  visited;
+    bool    failed; /* a box that depends on the leaf has no rule */
 } Plan;
 
 /* ---- numbers ---- */
 
-static unsigned char *find_depends(const Graph *graph, Arena *arena)
+static int parameter_depends(const Plan *plan, Node node)
 {
-    unsigned char *depends = arena_new_array(arena, unsigned char, graph->count);
+    if (plan->leaf != NODE_NONE)
+        return node == plan->leaf ? ON_PARAMETERS : 0;
+    return plan->builder->graph->items[node].index == 0 ? ON_TIME : ON_PARAMETERS;
+}
+
+static unsigned char *find_depends(const Plan *plan)
+{
+    const Graph   *graph   = plan->builder->graph;
+    unsigned char *depends = arena_new_array(plan->arena, unsigned char, graph->count);
     for (Node node = 0; node < graph->count; node++) {
         const Expr *e     = &graph->items[node];
-        int         found = e->op != OP_PARAMETER ? 0 : e->index == 0 ? ON_TIME : ON_PARAMETERS;
+        int         found = e->op == OP_PARAMETER ? parameter_depends(plan, node) : 0;
         for (int k = 0; k < e->operand_count; k++)
             found |= depends[e->operands[k]];
         depends[node] = (unsigned char)found;
@@ -42,19 +53,18 @@ static unsigned char *find_depends(const Graph *graph, Arena *arena)
     return depends;
 }
 
-static Plan plan_new(ShapeBuilder *builder, FrameBoxes *boxes)
+static Plan plan_new(ShapeBuilder *builder, Node leaf, Arena *arena, FrameBoxes *boxes)
 {
-    Arena *arena = builder->arena;
-    return (Plan){.builder = builder,
-                  .boxes   = boxes,
-                  .depends = find_depends(builder->graph, arena),
-                  .places  = arena_new_array(arena, size_t, builder->graph->count)};
+    Plan plan    = {.builder = builder, .arena = arena, .boxes = boxes, .leaf = leaf};
+    plan.depends = find_depends(&plan);
+    plan.places  = arena_new_array(arena, size_t, builder->graph->count);
+    return plan;
 }
 
 static size_t place_of(const Plan *plan, Node node)
 {
     if (plan->places[node] == 0) {
-        array_push(plan->builder->arena, &plan->boxes->nodes, node);
+        array_push(plan->arena, &plan->boxes->nodes, node);
         plan->places[node] = plan->boxes->nodes.count;
     }
     return plan->places[node] - 1;
@@ -75,15 +85,15 @@ static FrameNumber plan_number(const Plan *plan, Node node)
 
 FrameNumber frame_number_plan(ShapeBuilder *builder, Node node, FrameBoxes *boxes)
 {
-    const Plan plan = plan_new(builder, boxes);
+    const Plan plan = plan_new(builder, NODE_NONE, builder->arena, boxes);
     return plan_number(&plan, node);
 }
 
 Range frame_number_range(const FrameNumber *number, uint32_t component, const Node *nodes,
                          const NodeValue *values)
 {
-    return number->asked ? range_of(values[nodes[number->place]].v[component])
-                         : number->ranges[component];
+    return number->asked && values ? range_of(values[nodes[number->place]].v[component])
+                                   : number->ranges[component];
 }
 
 /* ---- shapes ---- */
@@ -94,7 +104,7 @@ static size_t add_shapes(Plan *plan, size_t count)
     const FrameShape none  = {.number_count = 0};
     const size_t     first = plan->boxes->shapes.count;
     for (size_t i = 0; i < count; i++)
-        array_push(plan->builder->arena, &plan->boxes->shapes, none);
+        array_push(plan->arena, &plan->boxes->shapes, none);
     return first;
 }
 
@@ -124,16 +134,63 @@ static Shape shape_for_rule(const Shape *shape, Arena *arena)
     return copy;
 }
 
+static bool any_node_depends(const Plan *plan, const Node *nodes, uint32_t count)
+{
+    bool found = false;
+    for (uint32_t i = 0; i < count; i++)
+        found = found || (nodes[i] != NODE_NONE && plan->depends[nodes[i]] != 0);
+    return found;
+}
+
+static bool stage_depends(const Plan *plan, const SequenceStage *stage)
+{
+    const Map *map = &stage->map;
+    Node       nodes[MAX_BOX_NODES];
+    switch (stage->kind) {
+    case SEQUENCE_REFLECT: return any_node_depends(plan, (Node[]){stage->normal, stage->offset}, 2);
+    case SEQUENCE_SPHERE: return any_node_depends(plan, (Node[]){stage->centre, stage->radius}, 2);
+    case SEQUENCE_MAP:
+        return any_node_depends(plan, nodes, map_box_nodes(map, nodes, 0)) ||
+               any_node_depends(plan, &map->pole, 1);
+    default: return false;
+    }
+}
+
+/* Tells whether anything in the tree of a shape depends on the leaf. */
+static bool any_depends(const Plan *plan, const Shape *shape)
+{
+    const Node others[] = {shape->distance, shape->bound, shape->formula, shape->blend.steps,
+                           shape->map.scale != NODE_NONE ? shape->map.pole : NODE_NONE};
+    Node       nodes[MAX_BOX_NODES];
+    bool       found = any_node_depends(plan, nodes, box_nodes(shape, nodes)) ||
+                 any_node_depends(plan, others, sizeof others / sizeof *others);
+    for (uint32_t i = 0; i < shape->stage_count && !found; i++)
+        found = stage_depends(plan, &shape->stages[i]);
+    for (uint32_t i = 0; i < box_part_count(shape) && !found; i++)
+        found = any_depends(plan, box_part(shape, i));
+    return found || (shape->iterated && any_depends(plan, shape->iterated));
+}
+
+/* Tells whether a rule tells the box.  A search for the reach of a sequence would take too long for many
+   iterations. */
+static bool is_planned(const Plan *plan, const Shape *shape)
+{
+    return (has_box_rule(shape) || (plan->leaf == NODE_NONE && is_sequence(shape))) &&
+           plan->visited <= MAX_VISITED &&
+           plan->boxes->shapes.count + box_part_count(shape) <= MAX_PLANNED;
+}
+
 /* Tells whether the box depends on parameters alone; only then its parts and numbers are planned. */
 static bool plan_shape(Plan *plan, const Shape *shape, size_t at)
 {
     FrameBoxes *boxes             = plan->boxes;
-    boxes->shapes.items[at].shape = shape_for_rule(shape, plan->builder->arena);
+    boxes->shapes.items[at].shape = shape_for_rule(shape, plan->arena);
     plan->visited++;
     const uint32_t parts = box_part_count(shape);
-    if (!(has_box_rule(shape) || is_sequence(shape)) || plan->visited > MAX_VISITED ||
-        boxes->shapes.count + parts > MAX_PLANNED)
+    if (!is_planned(plan, shape)) {
+        plan->failed = plan->failed || (plan->leaf != NODE_NONE && any_depends(plan, shape));
         return false;
+    }
     Node           nodes[MAX_BOX_NODES + MAX_STAGES * MAX_STAGE_NODES];
     const uint32_t count = is_sequence(shape) ? sequence_nodes(shape, nodes)
                                               : box_nodes(shape, nodes);
@@ -154,7 +211,7 @@ static bool plan_shape(Plan *plan, const Shape *shape, size_t at)
     planned->number_count = count;
     for (uint32_t i = 0; i < count; i++) {
         const FrameNumber number = plan_number(plan, nodes[i]);
-        array_push(plan->builder->arena, &boxes->numbers, number);
+        array_push(plan->arena, &boxes->numbers, number);
     }
     return true;
 }
@@ -165,13 +222,23 @@ void frame_boxes_plan(ShapeBuilder *builder, const Shape *const *shapes, size_t 
     *boxes = (FrameBoxes){.nodes.count = 0};
     if (builder->parameters->count == 0 || count > MAX_PLANNED)
         return;
-    Plan plan        = plan_new(builder, boxes);
+    Plan plan        = plan_new(builder, NODE_NONE, builder->arena, boxes);
     boxes->asked_for = count;
     add_shapes(&plan, count);
     for (size_t i = 0; i < count; i++)
         plan_shape(&plan, shapes[i], i);
     if (boxes->nodes.count == 0)
         boxes->shapes.count = boxes->asked_for = 0;
+}
+
+bool frame_boxes_plan_iterations(ShapeBuilder *builder, const Shape *shape, Node leaf, Arena *arena,
+                                 FrameBoxes *boxes)
+{
+    *boxes    = (FrameBoxes){.asked_for = 1};
+    Plan plan = plan_new(builder, leaf, arena, boxes);
+    add_shapes(&plan, 1);
+    plan_shape(&plan, shape, 0);
+    return !plan.failed;
 }
 
 FrameBoxes frame_boxes_copy(const FrameBoxes *plan, Arena *arena)

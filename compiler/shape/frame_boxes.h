@@ -47,11 +47,15 @@ typedef struct FrameBoxes {
    in all frames, or too many. */
 void frame_boxes_plan(ShapeBuilder *builder, const Shape *const *shapes, size_t count,
                       FrameBoxes *plan);
+/* Plans the box of a shape in each iteration of a loop (iteration_boxes.c): `leaf` is what its numbers depend on,
+   and none of these on another parameter.  False: a box that depends on it is not known by a rule. */
+bool frame_boxes_plan_iterations(ShapeBuilder *builder, const Shape *shape, Node leaf, Arena *arena,
+                                 FrameBoxes *plan);
 /* A number for frame_number_range, whose node is known to be of frame time. */
 FrameNumber frame_number_plan(ShapeBuilder *builder, Node node, FrameBoxes *plan);
 FrameBoxes  frame_boxes_copy(const FrameBoxes *plan, Arena *arena);
 /* The boxes of all planned shapes; those that were asked for come first.  `nodes` are what the planned
-   ones have become since, `values` those that the frame gives them. */
+   ones have become since, `values` those that the frame gives them; NULL: numbers are in their ranges. */
 void  frame_boxes_find(const FrameBoxes *plan, const Node *nodes, const NodeValue *values,
                        Box *boxes);
 Range frame_number_range(const FrameNumber *number, uint32_t component, const Node *nodes,

@@ -18,12 +18,13 @@
 
 enum { SHAPES = 200, ITERATIONS = 3, LONGEST = 4000 };
 
+#define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
+
 /* ---- texts ---- */
 
 typedef struct Written {
     char   text[LONGEST];
     Random random;
-    bool   mixed; /* numbers depend on the parameter `k` as well */
 } Written;
 
 static void write(Written *w, const char *what)
@@ -44,17 +45,15 @@ static void write_positive(Written *w)
                                           "(0.3 + 0.07 * i)",
                                           "(0.2 + abs(cos(3 * i)))",
                                           "[1, 2, 0.7][floor(clamp(i, 0, 2))]",
-                                          "max(0.1, 2 - 0.3 * i)",
-                                          "(1.5 + k)",
-                                          "(2 + k * sin(i))"};
-    write(w, one_of(w, numbers, w->mixed ? 8 : 6));
+                                          "max(0.1, 2 - 0.3 * i)"};
+    write(w, one_of(w, numbers, COUNT(numbers)));
 }
 
 static void write_number(Written *w)
 {
-    static const char *const numbers[] = {"(i - 3)", "0", "1.5 * cos(i)", "-0.4", "(30 * i)",
-                                          "(i % 3)", "k", "(k - i)"};
-    write(w, one_of(w, numbers, w->mixed ? 8 : 6));
+    static const char *const numbers[] = {"(i - 3)", "0",        "1.5 * cos(i)",
+                                          "-0.4",    "(30 * i)", "(i % 3)"};
+    write(w, one_of(w, numbers, COUNT(numbers)));
 }
 
 static void write_vector(Written *w, void part(Written *w))
@@ -86,8 +85,6 @@ static void write_form(Written *w, const char *form, int depth)
             write(w, (char[]){*form, '\0'});
 }
 
-#define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
-
 static void write_shape(Written *w, int depth)
 {
     static const char *const solids[] = {"sphere(%)",
@@ -105,6 +102,7 @@ static void write_shape(Written *w, int depth)
                                          "round_cone([0, 0, 0], [0, 1, #], %, 0.1)",
                                          "box([%, 1, 2])",
                                          "sphere(1)",
+                                         "box([1 + k, 2, 1])",
                                          "shape_of(%)",
                                          "inside(%)"};
     static const char *const others[] = {"*.move(&)",
@@ -165,7 +163,7 @@ static KrsStatus ask(void *user, const Inspected *what)
                             .graph   = what->scene->graph};
     const Node   leaf    = graph_parameter(what->scene->graph, TYPE_FLOAT, 1);
     asked->known         = iteration_boxes(&builder, shape, leaf, asked->iterations, ITERATIONS,
-                                           asked->boxes);
+                                           asked->boxes, what->arena);
     return KRS_OK;
 }
 
@@ -230,7 +228,7 @@ static Verdict compare_all(double error, int count)
     Random  random  = {7};
     Verdict verdict = {0};
     for (int n = 0; n < count; n++) {
-        Written      w = {.random = {random_bits(&random)}, .mixed = n % 3 == 0};
+        Written      w                      = {.random = {random_bits(&random)}};
         const double iterations[ITERATIONS] = {n % 10, 2, 7.25};
         write_shape(&w, 1 + n % 4);
         compare(&w, iterations, error, &verdict);
