@@ -121,8 +121,9 @@ struct Elaboration {
     bool          uses_uv;     /* a material may need the coordinates on surfaces */
     struct IterationTrials
         *iterations; /* loops whose iterations are made at once: iterations.c; NULL: none is */
-    Node iteration;  /* what stands for the variable of such a loop, or NODE_NONE */
-    bool beams;      /* someone asks for capsules that are shown */
+    struct Iterated
+        *iterated; /* such a loop, while its body is tried with a leaf for its variable; or NULL */
+    bool beams;    /* someone asks for capsules that are shown */
     const Syntax *joining; /* a call that joins shapes, or a `show`, of which
                                     the arguments are evaluated; or NULL */
 };
@@ -209,10 +210,6 @@ typedef struct IterationTrials {
         Definition **items;
         size_t       count, capacity;
     } defined; /* while any was tried: all this is dropped with it */
-    struct {
-        Node  *items;
-        size_t count, capacity;
-    } required; /* what must hold in each iteration */
 } IterationTrials;
 typedef struct IterationLoop {
     bool tried, made; /* all iterations at once: tried; and done */
@@ -228,9 +225,9 @@ bool iterations_require(Elaboration *e, Node condition);
 /* An iteration of a loop that was made at once, by itself, for what needs its numbers: any other shape as it
    is.  NULL: a limit was reached. */
 const Shape *iteration_alone(Elaboration *e, const Shape *shape);
-/* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->iteration, to be set
+/* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->iterated, to be set
    again behind it. */
-Node iterations_begin_definition(Elaboration *e, Definition *definition);
+struct Iterated *iterations_begin_definition(Elaboration *e, Definition *definition);
 
 /* ---- iteration_statements.c: a `for` that shows shapes, evaluated once ---- */
 /* Behind the first iteration that shows something tries to show what all iterations do, in their order; true: it is

@@ -37,7 +37,7 @@ static bool is_joined(const Elaboration *e, const Syntax *comprehension)
 
 bool iterations_are_tried(const Elaboration *e)
 {
-    return e->iterations && e->iterations->loops < MAX_LOOPS && e->iteration == NODE_NONE;
+    return e->iterations && e->iterations->loops < MAX_LOOPS && !e->iterated;
 }
 
 bool iterations_possible(const Elaboration *e, const Syntax *comprehension)
@@ -62,7 +62,7 @@ typedef struct Before {
     Diags          diags;
     Scene          scene;
     ShapeBuilder   builder;
-    size_t         parameters, checked, functions, defined, required;
+    size_t         parameters, checked, functions, defined;
     uint32_t       printed;
     Span           here;
 } Before;
@@ -85,7 +85,6 @@ static Before remember(Elaboration *e)
                     .checked    = e->checked.count,
                     .functions  = function_count(e->graph),
                     .defined    = e->iterations->defined.count,
-                    .required   = e->iterations->required.count,
                     .printed    = e->printed,
                     .here       = e->graph->here};
 }
@@ -124,18 +123,18 @@ static void put_back(Elaboration *e, const Before *before)
 
 bool iterations_require(Elaboration *e, Node condition)
 {
-    if (e->iteration != NODE_NONE)
-        array_push(e->arena, &e->iterations->required, condition);
-    return e->iteration != NODE_NONE;
+    if (e->iterated)
+        array_push(e->arena, &e->iterated->required, condition);
+    return e->iterated != NULL;
 }
 
-Node iterations_begin_definition(Elaboration *e, Definition *definition)
+Iterated *iterations_begin_definition(Elaboration *e, Definition *definition)
 {
-    const Node iteration = e->iteration;
+    Iterated *iterated = e->iterated;
     if (e->iterations && e->iterations->depth > 0)
         array_push(e->arena, &e->iterations->defined, definition);
-    e->iteration = NODE_NONE;
-    return iteration;
+    e->iterated = NULL;
+    return iterated;
 }
 
 /* ---- what all iterations have in common ---- */
@@ -150,7 +149,7 @@ static Node iteration_leaf(Elaboration *e, const Iterated *t)
 
 bool iteration_condition(Elaboration *e, Iterated *t, Value condition)
 {
-    t->early_required = e->iterations->required.count - t->first_required;
+    t->early_required = t->required.count;
     t->early_end      = (Node)e->graph->count;
     if (condition.type == VALUE_BOOLEAN)
         return condition.boolean;
@@ -175,16 +174,14 @@ static bool evaluate_iterated(Elaboration *e, Iterated *t)
 {
     const IterationBody *body = t->body;
     t->leaf = t->early_end = iteration_leaf(e, t);
-    e->iteration           = t->leaf;
-    t->first_required      = e->iterations->required.count;
+    e->iterated            = t;
     const Value variable   = {.type = VALUE_EXPRESSION, .node = t->leaf};
     Environment env        = bind(e, body->env, body->variable, variable);
     const bool  good       = body->evaluate(e, &env, t) && t->found == t->part_count;
-    e->iteration           = NODE_NONE;
+    e->iterated            = NULL;
     t->conditions          = t->roots.count;
-    for (size_t i = t->first_required; i < e->iterations->required.count; i++)
-        array_push(e->values, &t->roots, e->iterations->required.items[i]);
-    t->required = e->iterations->required.count - t->first_required;
+    for (size_t i = 0; i < t->required.count; i++)
+        array_push(e->values, &t->roots, t->required.items[i]);
     return good;
 }
 
@@ -324,13 +321,14 @@ static bool choose_iterations(Elaboration *e, Iterated *t)
                         numbers, e->scratch);
     for (size_t i = 0; i < t->count; i++) {
         const double *of     = numbers + i * width;
-        const size_t  truths = t->conditions + t->required;
+        const size_t  truths = t->conditions + t->required.count;
         if (!all_hold(of + t->conditions, t->early_required) ||
             !all_finite(of + truths, t->early_numbers))
             return false;
         if (!all_hold(of, t->conditions))
             continue;
-        if (!all_hold(of + t->conditions, t->required) || !all_finite(of + truths, width - truths))
+        if (!all_hold(of + t->conditions, t->required.count) ||
+            !all_finite(of + truths, width - truths))
             return false;
         t->iterations[left++] = t->iterations[i];
     }
@@ -424,17 +422,17 @@ const Shape *iteration_alone(Elaboration *e, const Shape *shape)
 {
     if (shape->kind != SHAPE_ITERATION)
         return shape;
-    const IterationSource *source    = shape->source;
-    const EvaluationMark   mark      = evaluation_mark(e);
-    const Node             iteration = e->iteration;
-    const Syntax          *joining   = e->joining;
-    const Span             here      = e->graph->here;
-    Iterated               t         = {.body = &source->body, .part_count = source->part_count};
+    const IterationSource *source   = shape->source;
+    const EvaluationMark   mark     = evaluation_mark(e);
+    Iterated              *iterated = e->iterated;
+    const Syntax          *joining  = e->joining;
+    const Span             here     = e->graph->here;
+    Iterated               t        = {.body = &source->body, .part_count = source->part_count};
     Environment env = bind(e, &source->env, source->body.variable, value_number(shape->number));
-    e->iteration    = NODE_NONE;
+    e->iterated     = NULL;
     e->joining      = NULL;
     const bool good = source->body.evaluate(e, &env, &t) && t.found == t.part_count;
-    e->iteration    = iteration;
+    e->iterated     = iterated;
     e->joining      = joining;
     e->graph->here  = here;
     evaluation_forget(e, mark, NULL);
@@ -456,7 +454,6 @@ bool iterations_try(Elaboration *e, Iterated *t)
         make_parts(e, t);
     else
         put_back(e, &before);
-    e->iterations->required.count = before.required;
     e->iterations->depth--;
     if (e->iterations->depth == 0)
         e->iterations->defined.count = 0;

@@ -36,8 +36,9 @@ struct Iterated {
     IterationPart        parts[MAX_ITERATION_PARTS];
     size_t part_count, found; /* those that the first iteration gave; that are evaluated */
     Node   leaf;
-    Nodes  roots; /* conditions of the loop; what must hold; what may not be finite */
-    size_t conditions, required, first_required;
+    Nodes  roots;      /* conditions of the loop; what must hold; what may not be finite */
+    Nodes  required;   /* what must hold in each iteration */
+    size_t conditions; /* of the loop */
     /* What is evaluated before the last condition must hold and be finite also where the iteration is left out:
        how much must hold, how many numbers are to be finite, and the first node behind it. */
     size_t  early_required, early_numbers;

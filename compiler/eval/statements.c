@@ -44,10 +44,10 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     }
     definition->state = DEFINITION_RUNNING;
     e->kept++;
-    const Syntax *syntax    = definition->syntax;
-    Environment  *env       = &definition->scope->environment;
-    Span          caller    = e->graph->here;
-    Node          iteration = iterations_begin_definition(e, definition);
+    const Syntax    *syntax   = definition->syntax;
+    Environment     *env      = &definition->scope->environment;
+    Span             caller   = e->graph->here;
+    struct Iterated *iterated = iterations_begin_definition(e, definition);
     switch (syntax->kind) {
     case SYNTAX_LET:
         definition->value = evaluate(e, env, syntax->children[0]);
@@ -65,7 +65,7 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     default: definition->value = value_number(0); break; /* cameras, lights: names */
     }
     e->graph->here    = caller;
-    e->iteration      = iteration;
+    e->iterated       = iterated;
     definition->state = DEFINITION_DONE;
     return definition->value;
 }
@@ -440,8 +440,8 @@ static void run_params(Elaboration *e, Scope *scope)
 
 void elaborate(Elaboration *e)
 {
-    e->rounding = e->iteration = NODE_NONE;
-    e->uses_uv                 = files_mention_uv(e->files);
+    e->rounding = NODE_NONE;
+    e->uses_uv  = files_mention_uv(e->files);
     scopes_make(e);
     Scope *scope = e->scopes.items[0];
     for (size_t i = 0; i < e->scopes.count; i++)

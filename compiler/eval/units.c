@@ -140,8 +140,8 @@ enum { MIN_BYTE = 16 };
 static void require_colour(Elaboration *e, Value value)
 {
     const Node color = value_node(e, value);
-    if (e->iteration == NODE_NONE || color == NODE_NONE ||
-        e->graph->items[color].time != TIME_FRAME || e->graph->items[color].type != TYPE_VEC3)
+    if (!e->iterated || color == NODE_NONE || e->graph->items[color].time != TIME_FRAME ||
+        e->graph->items[color].type != TYPE_VEC3)
         return;
     const Node one = graph_number(e->graph, 1);
     for (uint32_t i = 0; i < 3; i++)

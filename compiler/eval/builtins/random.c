@@ -60,7 +60,7 @@ static Value direction_of_cell(Elaboration *e, const Call *call, uint32_t stream
 /* What depends on the iteration of a loop that is made at once (iterations.c) is a number in each iteration. */
 static bool is_of_iteration(const Elaboration *e, Value seed)
 {
-    return e->iteration != NODE_NONE && seed.type == VALUE_EXPRESSION &&
+    return e->iterated && seed.type == VALUE_EXPRESSION &&
            e->graph->items[seed.node].type == TYPE_FLOAT &&
            e->graph->items[seed.node].time == TIME_FRAME;
 }

@@ -195,7 +195,7 @@ static void warn_if_empty(Elaboration *e, const Shape *shape, Span call)
         flat = flat || !(shape->box.axis[i].low < shape->box.axis[i].high);
     if (e->sources->items[call.source].library)
         return;
-    if (e->iteration != NODE_NONE)
+    if (e->iterated)
         require_sizes(e, shape);
     if (!flat)
         return;

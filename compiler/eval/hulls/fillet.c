@@ -203,7 +203,7 @@ const Shape *make_fillet(Elaboration *e, const Call *call, const Shape *const *s
                          uint32_t count, Blend blend)
 {
     Filleting f = {.e = e, .call = call, .blend = blend};
-    if (e->iteration != NODE_NONE)
+    if (e->iterated)
         return NULL; /* which parts are near is known iteration by iteration */
     f.widest = fmax(node_range(e->builder, blend.width, 0).high, 0);
     for (uint32_t i = 0; i < count; i++)
