@@ -61,7 +61,7 @@ VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
 SHADERS  := $(sort $(wildcard $(addprefix runtime/shaders/,*.comp *.glsl research/*.comp research/*.glsl) runtime/shared/*.h)) \
-            include/krs/surface.def compiler/shape/light_types.def
+            include/krs/surface.def include/krs/light_types.def
 # Shaders without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)

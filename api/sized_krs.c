@@ -82,6 +82,35 @@ ASKED_BY_INDEX(krs_state_slope, const KrsScene, KrsStateSlope)
 ASKED_BY_INDEX(krs_camera_location, const KrsScene, KrsLocation)
 ASKED_BY_INDEX(krs_state_camera, KrsState, KrsCamera)
 ASKED_BY_INDEX(krs_component, const KrsScene, KrsComponent)
+ASKED_BY_INDEX(krs_state_light, KrsState, KrsLight)
+
+KrsStatus krs_state_sky_sized(KrsState *state, KrsSky *sky, size_t size)
+{
+    KrsSky          own;
+    const KrsStatus status = krs_state_sky(state, &own);
+    if (status == KRS_OK)
+        sized_give(sky, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_state_fog_sized(KrsState *state, KrsFog *fog, size_t size)
+{
+    KrsFog          own;
+    const KrsStatus status = krs_state_fog(state, &own);
+    if (status == KRS_OK)
+        sized_give(fog, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_text_sized(const KrsScene *scene, KrsTarget target, const KrsTextOptions *options,
+                         size_t size, char **text)
+{
+    KrsTextOptions own;
+    *text = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_text(scene, target, options ? &own : NULL, text);
+}
 
 void krs_scene_image_sized(const KrsScene *scene, KrsImage *image, size_t size)
 {

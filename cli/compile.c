@@ -132,16 +132,16 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
 /* The entry points, and what they call. */
 static KrsStatus write_glsl(const Options *options, const KrsScene *scene, const char *base)
 {
-    KrsVariant  variant = compiled_variant(options);
-    KrsFunction entry_points[KRS_MAX_ENTRY_POINTS];
-    variant.shares = true;
-    size_t count   = krs_entry_points(scene, variant.many_threads, entry_points);
-    char  *glsl    = krs_scene_text(scene, &variant, entry_points, count, NULL);
-    if (!glsl) {
+    const KrsVariant     variant = compiled_variant(options);
+    const KrsTextOptions how     = {.state_values  = variant.values,
+                                    .no_early_outs = !variant.many_threads};
+    char                *glsl;
+    KrsStatus            status = krs_text(scene, KRS_TARGET_GLSL, &how, &glsl);
+    if (status != KRS_OK) {
         say("out of memory while printing `%s.glsl`", base);
-        return KRS_OUT_OF_MEMORY;
+        return status;
     }
-    KrsStatus status = write_output_file(options, base, ".glsl", glsl, strlen(glsl));
+    status = write_output_file(options, base, ".glsl", glsl, strlen(glsl));
     free(glsl);
     return status;
 }

@@ -49,7 +49,7 @@ if [ "${1:-}" = --bless ]; then
     cp "$work/layouts_now" tests/api/layouts.txt
     exit
 fi
-echo "1..17"
+echo "1..18"
 [ "$(wc -l <"$work/layouts_now")" -gt 400 ]
 report $? "the headers have $(wc -l <"$work/layouts_now") sizes, members and choices"
 compare tests/api/layouts.txt "$work/layouts_now" >"$work/said"
@@ -67,6 +67,7 @@ broken() { # name, file, words for sed
 broken "a member before others" krs.h 's/^    uint32_t    components; .*/    int early; &/'
 broken "a property before others" surface.def 's/^KRS_MATERIAL(coat, .*/KRS_MATERIAL(early, FLOAT, 0, 0, 0, 1, LIMITED, MIXED)\n&/'
 broken "a property of cameras before others" camera.def 's/^KRS_CAMERA(fov, .*/KRS_CAMERA(early, number, BODY, NULL, false, 0)\n&/'
+broken "a number of lights before others" lights.def 's/^KRS_LIGHT(color, .*/KRS_LIGHT(early, number, NULL, NULL, 0)\n&/'
 broken "a choice before others" choices.def 's/^KRS_TRACE(RELAXED, .*/KRS_TRACE(EARLY, "early", "")\n&/'
 broken "a member that is gone" mesh.h 's/^    bool   draft;//'
 broken "an option where bytes fill the struct up" krs.h 's/^    const char \*root;/    bool early;\n&/'
@@ -74,7 +75,7 @@ broken "an element that grows" slice.h 's/^    double area; .*/&\n    double lat
 
 # ---- programs ----
 
-all="KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsStateSlope KrsLocation KrsComponent KrsBound KrsMeshOptions
+all="KrsTextOptions KrsSky KrsFog KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsStateSlope KrsLocation KrsComponent KrsBound KrsMeshOptions
      KrsMotion KrsGridOptions KrsGridShape KrsSliceOptions KrsMeasureOptions KrsDevice KrsRendererOptions KrsRenderOptions
      KrsShaderStats KrsRays"
 headers() { # older or later
@@ -88,10 +89,12 @@ awk '/^KRS_MATERIAL/ { last = NR } { line[NR] = $0 } END { for (i = 1; i <= NR; 
     include/krs/surface.def >"$work/older/krs/surface.def"
 sed '/^KRS_AOV(NOISE/,$d' include/krs/aovs.def >"$work/older/krs/aovs.def"
 sed '/^KRS_CAMERA(eyes/d' include/krs/camera.def >"$work/older/krs/camera.def"
+sed '/^KRS_LIGHT(size/d' include/krs/lights.def >"$work/older/krs/lights.def"
 headers later
 sed 's/^KRS_IDENTITY(component/KRS_MATERIAL(later, FLOAT, 0, 0, 0, 1, LIMITED, MIXED)\n&/' include/krs/surface.def \
     >"$work/later/krs/surface.def"
 sed 's/^KRS_CAMERA(eyes.*/&\nKRS_CAMERA(later, number, BODY, NULL, false, 0)/' include/krs/camera.def >"$work/later/krs/camera.def"
+sed 's/^KRS_LIGHT(size.*/&\nKRS_LIGHT(later, number, NULL, NULL, 0)/' include/krs/lights.def >"$work/later/krs/lights.def"
 layouts "$work/older" >"$work/layouts_older" 2>"$work/said"
 layouts "$work/later" >"$work/layouts_later" 2>>"$work/said"
 # Of each struct the size is another one, but for bytes that were there to fill it up.

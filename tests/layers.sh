@@ -13,8 +13,9 @@ layers="compiler/base compiler/image compiler/outline compiler/graph compiler/gr
         runtime/device runtime/shared runtime/tracer/research runtime/tracer runtime/integrators runtime/film runtime/display
         runtime/writer runtime api import/common import/csg import/surfer import/pov import live/text live/pictures live/window live cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli"
 public="include/krs/krs.h include/krs/camera.h include/krs/mesh.h include/krs/slice.h include/krs/grid.h
-        include/krs/measure.h include/krs/surface.def include/krs/choices.def include/krs/camera.def"
-api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/shape/light_types.def compiler/print/variant.h compiler/target/spirv.h"
+        include/krs/measure.h include/krs/light.h include/krs/surface.def include/krs/choices.def include/krs/camera.def include/krs/lights.def
+        include/krs/light_types.def include/krs/targets.def"
+api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/print/variant.h compiler/target/spirv.h"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 

@@ -55,10 +55,16 @@ report $? "3 - a device answers as the page asks it"
     echo 'if (krs_compile_text("show sphere(1);", 15, "a", NULL, &scene) != KRS_OK) return 2;'
     echo 'if (krs_state_new(scene, &state) != KRS_OK) return 2;'
     block 4 c
+    cat <<'END'
+puts("layout(local_size_x = 1) in;\n"
+     "layout(std430, set = 1, binding = 0) buffer Found { float found; };\n"
+     "void main() { krs_prepare(); found = krs_distance(vec3(found)); }");
+END
     echo 'return !(block[0][0] == 2.5f); }'
 } >"$work/block.c"
-compile "$work/block.c" >"$work/said" 2>&1 && "$work/program" >"$work/said" 2>&1
-report $? "4 - a frame fills the parameters of a shader"
+compile "$work/block.c" >"$work/said" 2>&1 && "$work/program" >"$work/engine.comp" 2>"$work/said" &&
+    grep -q '^// a light towards ' "$work/engine.comp" && glslangValidator -V "$work/engine.comp" -o /dev/null >"$work/said"
+report $? "4 - an engine gets text, lights and parameters of the library alone"
 {
     echo '#include <krs/krs.h>'
     echo 'typedef struct Archive { const char *text; } Archive;'

@@ -21,8 +21,8 @@ static const struct BlockProperty {
 #define KRS_CAMERA_FIXED(name, type, part, counts)          {SYNTAX_CAMERA, #name, false},
 #include "krs/camera.def"
     {SYNTAX_LIGHT, "direction", false},
-#define LIGHT(member, kind, of_direction, of_position, ...) {SYNTAX_LIGHT, of_position, false},
-#include "compiler/shape/lights.def"
+#define KRS_LIGHT(member, kind, of_direction, of_position, ...) {SYNTAX_LIGHT, of_position, false},
+#include "krs/lights.def"
     /* clang-format off */
     {SYNTAX_MATERIAL, "bump", false},
     {SYNTAX_LIGHT, "softness", false},

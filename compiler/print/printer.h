@@ -41,7 +41,10 @@ typedef struct Printer {
     const char *const  *templates;    /* by TextTemplate */
 } Printer;
 
-extern const Printer glsl_printer;
+#define KRS_TARGET(id, name, about) extern const Printer name##_printer;
+#include "krs/targets.def"
+/* Of each KrsTarget. */
+extern const Printer *const printers[];
 
 /* Adds the functions that the text of one operation calls, where its first operand has this type;
    false: it cannot have it. */

@@ -6,41 +6,6 @@
 
 #include "krs/krs.h"
 #include "compiler/print/variant.h"
-#include "compiler/shape/sky_map.h"
-
-/* How many numbers a member has, by its kind in lights.def. */
-#define LIGHT_NUMBERS_way   [3]
-#define LIGHT_NUMBERS_color [3]
-#define LIGHT_NUMBERS_axis  [3]
-#define LIGHT_NUMBERS_sides [2]
-#define LIGHT_NUMBERS_number
-
-typedef struct KrsLight {
-    bool     positional; /* else directional */
-    bool     shadow;
-    bool     spot; /* it shines within a cone alone, of this `angle` from side to side */
-    uint32_t type; /* a number of light_types.def; 0: a ball, or a disc in the sky */
-    /* A member for each row of lights.def.  vector: position, or unit direction towards the light;
-       color[3]: linear, already times the intensity; softness: angular diameter, or radius; angle: up
-       to 2 pi; edge: the part of the cone over which the light fades, 0 to 1. */
-#define LIGHT(member, kind, of_direction, of_position, ...) double member LIGHT_NUMBERS_##kind;
-#include "compiler/shape/lights.def"
-    double axis[3], right[3], up[3]; /* unit vectors where it shines, to its right, and up; or 0 */
-} KrsLight;
-
-typedef struct KrsSky {
-    double           zenith[3], horizon[3], ground[3]; /* linear radiance */
-    const KrsSkyMap *map;       /* NULL: there are these colours; lives as `lights` do */
-    double           rotation;  /* of the map, radians, counterclockwise from above */
-    double           intensity; /* a factor for the map */
-} KrsSky;
-
-/* Fog takes the part density * exp(-fall * (y - base)) of the light away on a unit of length, and
-   adds its color instead.  Without fog the density is 0. */
-typedef struct KrsFog {
-    double color[3]; /* linear radiance */
-    double density, fall, base;
-} KrsFog;
 
 /* Camera, light and image, which the host evaluates once per frame. */
 typedef struct KrsView {

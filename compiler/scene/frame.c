@@ -344,9 +344,9 @@ static void view_light(const KrsState *frame, size_t index, KrsLight *light)
                                          .shadow     = from->shadow,
                                          .spot       = from->spot,
                                          .type       = from->type};
-#define LIGHT(member, kind, of_direction, of_position, ...) \
+#define KRS_LIGHT(member, kind, of_direction, of_position, ...) \
     memcpy(&light->member, frame->values[roots->member].v, sizeof light->member);
-#include "compiler/shape/lights.def"
+#include "krs/lights.def"
     light->angle = fmin(fmax(light->angle, 0), 2 * M_PI);
     light->edge  = fmin(fmax(light->edge, 0), 1);
     if (!light->positional)
@@ -461,6 +461,35 @@ KrsStatus krs_state_view(KrsState *frame, size_t camera, KrsView *view)
 {
     KrsStatus status = frame_view(frame, camera, view);
     return status == KRS_OK && frame->scene->daylight ? view_daylight(frame, view) : status;
+}
+
+KrsStatus krs_state_light(KrsState *frame, size_t index, KrsLight *light)
+{
+    KrsView view;
+    if (index >= frame->scene->light_count)
+        return KRS_BAD_ARGUMENT;
+    const KrsStatus status = frame_view(frame, 0, &view);
+    if (status == KRS_OK)
+        *light = view.lights[index];
+    return status;
+}
+
+KrsStatus krs_state_sky(KrsState *frame, KrsSky *sky)
+{
+    KrsView         view;
+    const KrsStatus status = krs_state_view(frame, 0, &view);
+    if (status == KRS_OK)
+        *sky = view.sky;
+    return status;
+}
+
+KrsStatus krs_state_fog(KrsState *frame, KrsFog *fog)
+{
+    KrsView         view;
+    const KrsStatus status = frame_view(frame, 0, &view);
+    if (status == KRS_OK)
+        *fog = view.fog;
+    return status;
 }
 
 KrsStatus krs_state_camera(KrsState *frame, size_t index, KrsCamera *camera)

@@ -69,11 +69,17 @@ char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *
     return text.bytes;
 }
 
+const Printer *const printers[] = {
+#define KRS_TARGET(id, name, about) [KRS_TARGET_##id] = &name##_printer,
+#include "krs/targets.def"
+};
+
 /* ---- in the caller's memory ---- */
 
 /* A text to be printed, and its memory. */
 typedef struct Printing {
     const KrsScene    *scene;
+    const Printer     *printer;
     const KrsVariant  *variant;
     const KrsFunction *wanted; /* NULL: all functions, without comments */
     size_t             count;
@@ -95,7 +101,7 @@ static const char *print_wanted(Printing *printing)
 {
     Text text = {.arena = &printing->arena};
     module_print(&printing->scene->module, printing->variant, printing->wanted, printing->count,
-                 &glsl_printer, &text);
+                 printing->printer, &text);
     return text.bytes;
 }
 
@@ -127,8 +133,23 @@ static char *print(Printing *printing, const KrsAllocator *allocator)
 char *krs_scene_text(const KrsScene *scene, const KrsVariant *variant, const KrsFunction *wanted,
                      size_t count, const KrsAllocator *allocator)
 {
-    return print(&(Printing){.scene = scene, .variant = variant, .wanted = wanted, .count = count},
-                 allocator);
+    return print(&(Printing){scene, &glsl_printer, variant, wanted, count, {0}, {0}}, allocator);
+}
+
+KrsStatus krs_text(const KrsScene *scene, KrsTarget target, const KrsTextOptions *options,
+                   char **text)
+{
+    const KrsTextOptions how     = options ? *options : (KrsTextOptions){0};
+    const KrsVariant     variant = {
+            .many_threads = !how.no_early_outs, .values = how.state_values, .shares = true};
+    KrsFunction  wanted[KRS_MAX_ENTRY_POINTS];
+    const size_t count = krs_entry_points(scene, variant.many_threads, wanted);
+    *text              = NULL;
+    if ((unsigned)target >= KRS_TARGET_COUNT)
+        return KRS_BAD_ARGUMENT;
+    *text = print(&(Printing){scene, printers[target], &variant, wanted, count, {0}, {0}},
+                  &scene->options.allocator);
+    return *text ? KRS_OK : KRS_OUT_OF_MEMORY;
 }
 
 char *krs_scene_plain_text(const KrsScene *scene, const KrsAllocator *allocator)

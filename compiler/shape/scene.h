@@ -50,8 +50,8 @@ typedef struct SceneCamera {
 
 /* Rows of lights.def. */
 typedef struct LightNodes {
-#define LIGHT(member, kind, of_direction, of_position, ...) Node member;
-#include "compiler/shape/lights.def"
+#define KRS_LIGHT(member, kind, of_direction, of_position, ...) Node member;
+#include "krs/lights.def"
 } LightNodes;
 
 typedef struct SceneLight {

@@ -297,8 +297,34 @@ KrsStatus krs_state_fit_camera(KrsState *state);
    time, which was refused for that reason.  NULL if it was accepted, or refused for another one. */
 const char *krs_state_unbounded(const KrsState *state);
 
+/* The languages in which a scene is printed, a row of targets.def each. */
+typedef enum KrsTarget {
+#define KRS_TARGET(id, name, about) KRS_TARGET_##id,
+#include "krs/targets.def"
+    KRS_TARGET_COUNT
+} KrsTarget;
+
+/* Zero asks for what `krs compile` writes. */
+typedef struct KrsTextOptions {
+    bool
+        state_values; /* what depends on the state alone is read from the slots of krs_state_values */
+    bool
+        no_early_outs; /* for devices with few threads: no branch skips what is far away, and there is no
+                           krs_distance_lod */
+} KrsTextOptions;
+
 /*
- * The uniforms of the GLSL that `krs compile` writes, for programs that embed it.  Each slot is a
+ * The text of a scene, for engines that have shaders of their own: functions for its distance and its surface, and all
+ * that they need (docs/library.md).  It is the same for all states.  `options` may be NULL.
+ *
+ * On KRS_OK the caller releases *text by the allocator of the scene's options, or by free() where there is none.  On any
+ * other status it is NULL: KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY.
+ */
+KRS_SIZED KrsStatus krs_text(const KrsScene *scene, KrsTarget target, const KrsTextOptions *options,
+                             char **text);
+
+/*
+ * The uniforms of that text, for programs that embed it.  Each slot is a
  * vec4; `block` needs krs_parameter_slots of them.  Slot 0 is (time, 0, 0, 0).  A slot for each
  * parameter follows, in the order of krs_parameter.  The last slots are slopes, in x, which are
  * computed for each state.  Distances are divided by them where no constant is safe, as for
@@ -307,7 +333,7 @@ const char *krs_state_unbounded(const KrsState *state);
 size_t krs_parameter_slots(const KrsScene *scene);
 void   krs_state_parameters(const KrsState *state, float (*block)[4]);
 /*
- * The GLSL of `krs compile --frame-values on` has krs_value_slots more slots behind those.  They
+ * With KrsTextOptions.state_values the text has krs_value_slots more slots behind those.  They
  * are for other values that depend on the state alone, such as rotations by a parameter and sines
  * of the time.  So these are not computed at each point, which saves registers, and they are
  * computed in double precision.
@@ -315,7 +341,7 @@ void   krs_state_parameters(const KrsState *state, float (*block)[4]);
 size_t krs_value_slots(const KrsScene *scene);
 void   krs_state_values(const KrsState *state, float (*block)[4]);
 /*
- * The texel buffers of that GLSL: numbers of parts that are alike but for numbers, and which of them
+ * The texel buffers of that text: numbers of parts that are alike but for numbers, and which of them
  * are near a point.  `rows` needs krs_table_rows texels, for krs_rows (RGBA32F), and `cells` needs
  * krs_table_cells, for krs_cells (RG32UI), which has the textures as well.  Both are 0 for scenes
  * without such parts and textures, whose GLSL has neither buffer.  Both may depend on the parameters and the time.
@@ -393,11 +419,6 @@ KRS_SIZED KrsStatus krs_camera_location(const KrsScene *scene, size_t index, Krs
 /* A camera at the state's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
    index. */
 KRS_SIZED KrsStatus krs_state_camera(KrsState *state, size_t index, KrsCamera *camera);
-
-/* The lights of the scene or, if it has none, one that the compiler places.  The name is NULL if the
-   light has none. */
-size_t      krs_light_count(const KrsScene *scene);
-const char *krs_light_name(const KrsScene *scene, size_t index);
 
 /* A component of the scene: what one `show` shows. */
 typedef struct KrsComponent {
@@ -516,6 +537,7 @@ KRS_SIZED KrsStatus krs_raycast(KrsState *state, const double (*origins)[3],
 }
 #endif
 
+#include "krs/light.h"
 #include "krs/grid.h"
 #include "krs/mesh.h"
 #include "krs/slice.h"

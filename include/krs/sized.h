@@ -35,6 +35,11 @@ KrsStatus krs_state_slope_sized(const KrsScene *scene, size_t index, KrsStateSlo
 KrsStatus krs_camera_location_sized(const KrsScene *scene, size_t index, KrsLocation *location,
                                     size_t size);
 KrsStatus krs_state_camera_sized(KrsState *state, size_t index, KrsCamera *camera, size_t size);
+KrsStatus krs_state_light_sized(KrsState *state, size_t index, KrsLight *light, size_t size);
+KrsStatus krs_state_sky_sized(KrsState *state, KrsSky *sky, size_t size);
+KrsStatus krs_state_fog_sized(KrsState *state, KrsFog *fog, size_t size);
+KrsStatus krs_text_sized(const KrsScene *scene, KrsTarget target, const KrsTextOptions *options,
+                         size_t size, char **text);
 KrsStatus krs_component_sized(const KrsScene *scene, size_t index, KrsComponent *component,
                               size_t size);
 KrsStatus krs_bound_sized(const KrsScene *scene, size_t component, size_t index, KrsBound *bound,
@@ -114,6 +119,23 @@ KRS_SIZED KrsStatus krs_camera_location(const KrsScene *scene, size_t index, Krs
 KRS_SIZED KrsStatus krs_state_camera(KrsState *state, size_t index, KrsCamera *camera)
 {
     return krs_state_camera_sized(state, index, camera, sizeof *camera);
+}
+KRS_SIZED KrsStatus krs_state_light(KrsState *state, size_t index, KrsLight *light)
+{
+    return krs_state_light_sized(state, index, light, sizeof *light);
+}
+KRS_SIZED KrsStatus krs_state_sky(KrsState *state, KrsSky *sky)
+{
+    return krs_state_sky_sized(state, sky, sizeof *sky);
+}
+KRS_SIZED KrsStatus krs_state_fog(KrsState *state, KrsFog *fog)
+{
+    return krs_state_fog_sized(state, fog, sizeof *fog);
+}
+KRS_SIZED KrsStatus krs_text(const KrsScene *scene, KrsTarget target, const KrsTextOptions *options,
+                             char **text)
+{
+    return krs_text_sized(scene, target, options, sizeof *options, text);
 }
 KRS_SIZED KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component)
 {

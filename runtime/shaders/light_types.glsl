@@ -182,9 +182,9 @@ float find_share(Light light, vec3 direction)
     uint  type = light.kind / LIGHT_FIRST_TYPE;
     vec3  axis = cross(light.right, light.up);
     float cosine = dot(axis, direction) * inversesqrt(max(dot(axis, axis), 1e-30)), share = 1.0;
-#define LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
+#define KRS_LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
     share = type == uint(number) ? share_of_##name(light, direction, cosine) : share;
-#include "compiler/shape/light_types.def"
+#include "krs/light_types.def"
     return (light.kind & LIGHT_SPOT) != 0u
                ? share * smoothstep(light.outer, light.inner + 1e-6, cosine) : share;
 }
@@ -193,30 +193,30 @@ float find_share(Light light, vec3 direction)
 void place_on_light(Light light, vec2 square, inout vec2 point, inout vec3 right, inout vec3 up)
 {
     uint type = light.kind / LIGHT_FIRST_TYPE;
-#define LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
+#define KRS_LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
     if (type == uint(number))                                                                      \
         place_on_##name(light, square, point, right, up);
-#include "compiler/shape/light_types.def"
+#include "krs/light_types.def"
 }
 
 #ifdef LIGHT_SAMPLES
 float find_weight(Light light, vec3 way)
 {
     uint type = light.kind / LIGHT_FIRST_TYPE;
-#define LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
+#define KRS_LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
     if (type == uint(number))                                                                      \
         return weight_of_##name(light, way);
-#include "compiler/shape/light_types.def"
+#include "krs/light_types.def"
     return find_share(light, normalize(way));
 }
 
 LightPoint sample_shape(Light light, vec3 place, float chance, vec2 square_point)
 {
     uint type = light.kind / LIGHT_FIRST_TYPE;
-#define LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
+#define KRS_LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
     if (type == uint(number))                                                                      \
         return sample_##name(light, place, chance, square_point);
-#include "compiler/shape/light_types.def"
+#include "krs/light_types.def"
     return sample_disc(light, place, chance, square_point);
 }
 
@@ -230,10 +230,10 @@ LightPoint sample_light(Light light, vec3 place, float chance, vec2 square_point
 vec3 find_radiance_of(Light light, vec3 origin, vec3 direction, float end, out float density)
 {
     uint type = light.kind / LIGHT_FIRST_TYPE;
-#define LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
+#define KRS_LIGHT_TYPE(number, id, name, given, across, along, disc)                                   \
     if (type == uint(number))                                                                      \
         return radiance_of_##name(light, origin, direction, end, density);
-#include "compiler/shape/light_types.def"
+#include "krs/light_types.def"
     return radiance_of_disc(light, origin, direction, end, density);
 }
 #endif

@@ -72,11 +72,11 @@ static void shape_light(const KrsLight *light, LightBlock *block)
 {
     double right = 1, up = 1, radius = light->softness;
     switch (light->type) {
-#define LIGHT_TYPE(number, id, name, given, across, along, disc) \
-    case number:                                                 \
-        right = across, up = along, radius = disc;               \
+#define KRS_LIGHT_TYPE(number, id, name, given, across, along, disc) \
+    case number:                                                     \
+        right = across, up = along, radius = disc;                   \
         break;
-#include "compiler/shape/light_types.def"
+#include "krs/light_types.def"
     default: break;
     }
     for (int k = 0; k < 3; k++) {

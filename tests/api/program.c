@@ -74,6 +74,25 @@ static void tell_scene(const KrsScene *scene, KrsState *frame)
     printf("camera %.3f %.3f %.3f fov %.3f\n", camera.is->eye[0], camera.is->eye[1],
            camera.is->eye[2], camera.is->fov);
     check_guard(camera.guard, "a camera is too long");
+    GUARDED(KrsLight, light, 1);
+    check(krs_state_light(frame, 0, light.is) == KRS_OK, "a light");
+    printf("light %d %.3f %.3f %.3f color %.3f\n", light.is->positional, light.is->vector[0],
+           light.is->vector[1], light.is->vector[2], light.is->color[1]);
+    check_guard(light.guard, "a light is too long");
+    GUARDED(KrsSky, sky, 1);
+    check(krs_state_sky(frame, sky.is) == KRS_OK, "the sky");
+    printf("sky %.3f %d\n", sky.is->zenith[2], sky.is->map != NULL);
+    check_guard(sky.guard, "a sky is too long");
+    GUARDED(KrsFog, fog, 1);
+    check(krs_state_fog(frame, fog.is) == KRS_OK, "the fog");
+    printf("fog %.3f\n", fog.is->color[0]);
+    check_guard(fog.guard, "a fog is too long");
+    char *text;
+    GUARDED(KrsTextOptions, how, 1);
+    how.is[0] = (KrsTextOptions){.state_values = true};
+    check(krs_text(scene, KRS_TARGET_GLSL, how.is, &text) == KRS_OK, "a text");
+    printf("text of %zu bytes\n", text ? strlen(text) : 0);
+    free(text);
     const KrsImage image = krs_scene_image(scene);
     printf("image %u x %u, %u\n", image.width, image.height, image.samples);
 }

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -283,6 +284,77 @@ static void far_steeper_ranges_have_slopes_of_frames(void **state)
     close_scene(frame, scene);
 }
 
+/* Lights, sky and fog follow the values of a state, as programs are told them. */
+static void lights_are_told(void **state)
+{
+    (void)state;
+    KrsScene *scene;
+    KrsLight  light;
+    KrsSky    sky;
+    KrsFog    fog;
+    KrsState *frame = open_scene(
+        "param power = 2 in [0, 9];\n"
+        "light lamp { position: [0, 3 + time, 0], color: [1, 0.5, 0.25], intensity: power, radius: "
+        "0.1 }\n"
+        "light panel { position: [5, 5, 5], target: [5, 0, 5], size: [2, 1], shadow: false }\n"
+        "sky { zenith: [0.1, 0.2, power], horizon: [1, 1, 1], ground: [0, 0, 0] }\n"
+        "fog { color: [0.5, 0.5, 0.5], density: 0.01 * power }\n"
+        "show sphere(1);",
+        &scene);
+    assert_int_equal(krs_light_count(scene), 2);
+    assert_string_equal(krs_light_name(scene, 1), "panel");
+    assert_int_equal(krs_state_set(frame, "power", (double[]){4}, 1), KRS_OK);
+    assert_int_equal(krs_state_set_time(frame, 0.5), KRS_OK);
+    assert_int_equal(krs_state_light(frame, 0, &light), KRS_OK);
+    assert_true(light.positional && light.shadow && light.type == KRS_LIGHT_ROUND);
+    assert_true(fabs(light.vector[1] - 3.5) < 1e-12);
+    assert_true(fabs(light.color[1] - 2) < 1e-12);
+    assert_true(fabs(light.softness - 0.1) < 1e-12);
+    assert_int_equal(krs_state_light(frame, 1, &light), KRS_OK);
+    assert_true(!light.shadow && light.type == KRS_LIGHT_RECTANGLE);
+    assert_true(fabs(light.axis[1] + 1) < 1e-12);
+    assert_true(fabs(light.size[0] - 2) < 1e-12);
+    assert_int_equal(krs_state_light(frame, 2, &light), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_sky(frame, &sky), KRS_OK);
+    assert_true(!sky.map);
+    assert_true(fabs(sky.zenith[2] - 4) < 1e-12);
+    assert_int_equal(krs_state_fog(frame, &fog), KRS_OK);
+    assert_true(fabs(fog.density - 0.04) < 1e-12);
+    close_scene(frame, scene);
+    frame = open_scene(
+        "light sun { direction: [0, 1, 1] } sky { sun: sun, turbidity: 3 } show sphere(1);",
+        &scene);
+    assert_int_equal(krs_state_sky(frame, &sky), KRS_OK);
+    assert_non_null(sky.map);
+    assert_true(sky.map->width > 0 && sky.map->texels[0][2] > 0);
+    close_scene(frame, scene);
+}
+
+/* The library prints a scene alone, for engines of others, in memory of the caller. */
+static void texts_are_printed(void **state)
+{
+    (void)state;
+    KrsScene *scene;
+    char     *plain, *values, *none;
+    KrsState *frame = open_scene(
+        "param k = 1 in [0, 9]; show sphere(1).rotate([0, 1, 0], sin(k + time));", &scene);
+    assert_int_equal(krs_text(scene, KRS_TARGET_GLSL, NULL, &plain), KRS_OK);
+    assert_non_null(strstr(plain, "float krs_distance(vec3 p)"));
+    assert_non_null(strstr(plain, "float krs_distance_lod("));
+    assert_non_null(strstr(plain, "krs_sin("));
+    assert_int_equal(krs_text(scene, KRS_TARGET_GLSL,
+                              &(KrsTextOptions){.state_values = true, .no_early_outs = true},
+                              &values),
+                     KRS_OK);
+    assert_null(strstr(values, "krs_distance_lod("));
+    assert_null(strstr(values, "krs_sin("));
+    assert_int_equal(krs_text(scene, KRS_TARGET_COUNT, NULL, &none), KRS_BAD_ARGUMENT);
+    assert_null(none);
+    free(plain);
+    free(values);
+    close_scene(frame, scene);
+}
+
 /* The angle between the view axis and a point, seen from the eye. */
 static double angle_to(const KrsCamera *camera, double x, double y, double z)
 {
@@ -479,6 +551,8 @@ int main(void)
         cmocka_unit_test(nothing_over_nothing_has_no_slope),
         cmocka_unit_test(a_cut_field_has_one_slope),
         cmocka_unit_test(far_steeper_ranges_have_slopes_of_frames),
+        cmocka_unit_test(lights_are_told),
+        cmocka_unit_test(texts_are_printed),
         cmocka_unit_test(a_missing_camera_frames_the_scene),
         cmocka_unit_test(the_scene_fills_the_picture),
         cmocka_unit_test(thin_things_are_framed_whole),

@@ -63,8 +63,8 @@ static void refuse_placed(Elaboration *e, const Syntax *syntax)
     static const struct {
         const char *of_direction, *of_position;
     } rows[] = {
-#define LIGHT(member, kind, of_direction, of_position, ...) {of_direction, of_position},
-#include "compiler/shape/lights.def"
+#define KRS_LIGHT(member, kind, of_direction, of_position, ...) {of_direction, of_position},
+#include "krs/lights.def"
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         const Syntax *given = find_property(syntax, rows[i].of_position);
@@ -82,9 +82,9 @@ static void refuse_placed(Elaboration *e, const Syntax *syntax)
 static uint32_t type_of(const Syntax *syntax)
 {
     uint32_t type = 0;
-#define LIGHT_TYPE(number, id, name, given, across, along, disc) \
+#define KRS_LIGHT_TYPE(number, id, name, given, across, along, disc) \
     type = find_property(syntax, #given) ? number : type;
-#include "compiler/shape/light_types.def"
+#include "krs/light_types.def"
     return type;
 }
 
@@ -107,11 +107,11 @@ SceneLight read_light(Elaboration *e, const Environment *env, const Syntax *synt
                          .spot       = find_property(syntax, "angle") != NULL,
                          .colored    = find_property(syntax, "color") != NULL,
                          .type       = type_of(syntax)};
-#define LIGHT(member, kind, of_direction, of_position, ...)                     \
+#define KRS_LIGHT(member, kind, of_direction, of_position, ...)                 \
     light.nodes.member = ask_##kind(                                            \
         &asked, light.positional || !of_direction ? of_position : of_direction, \
         (const double[4]){__VA_ARGS__});
-#include "compiler/shape/lights.def"
+#include "krs/lights.def"
     light.nodes.color = graph_op2(e->graph, OP_scale, light.nodes.color, light.nodes.intensity);
     return light;
 }
