@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/allocator.h"
 #include "compiler/base/vec.h"
 #include "compiler/field/steps.h"
 #include "mesh/mesh.h"
@@ -75,8 +76,9 @@ static bool copy_items(Assembler *a)
 {
     size_t       items = a->from->items.count, components = a->frame->scene->component_count;
     KrsAssembly *to  = a->to;
-    to->items        = calloc(items + 2, sizeof *to->items);
-    to->transforms   = calloc(a->from->transforms.count + components + 1, sizeof *to->transforms);
+    to->items        = allocator_new(&to->allocator, items + 2, sizeof *to->items);
+    to->transforms   = allocator_new(&to->allocator, a->from->transforms.count + components,
+                                     sizeof *to->transforms);
     a->search.bounds = calloc(items + 2, sizeof *a->search.bounds);
     a->scales        = calloc(items + 2, sizeof *a->scales);
     a->apart         = calloc(components + 1, sizeof *a->apart);
@@ -328,7 +330,9 @@ KrsStatus krs_assemble(KrsState *frame, const KrsMeshOptions *options, KrsAssemb
     if (!is_possible(frame, a.options))
         return stands_still(&a) ? KRS_BAD_SCENE : KRS_OK;
     frame_refresh(frame);
-    a.to             = calloc(1, sizeof *a.to);
+    a.to = allocator_new(&frame->scene->options.allocator, 1, sizeof *a.to);
+    if (a.to)
+        a.to->allocator = frame->scene->options.allocator;
     KrsStatus status = a.to ? assemble(&a) : KRS_OUT_OF_MEMORY;
     if (status == KRS_OK && a.to->copies > 0)
         *assembly = a.to;
@@ -412,9 +416,10 @@ void krs_assembly_free(KrsAssembly *assembly)
         return;
     for (size_t i = 0; assembly->items && i < assembly->item_count; i++)
         krs_mesh_free(assembly->items[i].mesh);
-    free(assembly->items);
-    free(assembly->transforms);
-    free(assembly);
+    const KrsAllocator allocator = assembly->allocator;
+    allocator_release(&allocator, assembly->items);
+    allocator_release(&allocator, assembly->transforms);
+    allocator_release(&allocator, assembly);
 }
 
 static bool visit_copies(const KrsAssembly *assembly, const KrsItem *item,

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/allocator.h"
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
 #include "compiler/field/steps.h"
@@ -419,19 +420,18 @@ static KrsStatus open_borders(Borders *b, KrsState *frame, const KrsMesh *mesh)
 
 static KrsStatus replace_mesh(const Borders *b, KrsMesh *mesh)
 {
-    size_t vertices       = b->vertices.count * sizeof *mesh->vertices;
-    size_t triangles      = b->triangles.count * sizeof *mesh->triangles;
-    double(*at)[3]        = malloc(vertices + 1);
-    uint32_t(*corners)[3] = malloc(triangles + 1);
+    const KrsAllocator *allocator = &mesh->allocator;
+    double(*at)[3]                = allocator_new(allocator, b->vertices.count, sizeof *at);
+    uint32_t(*corners)[3]         = allocator_new(allocator, b->triangles.count, sizeof *corners);
     if (!at || !corners) {
-        free(at);
-        free(corners);
+        allocator_release(allocator, at);
+        allocator_release(allocator, corners);
         return KRS_OUT_OF_MEMORY;
     }
-    memcpy(at, b->vertices.items, vertices);
-    memcpy(corners, b->triangles.items, triangles);
-    free(mesh->vertices);
-    free(mesh->triangles);
+    memcpy(at, b->vertices.items, b->vertices.count * sizeof *at);
+    memcpy(corners, b->triangles.items, b->triangles.count * sizeof *corners);
+    allocator_release(allocator, mesh->vertices);
+    allocator_release(allocator, mesh->triangles);
     mesh->vertices       = at;
     mesh->triangles      = corners;
     mesh->vertex_count   = b->vertices.count;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/allocator.h"
 #include "compiler/scene/program.h"
 #include "mesh/borders.h"
 #include "mesh/contour/handles.h"
@@ -68,18 +69,19 @@ static void close_mesher(Mesher *m)
     free(m);
 }
 
-static KrsStatus copy_mesh(const Mesher *m, KrsMesh **result)
+static KrsStatus copy_mesh(const Mesher *m, const KrsAllocator *allocator, KrsMesh **result)
 {
     const Contour *contour = &m->contour;
-    KrsMesh       *mesh    = calloc(1, sizeof *mesh);
+    KrsMesh       *mesh    = allocator_new(allocator, 1, sizeof *mesh);
     if (!mesh)
         return KRS_OUT_OF_MEMORY;
+    mesh->allocator      = *allocator;
     mesh->error          = m->error;
     mesh->unresolved     = m->unresolved;
     mesh->vertex_count   = contour->vertices.count;
     mesh->triangle_count = contour->triangles.count;
-    mesh->vertices       = malloc((mesh->vertex_count + 1) * sizeof *mesh->vertices);
-    mesh->triangles      = malloc((mesh->triangle_count + 1) * sizeof *mesh->triangles);
+    mesh->vertices       = allocator_new(allocator, mesh->vertex_count, sizeof *mesh->vertices);
+    mesh->triangles      = allocator_new(allocator, mesh->triangle_count, sizeof *mesh->triangles);
     memcpy(mesh->unresolved_at, m->unresolved_at, sizeof mesh->unresolved_at);
     if (!mesh->vertices || !mesh->triangles) {
         krs_mesh_free(mesh);
@@ -159,7 +161,7 @@ static KrsStatus run(Mesher *m, KrsState *frame, KrsMesh **mesh)
     } else
         m->spared = 0;
     if (status == KRS_OK)
-        status = copy_mesh(m, mesh);
+        status = copy_mesh(m, &frame->scene->options.allocator, mesh);
     if (status == KRS_OK)
         (*mesh)->estimate = m->solid->estimate || draft;
     m->memory.exhausted = NULL;
@@ -330,7 +332,8 @@ void krs_mesh_free(KrsMesh *mesh)
 {
     if (!mesh)
         return;
-    free(mesh->vertices);
-    free(mesh->triangles);
-    free(mesh);
+    const KrsAllocator allocator = mesh->allocator;
+    allocator_release(&allocator, mesh->vertices);
+    allocator_release(&allocator, mesh->triangles);
+    allocator_release(&allocator, mesh);
 }

@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "compiler/passes/compilation.h"
+#include "compiler/base/allocator.h"
 #include "compiler/front/format.h"
 
 static const Request scene_alone = {.after = PASS_COUNT, .end = PASS_COUNT};
@@ -288,14 +289,9 @@ KrsStatus krs_dump(const char *text, size_t length, const char *name, const char
 /* Copies a text to memory of the caller's allocator. */
 static KrsStatus hand_out(const KrsOptions *options, const char *text, char **copy)
 {
-    const KrsAllocator *allocator = options ? &options->allocator : NULL;
-    const size_t        size      = strlen(text) + 1;
-    *copy = allocator && allocator->allocate ? allocator->allocate(allocator->user, size)
-                                             : malloc(size);
-    if (!*copy)
-        return KRS_OUT_OF_MEMORY;
-    memcpy(*copy, text, size);
-    return KRS_OK;
+    const size_t length = strlen(text);
+    *copy = allocator_new(options ? &options->allocator : &(KrsAllocator){0}, length, 1);
+    return *copy ? (memcpy(*copy, text, length), KRS_OK) : KRS_OUT_OF_MEMORY;
 }
 
 static KrsStatus format_text(const char *text, size_t length, const char *name,

@@ -109,7 +109,7 @@ typedef bool KrsProgressCallback(void *user, double done);
 
 /* Where memory comes from; a zeroed struct means malloc and free.  It is called in the thread that
    calls the library.  It must outlive all objects that were made with it.  glslang and the Vulkan
-   driver do not use it. */
+   driver do not use it, nor do grids, sections and figures of parts, which several threads make. */
 typedef struct KrsAllocator {
     void *(*allocate)(void *user, size_t size); /* NULL: out of memory; aligned as by malloc */
     void (*release)(void *user, void *block);

@@ -60,7 +60,8 @@ typedef struct KrsMesh {
         colored; /* no triangle was left out, since colours at their corners count: KrsMeshOptions.shape */
     /* There are several materials, which change in steps, as from part to part, and the mesh is not even: each triangle has
        the material of its middle, but for what is nearer than about two errors to its edges.  At corners several meet. */
-    bool steps;
+    bool         steps;
+    KrsAllocator allocator; /* that of the scene, where the memory came from */
 } KrsMesh;
 
 /*
@@ -102,8 +103,9 @@ typedef struct KrsAssembly {
     KRS_WAS(KrsTransform *transforms, KrsTransform *placings, "transforms");
     size_t item_count;
     KRS_WAS(size_t transform_count, size_t placing_count, "transform_count");
-    double low[3], high[3];   /* a box around all vertices of all copies */
-    double copies, triangles; /* of meshes, and of those copies */
+    double       low[3], high[3];   /* a box around all vertices of all copies */
+    double       copies, triangles; /* of meshes, and of those copies */
+    KrsAllocator allocator;         /* that of the scene, where the memory came from */
 } KrsAssembly;
 
 /*

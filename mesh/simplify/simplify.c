@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/allocator.h"
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
 #include "krs/krs.h"
@@ -467,15 +468,15 @@ static KrsStatus copy_triangles(Simplifier *s, KrsMesh **result)
 {
     const KrsMesh *mesh   = s->mesh;
     uint32_t      *number = arena_new_array(&s->arena, uint32_t, mesh->vertex_count + 1);
-    KrsMesh       *copy   = malloc(sizeof *copy);
+    KrsMesh       *copy   = allocator_new(&mesh->allocator, 1, sizeof *copy);
     if (!copy)
         return KRS_OUT_OF_MEMORY;
     *copy = *mesh;
     copy->error += s->error;
     copy->vertex_count   = 0;
     copy->triangle_count = s->best_count;
-    copy->vertices       = malloc((mesh->vertex_count + 1) * sizeof *copy->vertices);
-    copy->triangles      = malloc((s->best_count + 1) * sizeof *copy->triangles);
+    copy->vertices  = allocator_new(&mesh->allocator, mesh->vertex_count, sizeof *copy->vertices);
+    copy->triangles = allocator_new(&mesh->allocator, s->best_count, sizeof *copy->triangles);
     if (!copy->vertices || !copy->triangles) {
         krs_mesh_free(copy);
         return KRS_OUT_OF_MEMORY;

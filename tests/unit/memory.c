@@ -76,6 +76,41 @@ static void all_later_allocations_fail(void **state)
     fail_at_every_point(true);
 }
 
+/* Texts and meshes that the caller gets are blocks of its allocator, and go back to it. */
+static void results_are_of_the_allocator(void **state)
+{
+    (void)state;
+    static const char text[]  = "show  sphere(1);";
+    Scarce            scarce  = {0};
+    KrsOptions        options = {.allocator = scarce_allocator(&scarce)};
+    KrsScene         *scene;
+    KrsState         *frame;
+    KrsMesh          *mesh, *simplified;
+    char             *formatted, *glsl;
+    bool              same;
+    assert_int_equal(krs_format_text(text, strlen(text), "a.krs", &options, &formatted, &same),
+                     KRS_OK);
+    assert_string_equal(formatted, "show sphere(1);\n");
+    assert_int_equal(scarce.held, 1);
+    options.allocator.release(options.allocator.user, formatted);
+    assert_int_equal(krs_compile_text(text, strlen(text), "a.krs", &options, &scene), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    int64_t before = scarce.held;
+    assert_int_equal(krs_text(scene, KRS_TARGET_GLSL, NULL, &glsl), KRS_OK);
+    assert_int_equal(scarce.held, before + 1);
+    options.allocator.release(options.allocator.user, glsl);
+    assert_int_equal(krs_mesh(frame, &(KrsMeshOptions){.error = 0.1}, &mesh), KRS_OK);
+    assert_int_equal(scarce.held, before + 3); /* the mesh, its vertices and its triangles */
+    assert_int_equal(krs_mesh_simplify(mesh, &(KrsMeshOptions){.error = 0.1}, &simplified), KRS_OK);
+    assert_int_equal(scarce.held, before + 6);
+    krs_mesh_free(simplified);
+    krs_mesh_free(mesh);
+    assert_int_equal(scarce.held, before);
+    krs_state_free(frame);
+    krs_scene_free(scene);
+    assert_int_equal(scarce.held, 0);
+}
+
 static void the_limit_holds(void **state)
 {
     (void)state;
@@ -142,6 +177,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_allocation_fails),
         cmocka_unit_test(all_later_allocations_fail),
+        cmocka_unit_test(results_are_of_the_allocator),
         cmocka_unit_test(the_limit_holds),
         cmocka_unit_test(memory_grows_with_the_scene),
     };
