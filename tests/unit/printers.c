@@ -215,7 +215,7 @@ static void print_variant(const KrsScene *scene, const KrsVariant *variant, cons
 static void print_scene(const char *path)
 {
     KrsScene        *scene;
-    const KrsOptions options = {.gradients = true};
+    const KrsOptions options = {.gradients = true, .research = true};
     assert_int_equal(krs_compile_file(path, &options, &scene), KRS_OK);
     const KrsVariant variants[] = {
         {.many_threads = false},
