@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
+#include "compiler/scene/program.h"
 
 static const char example[] = "examples/03-machined-part.krs";
 
@@ -153,6 +154,30 @@ static void times_add_up(void **state)
     krs_scene_free(scene);
 }
 
+/* Steps of research are lowered where they are asked for, and nothing else that is known of a scene changes. */
+static void research_is_lowered_where_asked_for(void **state)
+{
+    static const char *const paths[] = {"examples/14-inversion.krs", "examples/21-sextic.krs"};
+    (void)state;
+    for (int inverts = 0; inverts < 2; inverts++) {
+        size_t nodes[2];
+        for (int asked = 0; asked < 2; asked++) {
+            const KrsOptions options = {.research = asked};
+            KrsScene        *scene;
+            assert_int_equal(krs_compile_file(paths[!inverts], &options, &scene), KRS_OK);
+            const KrsProgram *program = krs_scene_program(scene);
+            assert_int_equal(roots_of(&scene->roots, ROOTS_RESEARCH).count,
+                             asked * RESEARCH_COUNT * scene->component_count);
+            assert_int_equal(program->research, asked);
+            assert_int_equal(program->inverts, inverts);
+            assert_int_equal(program->along, !inverts);
+            nodes[asked] = scene->graph->count;
+            krs_scene_free(scene);
+        }
+        assert_true(nodes[0] < nodes[1]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -161,6 +186,7 @@ int main(void)
         cmocka_unit_test(dumps_say_what_was_found),
         cmocka_unit_test(mistakes_end_the_passes),
         cmocka_unit_test(times_add_up),
+        cmocka_unit_test(research_is_lowered_where_asked_for),
     };
     return cmocka_run_group_tests_name("passes of the compiler", tests, NULL, NULL);
 }
