@@ -24,7 +24,8 @@ typedef enum KrsIntegrator {
 } KrsIntegrator;
 extern const char *const krs_integrator_names[KRS_MAX_CHOICES]; /* "default", "preview", ... */
 
-/* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on. */
+/* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on.  KRS_TRACE_TAYLOR and all behind it want a
+   scene that was compiled with `research`. */
 typedef enum KrsTrace {
 #define KRS_TRACE(id, name, about) KRS_TRACE_##id,
 #include "krs/choices.def"
