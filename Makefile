@@ -161,7 +161,7 @@ $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass
 $(B)/compiler/graph/lanes/lanes_avx2.o: FAST += -mavx2
 $(B)/compiler/graph/lanes/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
 # Intervals are two numbers that come in registers: joined into a vector they would go through memory, and wait there.
-$(B)/compiler/graph/range.o $(B)/compiler/graph/lanes/lane_ranges.o $(B)/compiler/graph/lanes/lane_slopes.o $(B)/compiler/graph/lanes/lane_hessians.o $(B)/compiler/graph/lanes/lane_partials.o: FAST := -fno-tree-slp-vectorize
+$(B)/compiler/graph/range.o $(B)/compiler/graph/lanes/lane_ranges.o $(B)/compiler/graph/lanes/lane_slopes.o $(B)/compiler/graph/lanes/lane_hessians.o $(B)/compiler/graph/bounds/numbers.o: FAST := -fno-tree-slp-vectorize
 $(B)/%.o: %.cpp $(B)/flags
 	@mkdir -p $(@D)
 	@echo "compile $<"

@@ -43,20 +43,20 @@ static double sees_front(const Inputs *in)
     return in->view && dot3(in->view, in->normal) > 0 ? 0 : 1;
 }
 
-static inline NodeValue leaf_value(const Expr *e, const Inputs *in)
-{
-    switch ((Op)e->op) {
-#define LEAF(name, text, type, low, high, value, meaning) \
-    case OP_##name:                                       \
-        return (value);
-#include "compiler/graph/ops.def"
-#define RULES(name, ...) case OP_##name:
-#include "compiler/graph/ops.def"
-    case OP_COUNT: break;
+#define LEAF(name, text, type, low, high, value, meaning)                  \
+    static NodeValue leaf_value_of_##name(const Expr *e, const Inputs *in) \
+    {                                                                      \
+        (void)e, (void)in;                                                 \
+        return value;                                                      \
     }
-    assert(!"no leaf");
-    return number(0);
-}
+#include "compiler/graph/ops.def"
+
+static NodeValue (*const leaf_values[OP_COUNT])(const Expr *e, const Inputs *in) = {
+#define LEAF(name, ...) [OP_##name] = leaf_value_of_##name,
+#include "compiler/graph/ops.def"
+};
+
+NodeValue leaf_unseen(const Expr *leaf) { return leaf_values[leaf->op](leaf, &(Inputs){0}); }
 
 /* The rows once more, for tapes: straight from operands to result, without copies. */
 static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *result,
@@ -115,7 +115,7 @@ void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *va
         Node        node = tape->nodes[i];
         const Expr *e    = &tape->graph->items[node];
         if (e->operand_count == 0)
-            values[node] = leaf_value(e, &inputs);
+            values[node] = leaf_values[e->op](e, &inputs);
         else
             tape_run_node(tape->graph, node, values);
     }
@@ -281,7 +281,7 @@ static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
         Node        node = tape->nodes[i];
         const Expr *e    = &tape->graph->items[node];
         if (e->operand_count == 0)
-            values[node] = leaf_value(e, in);
+            values[node] = leaf_values[e->op](e, in);
         else if (e->op == OP_guard)
             i += run_guard(tape, i, values);
         else if (op_has_traits((Op)e->op, READS_TABLES))

@@ -73,6 +73,8 @@ void tape_run_surface(const Tape *tape, const double point[3], const double norm
 void tape_run_seen(const Tape *tape, const double point[3], const double normal[3],
                    const double view[3], NodeValue *values);
 
+/* The value of a leaf that is the same at all points, where nobody looks. */
+NodeValue leaf_unseen(const Expr *leaf);
 /* Only one operation of it, which reads tables or textures; tape_run_frame has filled `values`, where
    those of its operands change. */
 NodeValue tape_run_reader(const Tape *tape, Node node, const NodeValue *operands,

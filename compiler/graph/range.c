@@ -314,11 +314,9 @@ Range range_mul(Range a, Range b)
 Range range_div(Range a, Range b)
 {
     if (b.low <= 0 && b.high >= 0) {
-        if (range_is_zero(b) || (b.low < 0 && b.high > 0))
-            return ANYTHING;
-        /* 0 is one end: the quotient is unbounded on the side that the other end has. */
-        b.low  = b.low == 0 ? 0.0 : b.low;
-        b.high = b.high == 0 ? -0.0 : b.high;
+        if (b.low < 0 || range_is_zero(b))
+            return ANYTHING; /* zero has no sign: what is divided by it has that of the dividend */
+        b.low = 0.0;         /* the quotient is unbounded on the side that the other end has */
     }
     if (b.low > 0 && is_ordered(a) && is_ordered(b) && isfinite(a.low) && isfinite(a.high) &&
         isfinite(b.high))
@@ -449,6 +447,8 @@ static bool smoothstep_is_flat(Range a, Range b, Range c, Range *value)
 Range range_smoothstep(Range a, Range b, Range c)
 {
     Range value;
+    if (!is_number(range_largest(a)) || !is_number(range_largest(b)))
+        return (Range){0, 1}; /* infinite / infinite counts as 0 */
     if (smoothstep_is_flat(a, b, c, &value))
         return value;
     Range t = smoothstep_progress(a, b, c);

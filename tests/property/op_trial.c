@@ -98,6 +98,7 @@ static NodeValue operand_value(const Operand *operand, const double p[3])
         value.v[i] = operand->base[i];
         for (int j = 0; j < 3; j++)
             value.v[i] += operand->gradient[i][j] * p[j];
+        value.v[i] += 0.0; /* zero has no sign in graphs */
     }
     if (operand->type == TYPE_BOOL)
         value.v[0] = value.v[0] > 0;

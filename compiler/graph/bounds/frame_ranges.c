@@ -46,25 +46,18 @@ static bool is_defined_nowhere(Op op, const Range *divisor, uint32_t size)
 static bool common_range(Op op, uint32_t index, uint32_t size, Range *const *o,
                          uint32_t operand_count, Range *result)
 {
-    switch (op) {
-#define MAP(name, arity, called, glsl_, value_, range, da, db, dc, norm, meaning) \
-    case OP_##name:                                                               \
-        for (uint32_t i = 0; i < size; i++) {                                     \
-            Range a = o[0][i], b = arity > 1 ? o[arity > 1][i] : ZERO;            \
-            Range c = arity > 2 ? o[arity > 2 ? 2 : 0][i] : ZERO;                 \
-            (void)a, (void)b, (void)c;                                            \
-            result[i] = (range);                                                  \
-        }                                                                         \
-        return true;
-#include "compiler/graph/ops.def"
-    case OP_COMPONENT: result[0] = o[0][index]; return true;
-    default: break;
-    }
-    if (!op_has_traits(op, BUILDS))
-        return false;
-    for (uint32_t i = 0; i < size; i++)
+    const bool builds = op_has_traits(op, BUILDS), map = number_rows[op].map;
+    if (op == OP_COMPONENT)
+        result[0] = o[0][index];
+    for (uint32_t i = 0; builds && i < size; i++)
         result[i] = o[operand_count > 1 ? i : 0][0];
-    return true;
+    for (uint32_t i = 0; map && i < size; i++) {
+        Range operands[MAX_OPERANDS] = {0};
+        for (uint32_t k = 0; k < operand_count; k++)
+            operands[k] = o[k][i];
+        result[i] = number_rows[op].range(operands);
+    }
+    return op == OP_COMPONENT || builds || map;
 }
 
 /* By the rule of the row, as if nothing depended on the point. */

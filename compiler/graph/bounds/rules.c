@@ -75,13 +75,6 @@ static Fact fact_scale(const RuleInput *input)
     return fact;
 }
 
-/* Component i of the unit vector along v, whose length is in `whole`. */
-static Range unit_component(Range side, Range whole)
-{
-    Range sides = {side.low < 0 ? -1 : 0, side.high > 0 ? 1 : 0};
-    return whole.low > 0 ? range_intersect(range_div(side, whole), sides) : sides;
-}
-
 /* The derivative is that of v seen along the unit vector, so it is no longer than that of v:
    nothing is divided by a length that may be 0. */
 static Fact fact_length(const RuleInput *input)
@@ -124,50 +117,29 @@ static Fact fact_normalize(const RuleInput *input)
     return fact;
 }
 
-static Fact fact_component(const Fact *vector, uint32_t index)
+static Fact fact_component(const RuleInput *input)
 {
-    Fact fact = {.slope = vector->slope};
-    fact_set(&fact, 0, jet_of(vector, index));
+    Fact fact = {.slope = input->operands[0].slope};
+    fact_set(&fact, 0, jet_of(&input->operands[0], input->index));
     return fact;
 }
 
 /* ---- OP rows: truth and choice ---- */
 
-Range range_of_truth(Op op, Range a, Range b)
+/* What the row says of the numbers that are operands. */
+static void value_ranges(const RuleInput *input, Range *ranges)
 {
-    bool always = false, never = false;
-    switch (op) {
-#define TRUTH(name, count, when_always, when_never) \
-    case OP_##name: {                               \
-        always = (when_always);                     \
-        never  = (when_never);                      \
-        break;                                      \
-    }
-#include "compiler/graph/ops.def"
-    default: break;
-    }
-    return (Range){always, always || !never};
-}
-
-static uint32_t operands_of_truth(Op op)
-{
-    switch (op) {
-#define TRUTH(name, count, ...) \
-    case OP_##name: {           \
-        return count;           \
-    }
-#include "compiler/graph/ops.def"
-    default: return 0;
-    }
+    for (uint32_t k = 0; k < MAX_OPERANDS; k++)
+        ranges[k] = k < number_rows[input->op].arity ? input->operands[k].value[0] : ZERO;
 }
 
 /* Where it is neither always true nor never, it may jump. */
 static Fact fact_truth(const RuleInput *input)
 {
-    uint32_t    count = operands_of_truth(input->op);
-    const Fact *o     = input->operands;
-    Range       value = range_of_truth(input->op, o[0].value[0], count > 1 ? o[1].value[0] : ZERO);
-    return fact_of_truth(input, count, value);
+    const NumberRow *row = &number_rows[input->op];
+    Range            ranges[MAX_OPERANDS];
+    value_ranges(input, ranges);
+    return fact_of_truth(input, row->arity, row->range(ranges));
 }
 
 /* Where the condition changes within the box, the value may jump. */
@@ -193,15 +165,15 @@ static Fact fact_select(const RuleInput *input)
 /* Where it goes from one case to the other, the value jumps. */
 static Fact fact_guard(const RuleInput *input)
 {
-    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
-    Range far = input->operands[3].value[0], limit = range_min(b, far);
-    if (a.high < limit.low || a.high <= fmin(far.low, 0))
+    const NumberRow *row = &number_rows[OP_guard];
+    Range            ranges[MAX_OPERANDS];
+    value_ranges(input, ranges);
+    const unsigned chosen = row->chooses(ranges);
+    if (chosen == CHOOSES_C)
         return input->operands[2];
     Fact fact     = fact_unknown(1);
-    fact.value[0] = range_min(a, b);
-    if (a.low < limit.high || a.low <= fmin(far.high, 0))
-        fact.value[0] = range_hull(fact.value[0], input->operands[2].value[0]);
-    else
+    fact.value[0] = row->range(ranges);
+    if (!(chosen & CHOOSES_C))
         fact.slope = fmax(input->operands[0].slope, input->operands[1].slope);
     return fact;
 }
@@ -241,39 +213,35 @@ RangeRule *range_rule(Op op)
 
 /* ---- one operation ---- */
 
-static Fact rule_of_row(const RuleInput *input, uint32_t index, const double *constant)
+static Fact fact_constant(const RuleInput *input, const double *constant)
 {
-    const Fact *o = input->operands;
-    Partials    rows[4];
-    Fact        fact = {0};
-    if (input->op == OP_CONSTANT) {
-        for (uint32_t i = 0; i < input->size; i++)
-            fact.value[i] = range_of(constant[i]);
-        return fact;
-    }
-    switch (input->op) {
-    case OP_COMPONENT: return fact_component(&o[0], index);
-#define MAP(name, arity, called, glsl, value_, range, da, db, dc, norm, meaning)   \
-    case OP_##name:                                                                \
-        for (uint32_t i = 0; i < input->size; i++) {                               \
-            Range a = o[0].value[i], b = arity > 1 ? o[arity > 1].value[i] : ZERO; \
-            Range c = arity > 2 ? o[arity > 2 ? 2 : 0].value[i] : ZERO;            \
-            Range r = (range);                                                     \
-            (void)b, (void)c;                                                      \
-            rows[i] = (Partials){r, {da, db, dc}};                                 \
-        }                                                                          \
-        return fact_map(norm, arity, o, rows, input->size);
-#define OP(name, signature, glsl, evaluate, facts, meaning) \
-    case OP_##name:                                         \
-        return facts(input);
-#include "compiler/graph/ops.def"
-#define LEAF(name, ...) case OP_##name:
-#include "compiler/graph/ops.def"
-    case OP_COUNT: break;
-    }
-    assert(!"leaves have facts of their own");
-    return fact_unknown(input->size);
+    Fact fact = {0};
+    for (uint32_t i = 0; i < input->size; i++)
+        fact.value[i] = range_of(constant[i]);
+    return fact;
 }
+
+/* A MAP row. */
+static Fact fact_of_numbers(const RuleInput *input)
+{
+    const NumberRow *row = &number_rows[input->op];
+    Partials         rows[4];
+    assert(row->map);
+    for (uint32_t i = 0; i < input->size; i++) {
+        Range o[MAX_OPERANDS] = {0};
+        for (uint32_t k = 0; k < row->arity; k++)
+            o[k] = input->operands[k].value[i];
+        rows[i].value = row->range(o);
+        row->first(o, rows[i].value, rows[i].by);
+    }
+    return fact_map((Norm)row->norm, row->arity, input->operands, rows, input->size);
+}
+
+static Rule *const rules[OP_COUNT] = {
+    [OP_COMPONENT] = fact_component,
+#define OP(name, signature, glsl, evaluate, facts, meaning) [OP_##name] = facts,
+#include "compiler/graph/ops.def"
+};
 
 /* Quotients by 0 all over the box: of 0, too, whose derivatives make the slope seem to be 0. */
 static bool is_defined_nowhere(const RuleInput *input)
@@ -287,11 +255,14 @@ static bool is_defined_nowhere(const RuleInput *input)
 Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,
              const double *constant)
 {
-    RuleInput input = {.op = op, .type = type, .types = types, .operands = operands};
-    input.size      = type_size(type);
+    RuleInput input = {
+        .op = op, .type = type, .index = index, .types = types, .operands = operands};
+    input.size = type_size(type);
     if (op != OP_CONSTANT && op != OP_COMPONENT && type_size(types[0]) > input.size)
         input.size = type_size(types[0]);
-    Fact fact = is_defined_nowhere(&input) ? fact_unknown(input.size)
-                                           : rule_of_row(&input, index, constant);
+    Fact fact = op == OP_CONSTANT            ? fact_constant(&input, constant)
+                : is_defined_nowhere(&input) ? fact_unknown(input.size)
+                : rules[op]                  ? rules[op](&input)
+                                             : fact_of_numbers(&input);
     return fact_agreed(fact, type_size(type));
 }

@@ -7,12 +7,13 @@
 #define KRS_RULES_H
 
 #include "compiler/graph/bounds/facts.h"
-#include "compiler/graph/range.h"
+#include "compiler/graph/bounds/numbers.h"
 
 /* An operation and the facts of its operands. */
 typedef struct RuleInput {
     Op               op;
     GraphType        type;
+    uint32_t         index; /* of OP_COMPONENT */
     const GraphType *types;
     const Fact      *operands;
     uint32_t         size; /* components of the result or the first operand, whichever has more */
@@ -46,15 +47,18 @@ Fact fact_unknown(uint32_t size);
 Range length_range(const Range *sides, uint32_t size);
 /* Room for the rounding of a computation with numbers of this size. */
 Range loosened(Range range, double scale);
+/* A component of the unit vector along a vector of this length. */
+static inline Range unit_component(Range component, Range length)
+{
+    Range sides = {component.low < 0 ? -1 : 0, component.high > 0 ? 1 : 0};
+    return length.low > 0 ? range_intersect(range_div(component, length), sides) : sides;
+}
 /* Tells whether the operands from `first` up to `count` are the same all over the box. */
 bool operands_constant(const RuleInput *input, uint32_t first, uint32_t count);
 
-/* How slopes combine: ops.def. */
-typedef enum Norm { NORM_SUM, NORM_CONVEX, NORM_MIX, NORM_NONE } Norm;
-
 /* Value and partial derivatives of one component. */
 typedef struct Partials {
-    Range value, by[3];
+    Range value, by[MAX_OPERANDS];
 } Partials;
 
 /* A MAP row: the operands weighted by partial derivatives, component by component. */
@@ -72,17 +76,7 @@ Fact fact_of_truth(const RuleInput *input, uint32_t count, Range value);
    has no RANGES. */
 typedef void RangeRule(uint32_t size, Range *const *operands, Range *result);
 RangeRule   *range_rule(Op op);
-/* Of TRUTH rows: 1, 0, or both. */
-Range     range_of_truth(Op op, Range a, Range b);
-RangeRule range_scale, range_cross, range_normalize;
-
-/* What the columns of derivatives are written in. */
-#define ZERO      range_of(0)
-#define ONE       range_of(1)
-#define MINUS_ONE range_of(-1)
-#define TWO       range_of(2)
-#define HALF      range_of(0.5)
-#define LN2       ((Range){0.69314718055994528, 0.6931471805599454})
+RangeRule    range_scale, range_cross, range_normalize;
 
 /* rules_space.c */
 Rule fact_rotate, fact_fold, fact_front, fact_cell, fact_cell_polar, fact_noise2, fact_noise3,

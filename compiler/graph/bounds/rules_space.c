@@ -59,30 +59,13 @@ Fact fact_front(const RuleInput *input)
     return fact_of_truth(input, 3, (Range){height.low > 0, height.high > 0});
 }
 
-/* Of p - period * k for the cell k in [low, high] that is nearest. */
-static Range cell_range(Range p, Range period, Range low, Range high)
-{
-    Range  cell   = range_min(range_max(range_round(range_div(p, period)), low), high);
-    Range  moved  = range_sub(p, range_mul(period, cell));
-    Range  first  = range_sub(p, range_mul(period, low));
-    Range  last   = range_sub(p, range_mul(period, high));
-    Range  within = {fmin(-period.high / 2, first.low), fmax(period.high / 2, last.high)};
-    double scale  = range_largest(p);
-    return range_intersect(moved, loosened(within, isfinite(scale) ? scale : period.high));
-}
-
 /* Within a cell it is a translation. */
 Fact fact_cell(const RuleInput *input)
 {
     const Fact *o    = input->operands;
     Fact        fact = o[0];
-    for (uint32_t i = 0; i < 3; i++) {
-        Range p = o[0].value[i], period = o[1].value[i];
-        if (period.high > 0)
-            fact.value[i] = cell_range(p, range_above(period, 0), o[2].value[i], o[3].value[i]);
-        if (period.high > 0 && period.low <= 0)
-            fact.value[i] = range_hull(fact.value[i], p);
-    }
+    for (uint32_t i = 0; i < 3; i++)
+        fact.value[i] = range_in_cell(o[0].value[i], o[1].value[i], o[2].value[i], o[3].value[i]);
     if (operands_constant(input, 1, 4))
         return fact;
     Fact unknown = fact_unknown(3);

@@ -18,10 +18,6 @@ void lane_instance_step(const LaneWork *work, const LaneCode *code, size_t point
 /* The length of a vector that is very long or very short. */
 double lane_length(const double *vector, uint32_t size);
 
-/* Whether a guard leaves out its third operand: in all points, in none, or one does not know. */
-typedef enum LaneTruth { LANE_NEVER, LANE_SOMETIMES, LANE_ALWAYS } LaneTruth;
-LaneTruth lane_guard_decides(Range bound, Range least, Range far);
-
 LaneRun lane_double_plain, lane_single_plain;
 LaneRun lane_double_avx2, lane_single_avx2;
 LaneRun lane_double_avx512, lane_single_avx512;

@@ -1,18 +1,12 @@
 /* lane_cuts.c: parts of numbers above and below 0, and their sums. */
 #include "compiler/graph/lanes/lane_cuts.h"
-
-static Range range_at(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
-{
-    if (operand & LANE_SCALAR)
-        return range_of(tape->scalars[operand & ~LANE_SCALAR]);
-    return ranges->ranges[operand];
-}
+#include "compiler/graph/lanes/lane_steps.h"
 
 uint32_t lane_only_operand(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step)
 {
     uint32_t only = NODE_NONE;
     for (uint32_t k = 0; k < step->operand_count; k++)
-        if (!range_is_zero(range_at(tape, ranges, step->operands[k]))) {
+        if (!range_is_zero(lane_range_at(tape, ranges, step->operands[k]))) {
             if (only != NODE_NONE)
                 return NODE_NONE;
             only = step->operands[k];

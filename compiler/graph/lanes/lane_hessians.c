@@ -10,11 +10,10 @@
 #include <string.h>
 
 #include "compiler/graph/blend_shares.h"
-#include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/lanes/lane_cuts.h"
 #include "compiler/graph/lanes/lane_outlines.h"
-#include "compiler/graph/lanes/lane_partials.h"
 #include "compiler/graph/lanes/lane_segments.h"
+#include "compiler/graph/lanes/lane_steps.h"
 
 /* A run over a tape, and the step that it is at. */
 typedef struct Run {
@@ -39,9 +38,7 @@ LaneHessian *lane_hessians_new(const LaneTape *tape, Arena *arena)
 
 static Range range_at(const Run *run, uint32_t operand)
 {
-    if (operand & LANE_SCALAR)
-        return range_of(run->tape->scalars[operand & ~LANE_SCALAR]);
-    return run->ranges->ranges[operand];
+    return lane_range_at(run->tape, run->ranges, operand);
 }
 
 static Range range_in(const Run *run, int k) { return range_at(run, run->step->operands[k]); }
@@ -110,18 +107,21 @@ static void add_product(LaneHessian *sum, Range factor, const LaneSlope *a, cons
     }
 }
 
-static LaneHessian hessian_by_partials(const Run *run, const LanePartials *p)
+static LaneHessian hessian_by_partials(const Run *run, const NumberRow *row, const Range *o)
 {
-    LaneHessian sum   = NO_BEND;
-    uint32_t    count = run->step->operand_count;
-    if (!p->known)
+    LaneHessian sum = NO_BEND;
+    Range       by[MAX_OPERANDS], second[3][3] = {0};
+    uint32_t    pairs = row->arity < 3 ? row->arity : 3;
+    row->first(o, result(run), by);
+    if (!row->second || !row->second(o, result(run), by, second))
         return UNKNOWN_BEND;
-    for (uint32_t k = 0; k < count; k++) {
+    for (uint32_t k = 0; k < row->arity; k++)
+        add_hessian(&sum, by[k], hessian_at(run, run->step->operands[k]));
+    for (uint32_t k = 0; k < pairs; k++) {
         const LaneSlope *slope = slope_at(run, run->step->operands[k]);
-        add_hessian(&sum, p->first[k], hessian_at(run, run->step->operands[k]));
-        add_square(&sum, p->second[k][k], slope);
-        for (uint32_t l = k + 1; l < count; l++)
-            add_product(&sum, p->second[k][l], slope, slope_at(run, run->step->operands[l]));
+        add_square(&sum, second[k][k], slope);
+        for (uint32_t l = k + 1; l < pairs; l++)
+            add_product(&sum, second[k][l], slope, slope_at(run, run->step->operands[l]));
     }
     return sum;
 }
@@ -213,12 +213,6 @@ static LaneHessian hessian_of_square(const Run *run)
 
 /* ---- smooth minima ---- */
 
-/* Second derivative of the blend by a - b, at most 0, times the width. */
-static double blend_bend(uint16_t op)
-{
-    return op == OP_smin_quadratic ? 0.5 : op == OP_smin_cubic ? 1 : 0.25;
-}
-
 /* The derivatives of a - b. */
 static LaneSlope slope_of_difference(const Run *run, uint32_t a, uint32_t b)
 {
@@ -235,11 +229,11 @@ static LaneSlope slope_of_difference(const Run *run, uint32_t a, uint32_t b)
 
 /* Weights of the operands, which sum to 1, and what their changes add: for each pair no more than where there are
    only two. */
-static LaneHessian hessian_of_mean(const Run *run, uint16_t op, const uint32_t *operands,
-                                   uint32_t count, Range width)
+static LaneHessian hessian_of_mean(const Run *run, Op op, const uint32_t *operands, uint32_t count,
+                                   Range width)
 {
     LaneHessian sum  = {.known = width.low > 0 && count > 0};
-    Range       bend = {-blend_bend(op) / width.low * (1 + 0x1p-50), 0};
+    Range       bend = {-number_rows[op].bend / width.low * (1 + 0x1p-50), 0};
     for (uint32_t k = 0; k < count; k++)
         sum.known = sum.known && hessian_at(run, operands[k])->known &&
                     is_finite(range_at(run, operands[k]));
@@ -261,7 +255,7 @@ static LaneHessian hessian_of_mean(const Run *run, uint16_t op, const uint32_t *
 static LaneHessian hessian_of_blend(const Run *run)
 {
     return operand_is_constant(run, 2)
-               ? hessian_of_mean(run, run->step->op, run->step->operands, 2, range_in(run, 2))
+               ? hessian_of_mean(run, (Op)run->step->op, run->step->operands, 2, range_in(run, 2))
                : UNKNOWN_BEND;
 }
 
@@ -281,65 +275,37 @@ static LaneHessian hessian_of_shares(const Run *run, const LaneCall *call, const
         if (!((range_at(run, operand).low - least) * (1 - 0x1p-50) > known))
             sharers[count++] = operand;
     }
-    return hessian_of_mean(run, (uint16_t)sharing_op((Op)e->op).of_two, sharers, count,
-                           range_of(known));
-}
-
-/* ---- other steps ---- */
-
-static LaneHessian hessian_of_guard(const Run *run)
-{
-    Range     a = range_in(run, 0), b = range_in(run, 1);
-    LaneTruth decides = lane_guard_decides(a, b, range_in(run, 3));
-    int       chosen  = decides == LANE_NEVER    ? 2
-                        : decides != LANE_ALWAYS ? -1
-                        : a.high <= b.low        ? 0
-                        : b.high <= a.low        ? 1
-                                                 : -1;
-    return chosen < 0 ? UNKNOWN_BEND : *hessian_at(run, run->step->operands[chosen]);
-}
-
-/* Within one cell. */
-static LaneHessian hessian_of_cell(const Run *run)
-{
-    Range a = range_in(run, 0), period = range_in(run, 1);
-    for (int k = 1; k < 4; k++)
-        if (!operand_is_constant(run, k))
-            return UNKNOWN_BEND;
-    if (period.high <= 0)
-        return *hessian_at(run, run->step->operands[0]);
-    if (period.low <= 0 || !is_finite(a) || !is_finite(period))
-        return UNKNOWN_BEND;
-    Range cell = range_min(range_max(range_round(range_div(a, period)), range_in(run, 2)),
-                           range_in(run, 3));
-    return range_is_single(cell) ? *hessian_at(run, run->step->operands[0]) : UNKNOWN_BEND;
+    return hessian_of_mean(run, sharing_op((Op)e->op).of_two, sharers, count, range_of(known));
 }
 
 /* ---- runs ---- */
 
+/* Of one of these operands; where there are several there may be a corner. */
+static LaneHessian hessian_of_chosen(const Run *run, unsigned chosen)
+{
+    uint32_t only = lane_only_of(run->step, chosen);
+    return only == NODE_NONE ? UNKNOWN_BEND : *hessian_at(run, only);
+}
+
 static LaneHessian hessian_of_step(const Run *run)
 {
-    const LaneStep *step = run->step;
-    switch (step->op) {
-    case OP_length: return hessian_of_length(run);
-    case OP_square: return hessian_of_square(run);
-    case OP_smin_quadratic:
-    case OP_smin_cubic:
-    case OP_smin_exponential: return hessian_of_blend(run);
-    case OP_guard: return hessian_of_guard(run);
-    case OP_cell: return hessian_of_cell(run);
-    default: break;
-    }
-    if (step->op == OP_mul && step->operands[0] == step->operands[1])
+    const LaneStep  *step = run->step;
+    const NumberRow *row  = lane_row(step);
+    uint32_t         whole;
+    Range            o[MAX_OPERANDS];
+    if (step->op == OP_length)
+        return hessian_of_length(run);
+    if (step->op == OP_square || (step->op == OP_mul && step->operands[0] == step->operands[1]))
         return hessian_of_square(run);
-    uint32_t whole = lane_sum_of_cuts(run->tape, run->ranges, step);
-    if (whole != NODE_NONE)
+    if ((whole = lane_sum_of_cuts(run->tape, run->ranges, step)) != NODE_NONE)
         return *hessian_at(run, whole);
-    uint32_t     count = step->operand_count;
-    LanePartials p     = partials_of(step->op, range_in(run, 0),
-                                 count > 1 ? range_in(run, 1) : range_of(0),
-                                 count > 2 ? range_in(run, 2) : range_of(0), result(run));
-    return hessian_by_partials(run, &p);
+    lane_operands(run->tape, run->ranges, step, o);
+    if (row->bend > 0)
+        return hessian_of_blend(run);
+    unsigned chosen = row->chooses ? row->chooses(o) : 0;
+    if (chosen)
+        return hessian_of_chosen(run, chosen);
+    return row->arity ? hessian_by_partials(run, row, o) : UNKNOWN_BEND;
 }
 
 /* Of the distance to an outline. */
@@ -417,16 +383,12 @@ static uint32_t without_scalar(const LaneStep *step)
 
 bool lane_is_undecided(const LaneTape *tape, const LaneRanges *ranges)
 {
-    Run run = {.tape = tape, .ranges = ranges};
-    for (uint32_t at = tape->outputs[0]; (run.step = lane_step_of(tape, at));) {
-        Range a = range_in(&run, 0), b = run.step->operand_count > 1 ? range_in(&run, 1) : a;
-        switch (run.step->op) {
-        case OP_min:
-        case OP_max:
-        case LANE_LESSER:
-        case LANE_GREATER: return a.low < b.high && b.low < a.high;
-        default: at = without_scalar(run.step); break;
-        }
+    const LaneStep *step;
+    for (uint32_t at = tape->outputs[0]; (step = lane_step_of(tape, at));) {
+        unsigned chosen = lane_chooses(tape, ranges, step);
+        if (chosen & (chosen - 1))
+            return !range_is_single(lane_range_at(tape, ranges, at));
+        at = chosen ? lane_only_of(step, chosen) : without_scalar(step);
     }
     return false;
 }

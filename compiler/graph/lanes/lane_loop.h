@@ -190,6 +190,8 @@ static void LOCAL(step)(uint16_t op, REAL *to, const REAL *const *x, uint32_t si
     switch (op) {
 #define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
     ROW(OP_##name, value)
+#define NUMBERS(name, arity, value, ...) ROW(OP_##name, value)
+#define TRUTH                            NUMBERS
 #include "compiler/graph/ops.def"
 #define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
               weights, meaning)                                                                  \
@@ -198,20 +200,6 @@ static void LOCAL(step)(uint16_t op, REAL *to, const REAL *const *x, uint32_t si
     case OP_length:
         LOCAL(length)(to, x, size, blocks);
         return;
-        ROW(OP_less, a < b)
-        ROW(OP_less_equal, a <= b)
-        ROW(OP_equal, a == b)
-        ROW(OP_not_equal, a != b)
-        ROW(OP_and, a != 0 ? b != 0 : 0)
-        ROW(OP_or, a != 0 ? 1 : b != 0)
-        ROW(OP_not, a == 0)
-        ROW(OP_select, a != 0 ? b : c)
-        ROW(OP_guard, a >= fmin(b, d) ? (a > fmin(d, 0) ? fmin(a, b) : c) : c)
-        ROW(OP_normalize, b != 0 ? a / b : 0)
-        ROW(OP_cell, b > 0 ? a - b * fmin(fmax(floor(a / b + 0.5), c), d) : a)
-        ROW(OP_blend_weight, !(c > 0) ? b >= a
-                             : a == b ? 0.5
-                                      : fmin(fmax(0.5 + 0.5 * (b - a) / c, 0), 1))
         ROW(LANE_LESSER, b < a ? b : a)
         ROW(LANE_GREATER, b > a ? b : a)
     default: assert(!"no step");

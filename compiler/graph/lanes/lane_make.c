@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/graph/bounds/numbers.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_rows.h"
 #include "compiler/graph/op_values.h"
@@ -75,11 +76,16 @@ static const Parts *parts_of(Builder *b, Node node)
 
 /* ---- operations that are taken apart ---- */
 
+/* An operation, and the components of its operands, behind the last one NODE_NONE. */
 typedef struct Operands {
+    const Expr     *e;
     const uint32_t *x, *y, *z, *w;
     uint32_t        size;     /* components of the first */
     double          steepest; /* of the first */
 } Operands;
+
+/* Makes the components of the result. */
+typedef void MakeSteps(Builder *b, const Operands *o, uint32_t *to);
 
 /* Tells how fast the result of a step changes at most. */
 static void bound_step(Builder *b, uint32_t value, double steepest)
@@ -105,21 +111,38 @@ static uint32_t emit_minor(Builder *b, const uint32_t *x, const uint32_t *y, int
     return emit2(b, OP_sub, emit2(b, OP_mul, x[i], y[k]), emit2(b, OP_mul, x[k], y[i]));
 }
 
-static void emit_cross(Builder *b, const Operands *o, uint32_t *to)
+/* A step of a body that has no operands, but a number. */
+static uint32_t emit_of_instance(Builder *b, uint16_t op, uint32_t number)
+{
+    return lane_steps_add(b->to, (LaneStep){.op = op, .operands = {number}});
+}
+
+static void steps_of_component(Builder *b, const Operands *o, uint32_t *to)
+{
+    (void)b;
+    to[0] = o->x[o->e->index];
+}
+
+static void steps_of_dot(Builder *b, const Operands *o, uint32_t *to)
+{
+    to[0] = emit_dot(b, o->x, o->y, o->size);
+}
+
+static void steps_of_cross(Builder *b, const Operands *o, uint32_t *to)
 {
     to[0] = emit_minor(b, o->x, o->y, 1, 2);
     to[1] = emit_minor(b, o->x, o->y, 2, 0);
     to[2] = emit_minor(b, o->x, o->y, 0, 1);
 }
 
-static void emit_rotate(Builder *b, const Operands *o, uint32_t *to)
+static void steps_of_rotate(Builder *b, const Operands *o, uint32_t *to)
 {
     to[0] = emit_dot(b, o->y, o->x, 3);
     to[1] = emit_dot(b, o->z, o->x, 3);
     to[2] = emit_dot(b, o->w, o->x, 3);
 }
 
-static void emit_fold(Builder *b, const Operands *o, uint32_t *to)
+static void steps_of_fold(Builder *b, const Operands *o, uint32_t *to)
 {
     uint32_t beyond = emit2(b, OP_sub, emit_dot(b, o->y, o->x, 3), o->z[0]);
     bound_step(b, beyond, o->steepest); /* normals of mirrors are unit vectors */
@@ -129,15 +152,62 @@ static void emit_fold(Builder *b, const Operands *o, uint32_t *to)
         to[k] = emit2(b, OP_sub, o->x[k], emit2(b, OP_mul, twice, o->y[k]));
 }
 
+static void steps_of_front(Builder *b, const Operands *o, uint32_t *to)
+{
+    to[0] = emit2(b, OP_less, o->z[0], emit_dot(b, o->y, o->x, 3));
+}
+
+static void steps_of_length(Builder *b, const Operands *o, uint32_t *to)
+{
+    to[0] = emit(b, OP_length, o->size, o->x);
+}
+
+static void steps_of_normalize(Builder *b, const Operands *o, uint32_t *to)
+{
+    uint32_t length = emit(b, OP_length, o->size, o->x);
+    for (uint32_t k = 0; k < o->size; k++)
+        to[k] = emit2(b, OP_normalize, o->x[k], length);
+}
+
+static void steps_of_scale(Builder *b, const Operands *o, uint32_t *to)
+{
+    for (uint32_t k = 0; k < o->size; k++)
+        to[k] = emit2(b, OP_mul, o->x[k], o->y[0]);
+}
+
+/* Where nobody looks there are no pixels. */
+static void steps_of_footprint(Builder *b, const Operands *o, uint32_t *to)
+{
+    for (uint32_t k = 0; k < components(o->e->type); k++)
+        to[k] = lane_steps_number(b->to, 0);
+}
+
+static void steps_of_row(Builder *b, const Operands *o, uint32_t *to)
+{
+    (void)o;
+    to[0] = emit_of_instance(b, LANE_INSTANCE, 0);
+}
+
+static void steps_of_state(Builder *b, const Operands *o, uint32_t *to)
+{
+    for (uint32_t k = 0; k < components(o->e->type); k++)
+        to[k] = emit_of_instance(b, LANE_STATE, 4 * state_of(o->e->index) + k);
+}
+
+static MakeSteps *const steps_of[OP_COUNT] = {
+#define STEPS(name, function) [OP_##name] = function,
+#include "compiler/graph/ops.def"
+};
+
 /* An operation on the same component of each operand; operands that are FLOAT have only one. */
-static void emit_each(Builder *b, const Expr *e, const Operands *o, uint32_t *to)
+static void emit_each(Builder *b, const Operands *o, uint32_t *to)
 {
     const uint32_t *from[] = {o->x, o->y, o->z, o->w};
-    for (uint32_t k = 0; k < components(e->type); k++) {
+    for (uint32_t k = 0; k < components(o->e->type); k++) {
         uint32_t operands[MAX_OPERANDS];
-        for (uint32_t i = 0; i < e->operand_count; i++)
+        for (uint32_t i = 0; i < o->e->operand_count; i++)
             operands[i] = from[i][1] == NODE_NONE ? from[i][0] : from[i][k];
-        to[k] = emit(b, e->op == OP_scale ? OP_mul : e->op, e->operand_count, operands);
+        to[k] = emit(b, o->e->op, o->e->operand_count, operands);
     }
 }
 
@@ -156,53 +226,19 @@ static void emit_call(Builder *b, Node node, uint32_t *to)
         to[k] = emit1(b, LANE_PART, to[0]);
 }
 
-static void emit_by_traits(Builder *b, Node node, const Operands *o, uint32_t *to)
-{
-    const Expr *e = &b->graph->items[node];
-    if (op_has_traits((Op)e->op, BUILDS))
-        for (uint32_t k = 0; k < components(e->type); k++)
-            to[k] = e->operand_count == 1 ? o->x[0]
-                                          : (const uint32_t *[]){o->x, o->y, o->z, o->w}[k][0];
-    else if (op_has_traits((Op)e->op, COMPONENTWISE))
-        emit_each(b, e, o, to);
-    else
-        emit_call(b, node, to);
-}
-
 static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *to)
 {
-    const Expr *e = &b->graph->items[node];
-    switch ((Op)e->op) {
-    case OP_COMPONENT: to[0] = o->x[e->index]; return;
-    case OP_dot: to[0] = emit_dot(b, o->x, o->y, o->size); return;
-    case OP_cross: emit_cross(b, o, to); return;
-    case OP_rotate: emit_rotate(b, o, to); return;
-    case OP_fold: emit_fold(b, o, to); return;
-    case OP_front: to[0] = emit2(b, OP_less, o->z[0], emit_dot(b, o->y, o->x, 3)); return;
-    case OP_length: to[0] = emit(b, OP_length, o->size, o->x); return;
-    case OP_footprint:
-    case OP_footprint_axes:
+    const Expr     *e      = o->e;
+    const uint32_t *from[] = {o->x, o->y, o->z, o->w};
+    if (steps_of[e->op])
+        steps_of[e->op](b, o, to);
+    else if (op_has_traits((Op)e->op, BUILDS))
         for (uint32_t k = 0; k < components(e->type); k++)
-            to[k] = lane_steps_number(b->to, 0);
-        return;
-    case OP_normalize: {
-        uint32_t length = emit(b, OP_length, o->size, o->x);
-        for (uint32_t k = 0; k < o->size; k++)
-            to[k] = emit2(b, OP_normalize, o->x[k], length);
-        return;
-    }
-#define MAP(name, ...) case OP_##name:
-#include "compiler/graph/ops.def"
-        emit_each(b, e, o, to);
-        return;
-    default: emit_by_traits(b, node, o, to);
-    }
-}
-
-/* A step of a body that has no operands, but a number. */
-static uint32_t emit_of_instance(Builder *b, uint16_t op, uint32_t number)
-{
-    return lane_steps_add(b->to, (LaneStep){.op = op, .operands = {number}});
+            to[k] = from[e->operand_count == 1 ? 0 : k][0];
+    else if (number_rows[e->op].map || op_has_traits((Op)e->op, COMPONENTWISE))
+        emit_each(b, o, to);
+    else
+        emit_call(b, node, to);
 }
 
 /* In a body, a number of the instance's own row. */
@@ -215,28 +251,24 @@ static bool emit_row(Builder *b, const Expr *e, uint32_t *to)
     return true;
 }
 
-/* Leaves that are known at a point alone; the others have the same value everywhere (ops.def). */
+/* Leaves that are no input have the same value everywhere, or are numbers of the instance. */
 static void emit_leaf(Builder *b, const Expr *e, uint32_t *to)
 {
-    bool     point = e->op == OP_POINT || e->op == OP_INSTANCE_POINT;
-    uint32_t first = point ? LANE_POINT : LANE_NORMAL;
+    static const struct {
+        bool    has;
+        uint8_t first;
+    } inputs[OP_COUNT] = {
+#define INPUT(name, input) [OP_##name] = {true, input},
+#include "compiler/graph/ops.def"
+    };
     assert(b->in_body || !is_of_instances((Op)e->op));
+    if (steps_of[e->op]) {
+        steps_of[e->op](b, &(Operands){.e = e}, to);
+        return;
+    }
+    const NodeValue same = inputs[e->op].has ? number(0) : leaf_unseen(e);
     for (uint32_t k = 0; k < components(e->type); k++)
-        switch ((Op)e->op) {
-        case OP_POINT:
-        case OP_INSTANCE_POINT:
-        case OP_NORMAL:
-        case OP_INSTANCE_NORMAL:
-        case OP_VIEW:
-        case OP_DIRECTION: to[k] = first + k; break;
-        case OP_FOOTPRINT:
-        case OP_INSTANCE_FOOTPRINT: to[k] = LANE_FOOTPRINT; break;
-        case OP_INSTANCE_THRESHOLD: to[k] = LANE_THRESHOLD; break;
-        case OP_INSTANCE_ROW: to[k] = emit_of_instance(b, LANE_INSTANCE, 0); break;
-        case OP_STATE: to[k] = emit_of_instance(b, LANE_STATE, 4 * state_of(e->index) + k); break;
-        default:
-            to[k] = lane_steps_number(b->to, (e->op == OP_INSTANCE && k == 0) || e->op == OP_FRONT);
-        }
+        to[k] = inputs[e->op].has ? inputs[e->op].first + k : lane_steps_number(b->to, same.v[k]);
 }
 
 static void emit_node(Builder *b, size_t place)
@@ -248,7 +280,7 @@ static void emit_node(Builder *b, size_t place)
     Parts       o[MAX_OPERANDS] = {nothing, nothing, nothing, nothing};
     for (uint32_t k = 0; k < e->operand_count; k++)
         o[k] = *parts_of(b, e->operands[k]);
-    Operands operands = {o[0].of, o[1].of, o[2].of, o[3].of, 0, HUGE_VAL};
+    Operands operands = {e, o[0].of, o[1].of, o[2].of, o[3].of, 0, HUGE_VAL};
     if (e->operand_count == 0) {
         emit_leaf(b, e, to);
     } else if (!emit_row(b, e, to)) {

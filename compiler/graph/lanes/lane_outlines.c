@@ -12,7 +12,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
-#include "compiler/graph/lanes/lane_partials.h"
+#include "compiler/graph/bounds/numbers.h"
 
 /* Widens what rounding may have changed: a share of all lengths. */
 static const double UNCERTAIN = 1e-9;

@@ -11,148 +11,9 @@
 
 #include "compiler/graph/blend_shares.h"
 #include "compiler/graph/instance_table.h"
-#include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/lanes/lane_outlines.h"
 #include "compiler/graph/lanes/lane_rows.h"
-
-/* A step whose value is being looked for, and what is known of its operands. */
-typedef struct Question {
-    const LaneTape   *tape;
-    const LaneRanges *ranges;
-    const LaneStep   *step;
-} Question;
-
-static Range range_at(const Question *q, int k)
-{
-    uint32_t operand = q->step->operands[k];
-    if (operand & LANE_SCALAR)
-        return range_of(q->tape->scalars[operand & ~LANE_SCALAR]);
-    return q->ranges->ranges[operand];
-}
-
-static bool is_sure(const Question *q, int k)
-{
-    uint32_t operand = q->step->operands[k];
-    if (operand & LANE_SCALAR)
-        return !isnan(q->tape->scalars[operand & ~LANE_SCALAR]);
-    return q->ranges->sure[operand];
-}
-
-/* The operand, if it is a number. */
-static uint32_t taken(const Question *q, int k)
-{
-    return is_sure(q, k) ? q->step->operands[k] : NODE_NONE;
-}
-
-static uint32_t lesser(const Question *q, int a, int b)
-{
-    if (range_at(q, a).high <= range_at(q, b).low)
-        return taken(q, a);
-    return range_at(q, b).high <= range_at(q, a).low ? taken(q, b) : NODE_NONE;
-}
-
-static uint32_t greater(const Question *q, int a, int b)
-{
-    if (range_at(q, a).low >= range_at(q, b).high)
-        return taken(q, a);
-    return range_at(q, b).low >= range_at(q, a).high ? taken(q, b) : NODE_NONE;
-}
-
-/* min(max(a, b), c) */
-static uint32_t clamped(const Question *q)
-{
-    Range a = range_at(q, 0), low = range_at(q, 1), high = range_at(q, 2);
-    if (a.low >= low.high && a.high <= high.low)
-        return taken(q, 0);
-    if (!is_sure(q, 0) || !is_sure(q, 1))
-        return NODE_NONE;
-    if (a.high <= low.low && low.high <= high.low)
-        return taken(q, 1);
-    return a.low >= high.high && low.high <= high.low ? taken(q, 2) : NODE_NONE;
-}
-
-static uint32_t selected(const Question *q)
-{
-    Range condition = range_at(q, 0);
-    return condition.low > 0     ? q->step->operands[1]
-           : condition.high <= 0 ? q->step->operands[2]
-                                 : NODE_NONE;
-}
-
-static uint32_t guarded(const Question *q)
-{
-    if (!is_sure(q, 0) || !is_sure(q, 1) || !is_sure(q, 3))
-        return NODE_NONE;
-    switch (lane_guard_decides(range_at(q, 0), range_at(q, 1), range_at(q, 3))) {
-    case LANE_ALWAYS: return lesser(q, 0, 1);
-    case LANE_NEVER: return q->step->operands[2];
-    default: return NODE_NONE;
-    }
-}
-
-/* Blends that take nothing off where |a - b| is the width or more. */
-static uint32_t blended(const Question *q)
-{
-    Range a = range_at(q, 0), b = range_at(q, 1), width = range_at(q, 2);
-    if (!is_sure(q, 0) || !is_sure(q, 1) || !is_sure(q, 2))
-        return NODE_NONE;
-    double apart = max2(b.low - a.high, a.low - b.high);
-    return width.high <= 0 || apart * (1 - 0x1p-50) > width.high ? lesser(q, 0, 1) : NODE_NONE;
-}
-
-/* Nothing changes when this is taken off. */
-static bool is_plus_zero(const Question *q, int k)
-{
-    return is_sure(q, k) && range_is_zero(range_at(q, k)) && !signbit(range_at(q, k).low);
-}
-
-/* Zero has no sign (op_values.c), so a sum with it is the other number. */
-static bool is_zero(const Question *q, int k)
-{
-    return is_sure(q, k) && range_is_zero(range_at(q, k));
-}
-
-static bool is_one(const Question *q, int k)
-{
-    Range range = range_at(q, k);
-    return is_sure(q, k) && range.low == 1 && range.high == 1;
-}
-
-/* The operand whose value the step has in every point; NODE_NONE: there is none. */
-static uint32_t same_operand(const Question *q)
-{
-    switch (q->step->op) {
-    case OP_min: return lesser(q, 0, 1);
-    case OP_max: return greater(q, 0, 1);
-    case LANE_LESSER: return is_sure(q, 0) && is_sure(q, 1) ? lesser(q, 0, 1) : NODE_NONE;
-    case LANE_GREATER: return is_sure(q, 0) && is_sure(q, 1) ? greater(q, 0, 1) : NODE_NONE;
-    case OP_add: return is_zero(q, 1) ? taken(q, 0) : is_zero(q, 0) ? taken(q, 1) : NODE_NONE;
-    case OP_sub: return is_plus_zero(q, 1) ? taken(q, 0) : NODE_NONE;
-    case OP_mul: return is_one(q, 1) ? taken(q, 0) : is_one(q, 0) ? taken(q, 1) : NODE_NONE;
-    case OP_div: return is_one(q, 1) ? taken(q, 0) : NODE_NONE;
-    case OP_abs: return range_at(q, 0).low >= 0 ? taken(q, 0) : NODE_NONE;
-    case OP_clamp: return clamped(q);
-    case OP_select: return selected(q);
-    case OP_guard: return guarded(q);
-    case OP_smin_quadratic:
-    case OP_smin_cubic: return blended(q);
-    default: return NODE_NONE;
-    }
-}
-
-/* The sign of the operand is known: its complement, which is one step as well, but then more may be
-   known. */
-static bool is_complement(const Question *q)
-{
-    return q->step->op == OP_abs && range_at(q, 0).high <= 0;
-}
-
-/* What is clamped may stay what it was; then it is that less itself. */
-static bool is_less_itself(const Question *q, const LaneStep *pruned)
-{
-    return pruned->operands[0] == pruned->operands[1] && is_sure(q, 0) &&
-           isfinite(range_largest(range_at(q, 0)));
-}
+#include "compiler/graph/lanes/lane_steps.h"
 
 /* ---- the shorter tape ---- */
 
@@ -180,30 +41,43 @@ static bool is_single(const Pruning *p, size_t value, double *number)
 /* A finite number in every point of the box. */
 static bool number_at(const Pruning *p, uint32_t operand, Range *range)
 {
-    bool scalar = operand & LANE_SCALAR;
-    *range      = scalar ? range_of(p->from->scalars[operand & ~LANE_SCALAR])
-                         : p->ranges->ranges[operand];
-    return (scalar || p->ranges->sure[operand]) && isfinite(range->low) && isfinite(range->high);
+    *range = lane_range_at(p->from, p->ranges, operand);
+    return lane_is_sure(p->from, p->ranges, operand) && is_finite(*range);
+}
+
+/* The operand whose value the step has in every point; NODE_NONE: there is none. */
+static uint32_t same_operand(const Pruning *p, const LaneStep *step)
+{
+    const unsigned BOTH = CHOOSES_A | CHOOSES_B; /* of LANE_LESSER and LANE_GREATER */
+    const unsigned sure = step->op < OP_COUNT ? lane_row(step)->sure : BOTH;
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        if ((sure >> k & 1) && !lane_is_sure(p->from, p->ranges, step->operands[k]))
+            return NODE_NONE;
+    uint32_t only = lane_only_of(step, lane_chooses(p->from, p->ranges, step));
+    return only == NODE_NONE || sure || lane_is_sure(p->from, p->ranges, only) ? only : NODE_NONE;
 }
 
 static void prune_step(Pruning *p, size_t i)
 {
-    LaneStep step  = p->from->steps[i];
+    LaneStep step = p->from->steps[i], whole = step;
     uint32_t value = (uint32_t)(LANE_INPUTS + i);
-    Question q     = {p->from, p->ranges, &p->from->steps[i]};
+    Range    first;
     double   number;
     bool     call   = step.op == LANE_CALL || step.op == LANE_PART;
     bool     single = is_single(p, value, &number);
-    uint32_t other  = call || single ? NODE_NONE : same_operand(&q);
+    uint32_t other  = call || single ? NODE_NONE : same_operand(p, &whole);
     for (uint32_t k = 0; k < step.operand_count && !call; k++)
         step.operands[k] = stand_in(p, step.operands[k]);
     if (step.op == LANE_PART)
         step.operands[0] = p->call_at;
-    if (step.op == OP_sub && is_less_itself(&q, &step)) {
+    /* What is clamped may stay what it was; then it is that less itself. */
+    if (step.op == OP_sub && step.operands[0] == step.operands[1] &&
+        number_at(p, whole.operands[0], &first)) {
         single = true;
         number = 0;
     }
-    if (is_complement(&q))
+    /* The complement is one step as well, but then more may be known. */
+    if (step.op == OP_abs && lane_range_at(p->from, p->ranges, whole.operands[0]).high <= 0)
         step.op = OP_neg;
     uint32_t added = lane_steps_add(&p->to, step);
     if (step.op == LANE_CALL)

@@ -8,10 +8,10 @@
 #include <assert.h>
 #include <math.h>
 
-#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
+#include "compiler/graph/lanes/lane_steps.h"
 #include "compiler/graph/lanes/lane_waves.h"
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/texture.h"
@@ -27,129 +27,30 @@ LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)
 
 /* ---- operands ---- */
 
-typedef struct Operand {
-    Range range;
-    bool  sure;
-} Operand;
-
-static Operand operand_of(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
+/* Tells whether it is surely a number.  What is none may act as any, unless the result needs it to be one. */
+static bool operand_for(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
+                        bool needed, Range *range)
 {
-    if (!(operand & LANE_SCALAR))
-        return (Operand){ranges->ranges[operand], ranges->sure[operand]};
-    double scalar = tape->scalars[operand & ~LANE_SCALAR];
-    return isnan(scalar) ? (Operand){ANYTHING, false} : (Operand){range_of(scalar), true};
+    bool sure = lane_is_sure(tape, ranges, operand);
+    *range    = sure || (needed && !(operand & LANE_SCALAR)) ? lane_range_at(tape, ranges, operand)
+                                                             : ANYTHING;
+    return sure;
 }
 
-/* Tells whether the result is a number only if all operands are.  A minimum is not like that. */
-static bool needs_numbers(uint16_t op)
-{
-    enum { TAKES = false, NEEDS = true };
-    switch (op) {
-#define LANES1(name, takes, ...) \
-    case OP_##name:              \
-        return takes;
-#define LANES2 LANES1
-#define LANES3 LANES1
-#include "compiler/graph/ops.def"
-    case OP_normalize:
-    case OP_select: return true; /* the one that is selected; conditions are numbers */
-    default: return false;
-    }
-}
-
-/* What is not a number may then act as any. */
-static Operand operand_for(const LaneTape *tape, const LaneRanges *ranges, uint16_t op,
-                           uint32_t operand)
-{
-    Operand found = operand_of(tape, ranges, operand);
-    if (!found.sure && !needs_numbers(op))
-        found.range = ANYTHING;
-    return found;
-}
-
-static bool is_finite(Range a) { return isfinite(a.low) && isfinite(a.high); }
-
-static const Range TRUTHS = {0, 1};
-
-/* ---- steps that are no MAP rows ---- */
-
-static Range range_select(const Operand *o)
-{
-    if (o[0].range.low > 0)
-        return o[1].range;
-    return o[0].range.high <= 0 ? o[2].range : range_hull(o[1].range, o[2].range);
-}
-
-/* guard_decides: everywhere, nowhere, or neither. */
-LaneTruth lane_guard_decides(Range bound, Range least, Range far)
-{
-    Range nearer = range_min(least, far), inside = range_min(far, range_of(0));
-    if (bound.low >= nearer.high && bound.low > inside.high)
-        return LANE_ALWAYS;
-    return bound.high < nearer.low || bound.high <= inside.low ? LANE_NEVER : LANE_SOMETIMES;
-}
-
-static Range range_guard(const Operand *o)
-{
-    Range     out     = range_min(o[0].range, o[1].range);
-    LaneTruth decides = lane_guard_decides(o[0].range, o[1].range, o[3].range);
-    return decides == LANE_ALWAYS  ? out
-           : decides == LANE_NEVER ? o[2].range
-                                   : range_hull(out, o[2].range);
-}
+/* ---- steps ---- */
 
 /* That of three numbers is the length of a pair of which one is the length of a pair, or nearly so. */
-static Range range_length(const LaneRanges *ranges, const Operand *o, uint32_t size)
+static Range range_length(const LaneRanges *ranges, const Range *o, uint32_t size)
 {
-    Range sum = range_square(o[0].range);
+    Range sum = range_square(o[0]);
     for (uint32_t i = 1; i < size; i++)
-        sum = range_add(sum, range_square(o[i].range));
+        sum = range_add(sum, range_square(o[i]));
     Range length = sum.high == 0 ? range_of(0) : range_sqrt(sum);
     if (ranges->stretch > 1 && size > 1) {
         double by = size > 2 ? ranges->longest : ranges->stretch;
         length    = (Range){length.low / by, length.high * by};
     }
     return length;
-}
-
-static Range range_normalized(Range a, Range length)
-{
-    const Range unit = {-1 - 0x1p-48, 1 + 0x1p-48};
-    if (length.low > 0)
-        return range_intersect(range_div(a, length), unit);
-    return range_intersect((Range){a.low < 0 ? unit.low : 0, a.high > 0 ? unit.high : 0}, unit);
-}
-
-/* Where the period is above 0, whole periods are taken off; behind the first and the last cell no more
-   than there. */
-static Range range_of_cell(Range a, Range period, Range first, Range last)
-{
-    Range  cell  = range_min(range_max(range_round(range_div(a, period)), first), last);
-    Range  moved = range_sub(a, range_mul(period, cell));
-    double slack = 0x1p-48 * (range_largest(a) + period.high), half = period.high / 2 + slack;
-    Range  before = range_sub(range_of(a.low), range_mul(period, first));
-    Range  behind = range_sub(range_of(a.high), range_mul(period, last));
-    Range  folded = {min2(-half, before.low - slack), max2(half, behind.high + slack)};
-    return range_is_single(cell) || !is_finite(folded) ? moved : range_intersect(moved, folded);
-}
-
-static Range range_cell(const Operand *o)
-{
-    Range a = o[0].range, period = o[1].range;
-    if (period.high <= 0)
-        return a;
-    if (period.low <= 0 || !is_finite(a) || !is_finite(period))
-        return ANYTHING;
-    return range_of_cell(a, period, o[2].range, o[3].range);
-}
-
-static Range range_blend_weight(const Operand *o)
-{
-    Range a = o[0].range, b = o[1].range, width = o[2].range;
-    if (!(width.low > 0) || !o[0].sure || !o[1].sure || !is_finite(a) || !is_finite(b))
-        return TRUTHS;
-    Range share = range_div(range_mul(range_of(0.5), range_sub(b, a)), width);
-    return range_max(range_min(range_add(range_of(0.5), share), range_of(1)), range_of(0));
 }
 
 /* ---- by the rules of facts ---- */
@@ -161,12 +62,12 @@ static Fact fact_in(Range range)
     return fact;
 }
 
-static Range range_by_rule(uint16_t op, const Operand *o, uint32_t count)
+static Range range_by_rule(uint16_t op, const Range *o, uint32_t count)
 {
     Fact      facts[MAX_OPERANDS];
     GraphType types[MAX_OPERANDS];
     for (uint32_t k = 0; k < count; k++) {
-        facts[k] = fact_in(o[k].range);
+        facts[k] = fact_in(o[k]);
         types[k] = TYPE_FLOAT;
     }
     return op_fact((Op)op, TYPE_FLOAT, 0, types, facts, NULL).value[0];
@@ -242,9 +143,8 @@ static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step
         types[k] = graph->items[e->operands[k]].type;
         facts[k] = is_scalar(call, k, types[k]) ? (Fact){0} : fact_unknown(type_size(types[k]));
         for (uint32_t c = 0; c < type_size(types[k]); c++) {
-            Operand o         = operand_for(tape, ranges, LANE_CALL, call->operands[k][c]);
-            facts[k].value[c] = o.range;
-            sure              = sure && o.sure && is_finite(o.range);
+            sure = operand_for(tape, ranges, call->operands[k][c], false, &facts[k].value[c]) &&
+                   sure && is_finite(facts[k].value[c]);
         }
     }
     Fact fact = is_texture((Op)e->op)
@@ -258,83 +158,25 @@ static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step
     }
 }
 
-/* The `range` column of MAP rows; else the rule. */
-static Range range_by_row(uint16_t op, const Operand *o, uint32_t count)
+static Range range_of_step(const LaneRanges *ranges, const LaneStep *step, const Range *o)
 {
-    Range a = o[0].range, b = o[1].range, c = o[2].range;
-    switch (op) {
-#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
-    case OP_##name: {                                                           \
-        return (range);                                                         \
-    }
-#include "compiler/graph/ops.def"
-    default: return range_by_rule(op, o, count);
-    }
-}
-
-/* ---- steps ---- */
-
-/* Pruning leaves differences of a number and what is clamped of it, and such quotients. */
-static bool is_with_itself(const LaneStep *step, Range a)
-{
-    return step->operands[0] == step->operands[1] && is_finite(a);
-}
-
-/* A quotient by 0 is infinite, of either sign. */
-static Range range_quotient(const LaneStep *step, Range a, Range b)
-{
-    if (b.low <= 0 && b.high >= 0)
-        return ANYTHING;
-    return is_with_itself(step, a) ? range_of(1) : range_div(a, b);
-}
-
-static Range range_of_step(const LaneRanges *ranges, const LaneStep *step, const Operand *o)
-{
-    Range a = o[0].range, b = o[1].range;
-    switch (step->op) {
-    case OP_div: return range_quotient(step, a, b);
-    case OP_sub: return is_with_itself(step, a) ? range_of(0) : range_sub(a, b);
-    case OP_smoothstep: /* infinite / infinite counts as 0 */
-        return is_finite(a) && is_finite(b) && is_finite(o[2].range)
-                   ? range_by_row(OP_smoothstep, o, 3)
-                   : TRUTHS;
-#define TRUTH(name, ...)                           \
-    case OP_##name: {                              \
-        return range_of_truth((Op)step->op, a, b); \
-    }
-#include "compiler/graph/ops.def"
-    case OP_select: return range_select(o);
-    case OP_guard: return range_guard(o);
-    case OP_length: return range_length(ranges, o, step->operand_count);
-    case OP_normalize: return range_normalized(a, b);
-    case OP_cell: return range_cell(o);
-    case OP_blend_weight: return range_blend_weight(o);
-    case LANE_LESSER: return range_min(a, b);
-    case LANE_GREATER: return range_max(a, b);
-    default: return range_by_row(step->op, o, step->operand_count);
-    }
+    const NumberRow *row = lane_row(step);
+    if (step->op == OP_length)
+        return range_length(ranges, o, step->operand_count);
+    Range range = row->arity ? row->range(o) : range_by_rule(step->op, o, step->operand_count);
+    /* Pruning leaves differences of a number and what is clamped of it, and such quotients. */
+    return row->itself && step->operands[0] == step->operands[1] ? row->itself(o[0], range) : range;
 }
 
 /* Tells whether it is a number wherever its operands are. */
-static bool is_defined(const LaneStep *step, const Operand *o)
+static bool is_defined(const LaneStep *step, const Range *o)
 {
-    Range a = o[0].range, b = o[1].range;
-    bool  finite = true;
+    const NumberRow *row    = lane_row(step);
+    bool             finite = true;
     for (uint32_t k = 0; k < step->operand_count; k++)
-        finite = finite && is_finite(o[k].range);
-    switch (step->op) {
-#define LANES1(name, takes, defined, ...) \
-    case OP_##name:                       \
-        return (defined);
-#define LANES2 LANES1
-#define LANES3 LANES1
-#include "compiler/graph/ops.def"
-    case OP_select:
-    case OP_guard:
-    case LANE_LESSER:
-    case LANE_GREATER: return true;
-    default: return finite && op_has_traits((Op)step->op, STAYS_FINITE);
-    }
+        finite = finite && is_finite(o[k]);
+    return row->defined ? row->defined(o, finite)
+                        : finite && op_has_traits((Op)step->op, STAYS_FINITE);
 }
 
 /* The ball around a box, and the largest coordinate in it. */
@@ -357,14 +199,11 @@ static Range range_around(Range middle, double steepest, double stretch, const B
 static void run_step(const LaneTape *tape, const LaneRanges *ranges, const Ball *ball, size_t i)
 {
     const LaneStep *step            = &tape->steps[i];
-    Operand         o[MAX_OPERANDS] = {0};
+    Range           o[MAX_OPERANDS] = {0};
     bool            sure            = true;
-    for (uint32_t k = 0; k < step->operand_count; k++) {
-        o[k] = operand_for(tape, ranges, step->op, step->operands[k]);
-        sure = sure && o[k].sure;
-    }
-    bool  square = step->op == OP_mul && step->operands[0] == step->operands[1];
-    Range range  = square ? range_square(o[0].range) : range_of_step(ranges, step, o);
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        sure = operand_for(tape, ranges, step->operands[k], lane_row(step)->needs, &o[k]) && sure;
+    Range range = range_of_step(ranges, step, o);
     if (!(range.low <= range.high))
         range = ANYTHING; /* it is a number nowhere, or a rule gave up */
     if (step->op == OP_abs)
@@ -419,5 +258,7 @@ Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box
 
 Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output)
 {
-    return operand_of(tape, ranges, tape->outputs[output]).range;
+    Range range;
+    operand_for(tape, ranges, tape->outputs[output], true, &range);
+    return range;
 }

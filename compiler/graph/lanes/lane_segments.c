@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "compiler/graph/lanes/lane_steps.h"
+
 typedef struct Segment {
     const LaneTape *tape;
     uint32_t        size, from[3];  /* components of q */
@@ -55,6 +57,40 @@ static bool add_component(Segment *s, uint32_t operand)
     return s->along == clamped;
 }
 
+static bool add_weights(Segment *s, uint32_t operand, double factor, int depth);
+
+/* A number that is known but for rounding. */
+static bool is_number(Range range, double *number)
+{
+    *number = 0.5 * (range.low + range.high);
+    return range.high - range.low <= 0x1p-51 * range_largest(range);
+}
+
+/* The same of a step whose derivatives by all but scalars are known whatever these are. */
+static bool add_weights_of_step(Segment *s, const LaneStep *step, double factor, int depth)
+{
+    const NumberRow *row             = lane_row(step);
+    Range            o[MAX_OPERANDS] = {0}, by[MAX_OPERANDS];
+    double           number;
+    if (row->arity == 0)
+        return false;
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        o[k] = step->operands[k] & LANE_SCALAR ? range_of(number_of(s->tape, step->operands[k]))
+                                               : ANYTHING;
+    row->first(o, ANYTHING, by);
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        if (!(step->operands[k] & LANE_SCALAR)) {
+            if (!is_number(by[k], &number) ||
+                !add_weights(s, step->operands[k], factor * number, depth + 1))
+                return false;
+            o[k] = range_of(0);
+        }
+    if (!is_number(row->range(o), &number))
+        return false;
+    s->at += factor * number;
+    return true;
+}
+
 /* Adds factor times an operand to the weights; false: it is no weighted sum of the components. */
 static bool add_weights(Segment *s, uint32_t operand, double factor, int depth)
 {
@@ -69,25 +105,7 @@ static bool add_weights(Segment *s, uint32_t operand, double factor, int depth)
         s->at += factor * number_of(s->tape, operand);
         return true;
     }
-    if (!step || depth == MAX_DEPTH)
-        return false;
-    const uint32_t *a = step->operands;
-    switch (step->op) {
-    case OP_neg: return add_weights(s, a[0], -factor, depth + 1);
-    case OP_add:
-        return add_weights(s, a[0], factor, depth + 1) && add_weights(s, a[1], factor, depth + 1);
-    case OP_sub:
-        return add_weights(s, a[0], factor, depth + 1) && add_weights(s, a[1], -factor, depth + 1);
-    case OP_mul:
-        for (int k = 0; k < 2; k++)
-            if (a[k] & LANE_SCALAR)
-                return add_weights(s, a[1 - k], factor * number_of(s->tape, a[k]), depth + 1);
-        return false;
-    case OP_div:
-        return (a[1] & LANE_SCALAR) &&
-               add_weights(s, a[0], factor / number_of(s->tape, a[1]), depth + 1);
-    default: return false;
-    }
+    return step && depth < MAX_DEPTH && add_weights_of_step(s, step, factor, depth);
 }
 
 /* Tells whether t is q.d / d.d, but for rounding. */

@@ -11,10 +11,10 @@
 #include <string.h>
 
 #include "compiler/graph/bounds/rules.h"
-#include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/lanes/lane_cuts.h"
 #include "compiler/graph/lanes/lane_outlines.h"
 #include "compiler/graph/lanes/lane_segments.h"
+#include "compiler/graph/lanes/lane_steps.h"
 #include "compiler/graph/texture.h"
 
 static const LaneSlope NO_SLOPE  = {{{0, 0}, {0, 0}, {0, 0}}};
@@ -39,9 +39,7 @@ LaneSlope *lane_slopes_new(const LaneTape *tape, Arena *arena)
 
 static Range range_at(const Run *run, uint32_t operand)
 {
-    if (operand & LANE_SCALAR)
-        return range_of(run->tape->scalars[operand & ~LANE_SCALAR]);
-    return run->ranges->ranges[operand];
+    return lane_range_at(run->tape, run->ranges, operand);
 }
 
 static LaneSlope slope_at(const Run *run, uint32_t operand)
@@ -52,12 +50,6 @@ static LaneSlope slope_at(const Run *run, uint32_t operand)
 static Range     range_in(const Run *run, int k) { return range_at(run, run->step->operands[k]); }
 static LaneSlope slope_in(const Run *run, int k) { return slope_at(run, run->step->operands[k]); }
 static Range     result(const Run *run) { return run->ranges->ranges[LANE_INPUTS + run->at]; }
-
-static bool is_constant(const LaneSlope *slope)
-{
-    return range_is_zero(slope->by[0]) && range_is_zero(slope->by[1]) &&
-           range_is_zero(slope->by[2]);
-}
 
 static LaneSlope either(LaneSlope a, LaneSlope b)
 {
@@ -75,113 +67,44 @@ static void add_times(LaneSlope *sum, Range factor, LaneSlope slope)
             sum->by[j] = range_add(sum->by[j], range_mul(factor, slope.by[j]));
 }
 
-/* ---- MAP rows ---- */
-
-static LaneSlope slope_by_partials(const Run *run, const Range partials[3], int count, Norm norm)
+/* Of one of these operands. */
+static LaneSlope slope_of_any(const Run *run, unsigned operands)
 {
-    int       averaged = norm == NORM_MIX ? 2 : norm == NORM_CONVEX ? count : 0;
-    LaneSlope sum      = NO_SLOPE,
-              hull     = {{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}}};
-    bool mean          = averaged > 0 && partials[0].low >= 0 && partials[1].low >= 0;
-    for (int k = 0; k < count; k++) {
-        LaneSlope slope = slope_in(run, k);
-        if (mean && k == averaged)
+    LaneSlope hull = {{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}}};
+    for (int k = 0; operands >> k; k++)
+        if (operands >> k & 1)
+            hull = either(hull, slope_in(run, k));
+    return hull;
+}
+
+/* ---- by the rows ---- */
+
+static LaneSlope slope_by_partials(const Run *run, const NumberRow *row, const Range *by)
+{
+    bool      mean = row->norm == NORM_MIX && by[0].low >= 0 && by[1].low >= 0;
+    LaneSlope sum  = NO_SLOPE;
+    for (int k = 0; k < row->arity; k++) {
+        add_times(&sum, by[k], slope_in(run, k));
+        if (mean && k == 1) {
+            unsigned  counted = (range_is_zero(by[0]) ? 0 : 1) + (range_is_zero(by[1]) ? 0 : 2);
+            LaneSlope hull    = slope_of_any(run, counted);
             for (int j = 0; j < 3; j++)
                 sum.by[j] = range_intersect(sum.by[j], hull.by[j]);
-        add_times(&sum, partials[k], slope);
-        if (k < averaged && !range_is_zero(partials[k]))
-            hull = either(hull, slope);
+        }
     }
-    for (int j = 0; mean && averaged == count && j < 3; j++)
-        sum.by[j] = range_intersect(sum.by[j], hull.by[j]);
     return sum;
 }
 
-static bool is_map(uint16_t op)
-{
-    switch (op) {
-#define MAP(name, ...) case OP_##name:
-#include "compiler/graph/ops.def"
-        return true;
-    default: return false;
-    }
-}
-
-static LaneSlope slope_of_map(const Run *run)
-{
-    uint32_t count = run->step->operand_count;
-    Range    a = range_in(run, 0), r = result(run);
-    Range    b = count > 1 ? range_in(run, 1) : range_of(0);
-    Range    c = count > 2 ? range_in(run, 2) : range_of(0);
-    (void)a, (void)b, (void)c, (void)r;
-    switch (run->step->op) {
-#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
-    case OP_##name:                                                             \
-        return slope_by_partials(run, (const Range[3]){(da), (db), (dc)}, (arity), norm);
-#include "compiler/graph/ops.def"
-    default: return ANY_SLOPE;
-    }
-}
-
-/* ---- other steps ---- */
-
-static LaneSlope slope_of_lesser(const Run *run, int sign)
-{
-    Range a = range_in(run, 0), b = range_in(run, 1);
-    if (sign > 0 ? a.high <= b.low : a.low >= b.high)
-        return slope_in(run, 0);
-    if (sign > 0 ? b.high <= a.low : b.low >= a.high)
-        return slope_in(run, 1);
-    return either(slope_in(run, 0), slope_in(run, 1));
-}
-
-static LaneSlope slope_of_select(const Run *run)
-{
-    Range condition = range_in(run, 0);
-    if (condition.low > 0)
-        return slope_in(run, 1);
-    return condition.high <= 0 ? slope_in(run, 2) : either(slope_in(run, 1), slope_in(run, 2));
-}
-
-static LaneSlope slope_of_guard(const Run *run)
-{
-    switch (lane_guard_decides(range_in(run, 0), range_in(run, 1), range_in(run, 3))) {
-    case LANE_ALWAYS: return slope_of_lesser(run, 1);
-    case LANE_NEVER: return slope_in(run, 2);
-    default: return either(slope_of_lesser(run, 1), slope_in(run, 2));
-    }
-}
-
-/* A component of the unit vector along a vector of this length. */
-static Range unit_part(Range component, Range length)
-{
-    Range sides = {component.low < 0 ? -1 : 0, component.high > 0 ? 1 : 0};
-    return length.low > 0 ? range_intersect(range_div(component, length), sides) : sides;
-}
-
-/* The operand of a length that alone is not 0 all over the box, if its sign is known: the length is that number, or its
-   complement.  -1: there is none. */
-static int only_component(const Run *run)
-{
-    int only = -1;
-    for (uint32_t k = 0; k < run->step->operand_count; k++) {
-        Range range = range_in(run, (int)k);
-        if (range_is_zero(range))
-            continue;
-        if (only >= 0 || (range.low < 0 && range.high > 0))
-            return -1;
-        only = (int)k;
-    }
-    return only;
-}
+/* ---- lengths ---- */
 
 /* The slope of a length: no more than the derivative of the vector. */
 static LaneSlope slope_of_length(const Run *run)
 {
-    int only = only_component(run);
-    if (only >= 0) {
+    uint32_t only = lane_only_operand(run->tape, run->ranges, run->step);
+    Range    part = only == NODE_NONE ? ANYTHING : range_at(run, only);
+    if (part.low >= 0 || part.high <= 0) { /* it is that number, or its complement */
         LaneSlope slope = NO_SLOPE;
-        add_times(&slope, range_of(range_in(run, only).high > 0 ? 1 : -1), slope_in(run, only));
+        add_times(&slope, range_of(part.high > 0 ? 1 : -1), slope_at(run, only));
         return slope;
     }
     double    longest[3] = {0, 0, 0};
@@ -190,7 +113,7 @@ static LaneSlope slope_of_length(const Run *run)
     bool      segment = lane_from_segment(run->tape, run->step, from);
     for (uint32_t k = 0; k < run->step->operand_count; k++) {
         LaneSlope slope = slope_in(run, (int)k);
-        add_times(&sum, unit_part(range_in(run, (int)k), result(run)),
+        add_times(&sum, unit_component(range_in(run, (int)k), result(run)),
                   segment ? slope_at(run, from[k]) : slope);
         for (int j = 0; j < 3; j++)
             longest[j] = hypot_upward(longest[j], range_largest(slope.by[j]));
@@ -198,29 +121,6 @@ static LaneSlope slope_of_length(const Run *run)
     for (int j = 0; j < 3; j++)
         sum.by[j] = range_intersect(sum.by[j], (Range){-longest[j], longest[j]});
     return sum;
-}
-
-/* A component over the length. */
-static LaneSlope slope_of_normalize(const Run *run)
-{
-    Range     length = range_in(run, 1);
-    LaneSlope sum    = NO_SLOPE;
-    if (!(length.low > 0))
-        return ANY_SLOPE;
-    Range inverse = range_div(range_of(1), length);
-    add_times(&sum, inverse, slope_in(run, 0));
-    add_times(&sum, range_neg(range_mul(result(run), inverse)), slope_in(run, 1));
-    return sum;
-}
-
-static LaneSlope slope_of_cell(const Run *run)
-{
-    for (int k = 1; k < 4; k++) {
-        LaneSlope slope = slope_in(run, k);
-        if (!is_constant(&slope))
-            return ANY_SLOPE;
-    }
-    return slope_in(run, 0);
 }
 
 /* ---- by the rules of facts ---- */
@@ -297,18 +197,18 @@ static LaneSlope slope_of_step(const Run *run)
     uint32_t whole = lane_sum_of_cuts(run->tape, run->ranges, run->step);
     if (whole != NODE_NONE)
         return slope_at(run, whole);
-    switch (run->step->op) {
-    case OP_min:
-    case LANE_LESSER: return slope_of_lesser(run, 1);
-    case OP_max:
-    case LANE_GREATER: return slope_of_lesser(run, -1);
-    case OP_select: return slope_of_select(run);
-    case OP_guard: return slope_of_guard(run);
-    case OP_length: return slope_of_length(run);
-    case OP_normalize: return slope_of_normalize(run);
-    case OP_cell: return slope_of_cell(run);
-    default: return is_map(run->step->op) ? slope_of_map(run) : slope_by_rule(run);
-    }
+    const NumberRow *row = lane_row(run->step);
+    Range            o[MAX_OPERANDS], by[MAX_OPERANDS];
+    lane_operands(run->tape, run->ranges, run->step, o);
+    unsigned chosen = row->chooses ? row->chooses(o) : 0;
+    if (chosen)
+        return slope_of_any(run, chosen);
+    if (run->step->op == OP_length)
+        return slope_of_length(run);
+    if (row->arity == 0)
+        return slope_by_rule(run);
+    row->first(o, result(run), by);
+    return slope_by_partials(run, row, by);
 }
 
 static void run_step(Run *run)
@@ -343,8 +243,7 @@ bool lane_slopes_run(const LaneTape *tape, const LaneRanges *ranges, LaneSlope *
             run_step(&run);
     }
     uint32_t output = tape->outputs[0];
-    bool     sure   = output & LANE_SCALAR ? !isnan(tape->scalars[output & ~LANE_SCALAR])
-                                           : ranges->sure[output];
+    bool     sure   = lane_is_sure(tape, ranges, output);
     *slope          = slope_at(&run, output);
     for (int j = 0; j < 3; j++)
         sure = sure && isfinite(slope->by[j].low) && isfinite(slope->by[j].high);
@@ -361,46 +260,23 @@ typedef struct Boundless {
 
 static bool is_boundless(Boundless *b, uint32_t operand);
 
-/* One of two, unless it is clear which. */
-static bool lesser_is_boundless(Boundless *b, const LaneStep *step, int sign)
-{
-    Range first  = range_at(&b->run, step->operands[0]),
-          second = range_at(&b->run, step->operands[1]);
-    if (sign > 0 ? first.high <= second.low : first.low >= second.high)
-        return is_boundless(b, step->operands[0]);
-    if (sign > 0 ? second.high <= first.low : second.low >= first.high)
-        return is_boundless(b, step->operands[1]);
-    return is_boundless(b, step->operands[0]) || is_boundless(b, step->operands[1]);
-}
-
-static bool factor_is_boundless(Boundless *b, const LaneStep *step)
-{
-    for (int k = 0; k < 2; k++)
-        if (!range_is_zero(range_at(&b->run, step->operands[1 - k])) &&
-            is_boundless(b, step->operands[k]))
-            return true;
-    return false;
-}
-
+/* By what its row says: its own derivatives have no bound or, if it may be one of its operands somewhere, those
+   of an operand that counts. */
 static bool step_is_boundless(Boundless *b, const LaneStep *step, Range result)
 {
-    Range first = range_at(&b->run, step->operands[0]);
-    switch (step->op) {
-    case OP_sign: return true;
-    case OP_sqrt: return result.low <= 0 && !range_is_single(first);
-    case OP_neg: return is_boundless(b, step->operands[0]);
-    case OP_add:
-    case OP_sub: return is_boundless(b, step->operands[0]) || is_boundless(b, step->operands[1]);
-    case OP_mul: return factor_is_boundless(b, step);
-    case OP_min:
-    case LANE_LESSER: return lesser_is_boundless(b, step, 1);
-    case OP_max:
-    case LANE_GREATER: return lesser_is_boundless(b, step, -1);
-    case OP_select:
-        return first.low <= 0 && first.high > 0 &&
-               (is_boundless(b, step->operands[1]) || is_boundless(b, step->operands[2]));
-    default: return false;
+    const NumberRow *row = lane_row(step);
+    Range            o[MAX_OPERANDS], by[MAX_OPERANDS];
+    lane_operands(b->run.tape, b->run.ranges, step, o);
+    unsigned chosen = row->chooses ? row->chooses(o) : 0;
+    if (!chosen && row->arity)
+        row->first(o, result, by);
+    for (uint32_t k = 0; k < row->arity; k++) {
+        if (range_is_single(o[k]) || (chosen ? !(chosen >> k & 1) : range_is_zero(by[k])))
+            continue;
+        if ((!chosen && !is_finite(by[k])) || (row->chooses && is_boundless(b, step->operands[k])))
+            return true;
     }
+    return false;
 }
 
 static bool is_boundless(Boundless *b, uint32_t operand)

@@ -7,19 +7,13 @@
 #include <math.h>
 
 #include "compiler/graph/bounds/facts.h"
-#include "compiler/graph/bounds/rules.h"
+#include "compiler/graph/bounds/numbers.h"
 #include "compiler/graph/lanes/lane_rows.h"
 
-static bool op_never_jumps(uint16_t op)
+static bool op_never_jumps(Op op)
 {
-    switch (op) {
-#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
-    case OP_##name: {                                                           \
-        return (norm) != NORM_NONE;                                             \
-    }
-#include "compiler/graph/ops.def"
-    default: return op_has_traits((Op)op, BUILDS) || op_has_traits((Op)op, STEADY);
-    }
+    return number_rows[op].map ? number_rows[op].norm != NORM_NONE
+                               : op_has_traits(op, BUILDS) || op_has_traits(op, STEADY);
 }
 
 double *lane_steepest(const Graph *graph, Arena *arena)
@@ -27,8 +21,8 @@ double *lane_steepest(const Graph *graph, Arena *arena)
     double     *steepest = arena_new_array(arena, double, graph->count + 1);
     const Fact *facts    = graph_facts(graph, (Box){{ANYTHING, ANYTHING, ANYTHING}}, NULL, arena);
     for (Node node = 0; node < graph->count; node++) {
-        const Expr *e      = &graph->items[node];
-        bool        steady = e->time != TIME_POINT || e->op == OP_POINT || op_never_jumps(e->op);
+        const Expr *e = &graph->items[node];
+        bool steady   = e->time != TIME_POINT || e->op == OP_POINT || op_never_jumps((Op)e->op);
         for (uint32_t k = 0; k < e->operand_count && e->time == TIME_POINT; k++)
             steady = steady && isfinite(steepest[e->operands[k]]);
         steepest[node] = steady ? facts[node].slope : HUGE_VAL;
