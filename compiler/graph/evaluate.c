@@ -58,28 +58,18 @@ static NodeValue (*const leaf_values[OP_COUNT])(const Expr *e, const Inputs *in)
 
 NodeValue leaf_unseen(const Expr *leaf) { return leaf_values[leaf->op](leaf, &(Inputs){0}); }
 
-/* The rows once more, for tapes: straight from operands to result, without copies. */
+/* Straight from operands to result, without copies, where there is a row of numbers. */
 static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *result,
                            const Expr *nodes)
 {
-    const NodeValue *x = &values[e->operands[0]], *y = &values[e->operands[1]];
-    const NodeValue *z    = &values[e->operands[2]];
-    uint32_t         size = components(e->type);
-    switch ((Op)e->op) {
-    case OP_COMPONENT: *result = number(x->v[e->index]); return;
-#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning)           \
-    case OP_##name:                                                                       \
-        for (uint32_t i = 0; i < size; i++) {                                             \
-            double a = x->v[i], b = arity > 1 ? y->v[i] : 0, c = arity > 2 ? z->v[i] : 0; \
-            (void)b, (void)c;                                                             \
-            result->v[i] = (value) + 0.0;                                                 \
-        }                                                                                 \
+    if (e->op == OP_COMPONENT) {
+        *result = number(values[e->operands[0]].v[e->index]);
         return;
-#include "compiler/graph/ops.def"
-#define LEAF(name, ...) case OP_##name:
-#define OP(name, ...)   case OP_##name:
-#include "compiler/graph/ops.def"
-    case OP_COUNT: break;
+    }
+    if (map_values[e->op]) {
+        map_values[e->op](values[e->operands[0]].v, values[e->operands[1]].v,
+                          values[e->operands[2]].v, components(e->type), result->v);
+        return;
     }
     NodeValue operands[MAX_OPERANDS];
     GraphType types[MAX_OPERANDS];

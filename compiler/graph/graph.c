@@ -63,27 +63,25 @@ const char *op_glsl(Op op) { return op_info[op].glsl; }
 
 static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
-/* Cost of one component; of OP rows, of the whole; leaves cost nothing. */
-static double op_weight(Op op, double n)
-{
-    switch (op) {
+/* Cost of one component; of OP rows, of the whole. */
 #define RULES(name, cost, ...) \
-    case OP_##name:            \
-        return (cost);
+    static double cost_of_##name(double n) { return (void)n, (cost); }
 #include "compiler/graph/ops.def"
-#define LEAF(name, ...) case OP_##name:
+
+static double (*const costs[OP_COUNT])(double n) = {
+#define RULES(name, ...) [OP_##name] = cost_of_##name,
 #include "compiler/graph/ops.def"
-    case OP_COUNT: break;
-    }
-    return 0;
-}
+};
 
 double op_cost(Op op, GraphType type, const GraphType *operands)
 {
+    uint32_t size = components(type), first;
+    if (!costs[op])
+        return 0; /* a leaf */
     if (op_info[op].arity)
-        return op_weight(op, 1) * components(type);
-    uint32_t first = op_info[op].signature ? components(operands[0]) : 1;
-    return op_weight(op, first > components(type) ? first : components(type));
+        return costs[op](1) * size;
+    first = op_info[op].signature ? components(operands[0]) : 1;
+    return costs[op](first > size ? first : size);
 }
 
 /* ---- types ---- */

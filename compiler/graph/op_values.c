@@ -85,21 +85,11 @@ static NodeValue evaluate_scale(const NodeValue *o, uint32_t size)
     return result;
 }
 
-#define TRUTH(name, condition)                                          \
-    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size) \
-    {                                                                   \
-        (void)size;                                                     \
-        return number(condition);                                       \
-    }
-TRUTH(less, o[0].v[0] < o[1].v[0])
-TRUTH(less_equal, o[0].v[0] <= o[1].v[0])
-TRUTH(equal, o[0].v[0] == o[1].v[0])
-TRUTH(not_equal, o[0].v[0] != o[1].v[0])
-TRUTH(and, o[0].v[0] != 0 && o[1].v[0] != 0)
-TRUTH(or, o[0].v[0] != 0 || o[1].v[0] != 0)
-TRUTH(not, o[0].v[0] == 0)
-TRUTH(front, dot(&o[1], &o[0], 3) > o[2].v[0])
-#undef TRUTH
+static NodeValue evaluate_front(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    return number(dot(&o[1], &o[0], 3) > o[2].v[0]);
+}
 
 static NodeValue evaluate_select(const NodeValue *o, uint32_t size)
 {
@@ -401,39 +391,49 @@ static NodeValue evaluate_of_table(const NodeValue *o, uint32_t size)
 
 /* ---- one operation ---- */
 
-static NodeValue value_of_row(Op op, GraphType type, uint32_t index, const GraphType *types,
-                              const NodeValue *operands)
-{
-    NodeValue result = {0};
-    uint32_t  size   = components(type);
-    switch (op) {
-    case OP_COMPONENT: return number(operands[0].v[index]);
-#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning)        \
-    case OP_##name:                                                                    \
-        for (uint32_t i = 0; i < size; i++) {                                          \
-            double a = operands[0].v[i], b = arity > 1 ? operands[arity > 1].v[i] : 0; \
-            double c = arity > 2 ? operands[arity > 2 ? 2 : 0].v[i] : 0;               \
-            (void)b, (void)c;                                                          \
-            result.v[i] = (value);                                                     \
-        }                                                                              \
-        return result;
-#define OP(name, signature, glsl, evaluate, facts, meaning) \
-    case OP_##name:                                         \
-        return evaluate(operands, components(types[0]) > size ? components(types[0]) : size);
-#include "compiler/graph/ops.def"
-#define LEAF(name, ...) case OP_##name:
-#include "compiler/graph/ops.def"
-    case OP_COUNT: break;
+/* Truth values are numbers of one component. */
+#define TRUTH(name, arity, value, ...)                                  \
+    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size) \
+    {                                                                   \
+        const double a = o[0].v[0], b = arity > 1 ? o[1].v[0] : 0;      \
+        (void)size, (void)b;                                            \
+        return number(value);                                           \
     }
-    assert(!"a leaf has no value by itself");
-    return result;
-}
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning)              \
+    static void map_##name(const double *x, const double *y, const double *z, uint32_t size, \
+                           double *to)                                                       \
+    {                                                                                        \
+        for (uint32_t i = 0; i < size; i++) {                                                \
+            const double a = x[i], b = arity > 1 ? y[i] : 0, c = arity > 2 ? z[i] : 0;       \
+            (void)b, (void)c, (void)y, (void)z;                                              \
+            to[i] = (value) + 0.0;                                                           \
+        }                                                                                    \
+    }
+#include "compiler/graph/ops.def"
+
+MapValue *const map_values[OP_COUNT] = {
+#define MAP(name, ...) [OP_##name] = map_##name,
+#include "compiler/graph/ops.def"
+};
+
+static NodeValue (*const evaluates[OP_COUNT])(const NodeValue *o, uint32_t size) = {
+#define OP(name, signature, glsl, evaluate, facts, meaning) [OP_##name] = evaluate,
+#include "compiler/graph/ops.def"
+};
 
 /* Zero has no sign: -0 becomes 0, so that 1 / (-1 * 0) does not depend on who multiplied. */
 NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types,
                       const NodeValue *operands)
 {
-    NodeValue value = value_of_row(op, type, index, types, operands);
+    NodeValue value = {0};
+    uint32_t  size  = components(type);
+    assert(map_values[op] || evaluates[op] || op == OP_COMPONENT);
+    if (map_values[op])
+        map_values[op](operands[0].v, operands[1].v, operands[2].v, size, value.v);
+    else if (op == OP_COMPONENT)
+        value = number(operands[0].v[index]);
+    else
+        value = evaluates[op](operands, components(types[0]) > size ? components(types[0]) : size);
     for (int i = 0; i < 4; i++)
         value.v[i] += 0.0;
     return value;

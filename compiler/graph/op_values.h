@@ -12,6 +12,10 @@
 
 static inline uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
+/* The value of a MAP row for `size` components of its operands; zero has no sign.  NULL: it is no such row. */
+typedef void MapValue(const double *a, const double *b, const double *c, uint32_t size, double *to);
+extern MapValue *const map_values[OP_COUNT];
+
 static inline NodeValue number(double a) { return (NodeValue){{a}}; }
 static inline NodeValue vector3(double x, double y, double z) { return (NodeValue){{x, y, z}}; }
 
