@@ -128,38 +128,38 @@ KrsStatus krs_bound_sized(const KrsScene *scene, size_t component, size_t index,
     return status;
 }
 
-KrsStatus krs_probe_sized(KrsState *frame, const double (*points)[3], size_t count, KrsHit *hits,
+KrsStatus krs_probe_sized(KrsState *state, const double (*points)[3], size_t count, KrsHit *hits,
                           size_t size)
 {
     SizedArray array;
     if (!sized_open(&array, hits, size, sizeof(KrsHit), count))
         return KRS_OUT_OF_MEMORY;
-    const KrsStatus status = krs_probe(frame, points, count, array.own);
+    const KrsStatus status = krs_probe(state, points, count, array.own);
     sized_close(&array, status == KRS_OK ? count : 0);
     return status;
 }
 
-KrsStatus krs_raycast_sized(KrsState *frame, const double (*origins)[3],
+KrsStatus krs_raycast_sized(KrsState *state, const double (*origins)[3],
                             const double (*directions)[3], size_t count, double farthest,
                             double tolerance, KrsHit *hits, size_t size)
 {
     SizedArray array;
     if (!sized_open(&array, hits, size, sizeof(KrsHit), count))
         return KRS_OUT_OF_MEMORY;
-    const KrsStatus status = krs_raycast(frame, origins, directions, count, farthest, tolerance,
+    const KrsStatus status = krs_raycast(state, origins, directions, count, farthest, tolerance,
                                          array.own);
     sized_close(&array, status == KRS_OK ? count : 0);
     return status;
 }
 
-KrsStatus krs_mesh_sized(KrsState *frame, const KrsMeshOptions *options, size_t size,
+KrsStatus krs_mesh_sized(KrsState *state, const KrsMeshOptions *options, size_t size,
                          KrsMesh **mesh)
 {
     KrsMeshOptions own;
     *mesh = NULL;
     if (!sized_take(&own, sizeof own, options, size))
         return KRS_BAD_ARGUMENT;
-    return krs_mesh(frame, options ? &own : NULL, mesh);
+    return krs_mesh(state, options ? &own : NULL, mesh);
 }
 
 KrsStatus krs_mesh_simplify_sized(const KrsMesh *mesh, const KrsMeshOptions *options, size_t size,
@@ -172,14 +172,14 @@ KrsStatus krs_mesh_simplify_sized(const KrsMesh *mesh, const KrsMeshOptions *opt
     return krs_mesh_simplify(mesh, options ? &own : NULL, simplified);
 }
 
-KrsStatus krs_assemble_sized(KrsState *frame, const KrsMeshOptions *options, size_t size,
+KrsStatus krs_assemble_sized(KrsState *state, const KrsMeshOptions *options, size_t size,
                              KrsAssembly **assembly)
 {
     KrsMeshOptions own;
     *assembly = NULL;
     if (!sized_take(&own, sizeof own, options, size))
         return KRS_BAD_ARGUMENT;
-    return krs_assemble(frame, options ? &own : NULL, assembly);
+    return krs_assemble(state, options ? &own : NULL, assembly);
 }
 
 KrsStatus krs_component_motion_sized(const KrsScene *scene, size_t index, KrsMotion *motion,
@@ -192,14 +192,14 @@ KrsStatus krs_component_motion_sized(const KrsScene *scene, size_t index, KrsMot
     return status;
 }
 
-KrsStatus krs_grid_new_sized(KrsState *frame, const KrsGridOptions *options, size_t size,
+KrsStatus krs_grid_new_sized(KrsState *state, const KrsGridOptions *options, size_t size,
                              KrsGrid **grid)
 {
     KrsGridOptions own;
     *grid = NULL;
     if (!sized_take(&own, sizeof own, options, size))
         return KRS_BAD_ARGUMENT;
-    return krs_grid_new(frame, options ? &own : NULL, grid);
+    return krs_grid_new(state, options ? &own : NULL, grid);
 }
 
 void krs_grid_shape_sized(const KrsGrid *grid, KrsGridShape *shape, size_t size)
@@ -208,22 +208,22 @@ void krs_grid_shape_sized(const KrsGrid *grid, KrsGridShape *shape, size_t size)
     sized_give(shape, size, &own, sizeof own);
 }
 
-KrsStatus krs_slicer_new_sized(KrsState *frame, const KrsSliceOptions *options, size_t size,
+KrsStatus krs_slicer_new_sized(KrsState *state, const KrsSliceOptions *options, size_t size,
                                KrsSlicer **slicer)
 {
     KrsSliceOptions own;
     *slicer = NULL;
     if (!sized_take(&own, sizeof own, options, size))
         return KRS_BAD_ARGUMENT;
-    return krs_slicer_new(frame, options ? &own : NULL, slicer);
+    return krs_slicer_new(state, options ? &own : NULL, slicer);
 }
 
-KrsStatus krs_measure_sized(KrsState *frame, const KrsMeasureOptions *options, size_t size,
+KrsStatus krs_measure_sized(KrsState *state, const KrsMeasureOptions *options, size_t size,
                             KrsMeasures **measures)
 {
     KrsMeasureOptions own;
     *measures = NULL;
     if (!sized_take(&own, sizeof own, options, size))
         return KRS_BAD_ARGUMENT;
-    return krs_measure(frame, options ? &own : NULL, measures);
+    return krs_measure(state, options ? &own : NULL, measures);
 }

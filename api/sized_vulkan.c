@@ -43,14 +43,14 @@ size_t krs_rendering_shaders_sized(const KrsRendering *rendering, KrsShaderStats
     return found;
 }
 
-KrsStatus krs_render_sized(KrsRendering *rendering, KrsState *frame,
+KrsStatus krs_render_sized(KrsRendering *rendering, KrsState *state,
                            const KrsRenderOptions *options, size_t size, KrsPicture **picture)
 {
     KrsRenderOptions own;
     *picture = NULL;
     if (!sized_take(&own, sizeof own, options, size))
         return KRS_BAD_ARGUMENT;
-    return krs_render(rendering, frame, options ? &own : NULL, picture);
+    return krs_render(rendering, state, options ? &own : NULL, picture);
 }
 
 KrsStatus krs_film_new_sized(KrsRendering *rendering, const KrsRenderOptions *options, size_t size,
@@ -63,35 +63,35 @@ KrsStatus krs_film_new_sized(KrsRendering *rendering, const KrsRenderOptions *op
     return krs_film_new(rendering, options ? &own : NULL, film);
 }
 
-KrsStatus krs_film_add_sized(KrsFilm *film, KrsState *frame, const KrsCamera *camera, size_t size,
+KrsStatus krs_film_add_sized(KrsFilm *film, KrsState *state, const KrsCamera *camera, size_t size,
                              uint32_t samples)
 {
     KrsCamera own;
     if (!sized_take(&own, sizeof own, camera, size))
         return KRS_BAD_ARGUMENT;
-    return krs_film_add(film, frame, camera ? &own : NULL, samples);
+    return krs_film_add(film, state, camera ? &own : NULL, samples);
 }
 
-KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsState *frame, const KrsRays *rays, size_t size)
+KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsState *state, const KrsRays *rays, size_t size)
 {
     KrsRays own;
     if (!sized_take(&own, sizeof own, rays, size))
         return KRS_BAD_ARGUMENT;
-    return krs_film_add_rays(film, frame, rays ? &own : NULL);
+    return krs_film_add_rays(film, state, rays ? &own : NULL);
 }
 
-KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsState *frame,
+KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsState *state,
                                  const double (*points)[3], size_t count, KrsHit *hits, size_t size)
 {
     SizedArray array;
     if (!sized_open(&array, hits, size, sizeof(KrsHit), count))
         return KRS_OUT_OF_MEMORY;
-    const KrsStatus status = krs_device_probe(rendering, frame, points, count, array.own);
+    const KrsStatus status = krs_device_probe(rendering, state, points, count, array.own);
     sized_close(&array, status == KRS_OK ? count : 0);
     return status;
 }
 
-KrsStatus krs_device_raycast_sized(KrsRendering *rendering, KrsState *frame,
+KrsStatus krs_device_raycast_sized(KrsRendering *rendering, KrsState *state,
                                    const double (*origins)[3], const double (*directions)[3],
                                    size_t count, double farthest, double tolerance, KrsHit *hits,
                                    size_t size)
@@ -99,7 +99,7 @@ KrsStatus krs_device_raycast_sized(KrsRendering *rendering, KrsState *frame,
     SizedArray array;
     if (!sized_open(&array, hits, size, sizeof(KrsHit), count))
         return KRS_OUT_OF_MEMORY;
-    const KrsStatus status = krs_device_raycast(rendering, frame, origins, directions, count,
+    const KrsStatus status = krs_device_raycast(rendering, state, origins, directions, count,
                                                 farthest, tolerance, array.own);
     sized_close(&array, status == KRS_OK ? count : 0);
     return status;

@@ -81,7 +81,7 @@ static void print_component(const KrsComponent *component, size_t number)
     fputs("\n    slope      ", stdout);
     printf("%.6g%s", component->slope, component->slope > 1 + 1e-9 ? ", divided out" : "");
     puts(component->exact       ? " (the distance is exact, by claim)"
-         : component->per_frame ? " (the distance is a bound, derived for each frame: at first)"
+         : component->per_state ? " (the distance is a bound, derived for each frame: at first)"
          : component->estimate  ? " (the distance is an estimate: `krs validate` measures it)"
                                 : " (the distance is a bound, derived)");
     if (component->levels > 0) {
@@ -233,7 +233,7 @@ static void add_components(Text *json, const KrsScene *scene)
         text_add(json, ", \"slope\": ");
         json_number(json, component.slope);
         text_format(json, ", \"figure\": %s, \"per_frame\": %s",
-                    component.figure ? "true" : "false", component.per_frame ? "true" : "false");
+                    component.figure ? "true" : "false", component.per_state ? "true" : "false");
         text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
                     component.exact ? "true" : "false", component.estimate ? "true" : "false",
                     component.levels);

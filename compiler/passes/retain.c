@@ -27,7 +27,7 @@ static void retain_components(Compilation *c)
         KrsComponent    *to   = &scene->components[i];
         *to                   = (KrsComponent){.name       = retain_text(c, from->name),
                                                .slope      = from->shape->slope * from->shape->derived,
-                                               .per_frame  = from->shape->per_frame,
+                                               .per_state  = from->shape->per_frame,
                                                .exact      = from->shape->exact,
                                                .estimate   = from->shape->estimate,
                                                .figure     = from->figure,

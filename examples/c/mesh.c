@@ -79,7 +79,7 @@ static void say(void *user, const KrsDiagnostic *diagnostic)
 int main(int argc, char **argv)
 {
     KrsScene      *scene   = NULL;
-    KrsState      *frame   = NULL;
+    KrsState      *state   = NULL;
     KrsMesh       *mesh    = NULL;
     KrsMeshOptions options = {.error = argc > 2 ? atof(argv[2]) : 0, .progress = report_progress};
     KrsOptions     how     = {.diagnostic = say};
@@ -89,16 +89,16 @@ int main(int argc, char **argv)
     }
     KrsStatus status = krs_compile_file(argv[1], &how, &scene);
     if (status == KRS_OK)
-        status = krs_state_new(scene, &frame);
+        status = krs_state_new(scene, &state);
     if (status == KRS_OK)
-        status = krs_mesh(frame, &options, &mesh);
+        status = krs_mesh(state, &options, &mesh);
     fputc('\n', stderr);
     if (status == KRS_OK)
         report(mesh);
     else
         fprintf(stderr, "no mesh: status %d\n", (int)status);
     krs_mesh_free(mesh); /* these take NULL */
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     return status != KRS_OK;
 }

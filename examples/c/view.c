@@ -25,7 +25,7 @@ enum { SAMPLES = 8, COARSE = 4 };
 typedef struct Stage {
     KrsRenderer     *renderer;
     KrsScene        *scene;
-    KrsState        *frame;
+    KrsState        *state;
     KrsRendering    *rendering; /* NULL: the scene does not compile */
     KrsFilm         *film;
     KrsRenderOptions size; /* of the film */
@@ -53,7 +53,7 @@ static void clear(Stage *stage)
 {
     krs_film_free(stage->film);
     krs_rendering_free(stage->rendering);
-    krs_state_free(stage->frame);
+    krs_state_free(stage->state);
     krs_scene_free(stage->scene);
     *stage = (Stage){.renderer = stage->renderer};
 }
@@ -67,7 +67,7 @@ static void *prepare(void *at)
     clear(stage);
     if ((stage->renderer || krs_renderer_new(NULL, &stage->renderer) == KRS_OK) &&
         krs_compile_file(path, &options, &stage->scene) == KRS_OK &&
-        krs_state_new(stage->scene, &stage->frame) == KRS_OK)
+        krs_state_new(stage->scene, &stage->state) == KRS_OK)
         krs_rendering_new(stage->renderer, stage->scene, KRS_FOR_PICTURES, &stage->rendering);
     atomic_store(&ends, true);
     glfwPostEmptyEvent();
@@ -87,7 +87,7 @@ static void follow_file(void)
     } else if (compiles && atomic_load(&ends)) {
         compiles = pthread_join(compiler, NULL) != 0;
         if (!shown->rendering && hidden->rendering)
-            krs_state_camera(hidden->frame, 0, &camera); /* to begin with */
+            krs_state_camera(hidden->state, 0, &camera); /* to begin with */
         shown = hidden->rendering ? hidden : shown;
         moved = true;
     }
@@ -132,7 +132,7 @@ static bool refine(GLFWwindow *window)
         moved       = false;
     }
     if (krs_film_samples(shown->film) < SAMPLES)
-        krs_film_add(shown->film, shown->frame, &camera, 1);
+        krs_film_add(shown->film, shown->state, &camera, 1);
     draw(window, width, height);
     return coarse || krs_film_samples(shown->film) < SAMPLES;
 }

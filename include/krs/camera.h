@@ -36,7 +36,7 @@ void krs_camera_fit(KrsCamera *camera, const double low[3], const double high[3]
 void krs_camera_axis(KrsCamera *camera, const double from[3]);
 /* Changes between perspective and an orthographic view that shows the target as large. */
 void krs_camera_toggle_perspective(KrsCamera *camera);
-/* Looks at a point from where the eye is, with the point as the new center of turns. */
+/* Looks at a point from where the eye is, with the point as the new center of orbits. */
 void krs_camera_aim(KrsCamera *camera, const double point[3]);
 
 /* The unit direction of sight, and those of the picture's right and top. */

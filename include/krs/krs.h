@@ -425,14 +425,15 @@ typedef struct KrsComponent {
     const char *name;            /* of the variable in its `show`, or "component 3" */
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
     double      slope;           /* the derived bound on the slope of its expression */
-    bool        per_frame;       /* `slope` is that of the first state; each has its own */
-    bool        exact;           /* the distance is exact outside wherever docs/math.md says so */
-    bool        estimate;        /* nothing is proven of the distance; else it is a bound */
-    bool        figure;          /* a plane figure: KrsOptions.figures */
-    uint32_t    levels;          /* number of reflections of its outermost sequence, or 0 */
-    double      instances;       /* number of kernels with all their copies */
-    uint32_t    inversions;      /* maps that invert, in its outermost sequence or `.transform` */
-    double      flops;           /* multiply-adds to evaluate its distance at a point; its share
+    KRS_WAS(bool per_state, bool per_frame,
+            "per_state"); /* `slope` is that of the first state; each has its own */
+    bool     exact;       /* the distance is exact outside wherever docs/math.md says so */
+    bool     estimate;    /* nothing is proven of the distance; else it is a bound */
+    bool     figure;      /* a plane figure: KrsOptions.figures */
+    uint32_t levels;      /* number of reflections of its outermost sequence, or 0 */
+    double   instances;   /* number of generators with all their copies */
+    uint32_t inversions;  /* maps that invert, in its outermost sequence or `.transform` */
+    double   flops;       /* multiply-adds to evaluate its distance at a point; its share
                                     where many that are alike are evaluated together */
 } KrsComponent;
 

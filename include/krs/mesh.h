@@ -109,8 +109,8 @@ typedef struct KrsAssembly {
 } KrsAssembly;
 
 /*
- * As krs_mesh, with a mesh for each kernel of sequences and the places of its copies, and one for all else.
- * The error is that of copies; 0: a 200th of the longest side of each kernel's box.  Where kernels overlap,
+ * As krs_mesh, with a mesh for each generator of sequences and the transforms of its copies, and one for all else.
+ * The error is that of copies; 0: a 200th of the longest side of each generator's box.  Where generators overlap,
  * so do meshes.  *assembly may be NULL on KRS_OK: there is no sequence that can be taken apart.  None can with
  * zones or `within`; one whose mirrors cut anything, or may, or that inverts, cannot.  The scene must have been
  * compiled with KrsOptions.assembly.  With KrsOptions.motion what the time moves is taken apart as well.  Then KRS_BAD_SCENE:

@@ -132,6 +132,8 @@ static void use_members(void)
     check(renderer.validation_message == hear && renderer.progress == wait &&
               renderer.progress_user == &failures && renderer.prewarm && renderer.timeout == 9,
           "options of a device");
+    const KrsComponent component = {.per_frame = true};
+    check(component.per_state, "a component");
     const KrsMeshOptions mesh = {.go_on = wait};
     check(mesh.progress == wait, "options of meshes");
     KrsPlacing        placing  = {.item = 3};
