@@ -47,18 +47,18 @@ static KrsStatus write_tables(const Options *options, const KrsScene *scene, con
 {
     size_t    rows_size  = krs_table_rows(scene) * sizeof(float[4]);
     size_t    cells_size = krs_table_cells(scene) * sizeof(uint32_t[2]);
-    KrsState *frame;
+    KrsState *state;
     if (cells_size == 0)
         return KRS_OK;
-    KrsStatus status = krs_state_new(scene, &frame);
+    KrsStatus status = krs_state_new(scene, &state);
     if (status != KRS_OK) {
         say("out of memory while writing the tables of `%s`", base);
         return status;
     }
     void *rows  = arena_alloc(options->arena, 1, rows_size);
     void *cells = arena_alloc(options->arena, 1, cells_size);
-    krs_state_tables(frame, rows, cells);
-    krs_state_free(frame);
+    krs_state_tables(state, rows, cells);
+    krs_state_free(state);
     status = write_table(options, base, &rows_file, rows, rows_size);
     if (status == KRS_OK)
         status = write_table(options, base, &cells_file, cells, cells_size);

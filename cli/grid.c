@@ -34,7 +34,7 @@ enum { GROUPS = 2 };
 typedef struct Gridding {
     const Options  *options;
     const KrsScene *scene;
-    KrsState       *frame;
+    KrsState       *state;
     Meshing         meshing;        /* what they share with meshes */
     KrsGridOptions  how;            /* but for what a format has */
     GridGroup       groups[GROUPS]; /* all, near */
@@ -269,7 +269,7 @@ static KrsStatus open_grid(Gridding *gridding)
 {
     const Options *options = gridding->options;
     gridding->goal         = 0.5;
-    KrsStatus status       = krs_grid_new(gridding->frame, &gridding->how, &gridding->grid);
+    KrsStatus status       = krs_grid_new(gridding->state, &gridding->how, &gridding->grid);
     if (status == KRS_BAD_ARGUMENT)
         return say_usage(options, "%s is too small for the size of `%s`",
                          gridding->how.error > 0 ? "--error" : "--cell", options->files.items[0]);
@@ -446,7 +446,7 @@ KrsStatus command_grid(Options *options)
         status = scene_open(options, options->files.items[0], &scene);
     gridding.scene = scene;
     if (status == KRS_OK)
-        status = scene_frame(options, scene, &gridding.frame);
+        status = scene_frame(options, scene, &gridding.state);
     if (status == KRS_OK)
         status = take_options(&gridding);
     if (status == KRS_OK)
@@ -454,7 +454,7 @@ KrsStatus command_grid(Options *options)
     if (status == KRS_OK)
         report_all(&gridding);
     krs_grid_free(gridding.grid);
-    krs_state_free(gridding.frame);
+    krs_state_free(gridding.state);
     krs_scene_free(scene);
     return status;
 }

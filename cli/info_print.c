@@ -270,7 +270,7 @@ static KrsMeasureOptions measure_options(Printing *printing, const KrsMeshOption
     return how;
 }
 
-static KrsStatus measure(Printing *printing, KrsState *frame)
+static KrsStatus measure(Printing *printing, KrsState *state)
 {
     const Options *options = printing->options;
     const char    *path    = options->files.items[0];
@@ -283,7 +283,7 @@ static KrsStatus measure(Printing *printing, KrsState *frame)
     KrsMeasureOptions how = measure_options(printing, &meshing.how, longest);
     stage_enter(STAGE_MESH);
     progress_start(&printing->progress, options, 1);
-    status = krs_measure(frame, &how, &printing->measures);
+    status = krs_measure(state, &how, &printing->measures);
     progress_end(&printing->progress);
     if (status == KRS_BAD_ARGUMENT)
         return say_usage(options, "--%s is too small for the size of `%s`",
@@ -299,13 +299,13 @@ KrsStatus info_print(const Options *options, const KrsScene *scene)
 {
     Printing printing = {.options = options, .scene = scene};
     int      unit = options->mesh_units < 0 ? find_choice("mm", unit_choices) : options->mesh_units;
-    KrsState *frame;
+    KrsState *state;
     printing.unit    = unit_choices[unit].name;
     printing.cm      = 100 * metres_of_units[unit];
-    KrsStatus status = scene_frame(options, scene, &frame);
+    KrsStatus status = scene_frame(options, scene, &state);
     if (status != KRS_OK)
         return status;
-    status = measure(&printing, frame);
+    status = measure(&printing, state);
     if (status == KRS_OK) {
         if (options->json)
             print_json(&printing);
@@ -314,7 +314,7 @@ KrsStatus info_print(const Options *options, const KrsScene *scene)
         warn(&printing);
     }
     krs_measures_free(printing.measures);
-    krs_state_free(frame);
+    krs_state_free(state);
     return status;
 }
 

@@ -32,7 +32,7 @@ static bool report_progress(void *user, double fraction)
 
 static KrsStatus make_merged(Meshing *meshing, Body *body)
 {
-    return krs_mesh(meshing->frame, &meshing->how, &body->mesh);
+    return krs_mesh(meshing->state, &meshing->how, &body->mesh);
 }
 
 /* Where nothing can be taken apart, the meshes are those that are merged. */
@@ -42,7 +42,7 @@ static KrsStatus make_assembled(Meshing *meshing, Body *body)
     KrsStatus      status = KRS_OK;
     if (meshing->options->mesh_error == 0)
         meshing->how.error = 0;
-    status             = krs_assemble(meshing->frame, &meshing->how, &body->assembly);
+    status             = krs_assemble(meshing->state, &meshing->how, &body->assembly);
     meshing->how.error = whole.error;
     return status == KRS_OK && !body->assembly ? make_merged(meshing, body) : status;
 }
@@ -435,10 +435,10 @@ static void report(const Meshing *meshing, const Bodies *bodies)
 KrsStatus write_meshes(Meshing *meshing)
 {
     const Options *options = meshing->options;
-    KrsStatus      status  = scene_frame(options, meshing->scene, &meshing->frame);
+    KrsStatus      status  = scene_frame(options, meshing->scene, &meshing->state);
     meshing->scale         = 1;
     if (status == KRS_OK && options->animated)
-        status = scene_set_time(options, meshing->frame,
+        status = scene_set_time(options, meshing->state,
                                 options->time + options->first_frame / options->fps);
     if (status == KRS_OK) {
         meshing->how = (KrsMeshOptions){
@@ -457,7 +457,7 @@ KrsStatus write_meshes(Meshing *meshing)
         report(meshing, &meshing->merged);
     drop_bodies(&meshing->assembled);
     drop_bodies(&meshing->merged);
-    krs_state_free(meshing->frame);
+    krs_state_free(meshing->state);
     return status;
 }
 

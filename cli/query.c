@@ -26,7 +26,7 @@ enum {
 
 typedef struct Query {
     const Options *options;
-    KrsState      *frame;
+    KrsState      *state;
     KrsRenderer   *renderer;
     KrsRendering  *rendering; /* NULL: the host answers */
     KrsStatus      status;    /* of the answers so far */
@@ -44,12 +44,12 @@ static KrsStatus answer_gathered(Query *query, bool rays, size_t count)
     const double(*aims)[3]   = (const double(*)[3])query->aims;
     double farthest = query->options->farthest, tolerance = query->options->tolerance;
     if (!query->rendering && rays)
-        return krs_raycast(query->frame, points, aims, count, farthest, tolerance, query->hits);
+        return krs_raycast(query->state, points, aims, count, farthest, tolerance, query->hits);
     if (!query->rendering)
-        return krs_probe(query->frame, points, count, query->hits);
-    KrsStatus status = rays ? krs_device_raycast(query->rendering, query->frame, points, aims,
+        return krs_probe(query->state, points, count, query->hits);
+    KrsStatus status = rays ? krs_device_raycast(query->rendering, query->state, points, aims,
                                                  count, farthest, tolerance, query->hits)
-                            : krs_device_probe(query->rendering, query->frame, points, count,
+                            : krs_device_probe(query->rendering, query->state, points, count,
                                                query->hits);
     if (status != KRS_OK)
         say("%s", krs_renderer_message(query->renderer));
@@ -274,7 +274,7 @@ KrsStatus command_query(Options *options)
     Query *query   = arena_new(options->arena, Query);
     char  *input   = arena_alloc(options->arena, INPUT_SIZE + 1, 1);
     query->options = options;
-    status         = scene_frame(options, scene, &query->frame);
+    status         = scene_frame(options, scene, &query->state);
     if (status == KRS_OK && options->on_device)
         status = open_device(query, scene);
     if (status == KRS_OK) {
@@ -285,7 +285,7 @@ KrsStatus command_query(Options *options)
     }
     krs_rendering_free(query->rendering);
     krs_renderer_free(query->renderer);
-    krs_state_free(query->frame);
+    krs_state_free(query->state);
     krs_scene_free(scene);
     return status;
 }

@@ -150,7 +150,7 @@ static KrsStatus choose_how(Render *render)
     size_t            camera;
     KrsStatus         status = find_camera(options, render->scene, &camera);
     if (status == KRS_OK)
-        status = krs_state_view(render->frame, camera, &view);
+        status = krs_state_view(render->state, camera, &view);
     if (status != KRS_OK)
         return status;
     *how          = options->how;
@@ -194,7 +194,7 @@ static KrsStatus write_outputs(Render *render, const KrsPicture *picture, double
 {
     const Options *options = render->options;
     KrsView        view;
-    KrsStatus      status  = krs_state_view(render->frame, render->how.camera, &view);
+    KrsStatus      status  = krs_state_view(render->state, render->how.camera, &view);
     PictureNotes   notes   = {.scene = render->scene, .time = time};
     notes.display.exposure = isnan(options->exposure) ? view.image.exposure : options->exposure;
     notes.display.white_balance = options->white_balance;
@@ -225,7 +225,7 @@ static KrsStatus render_eyes(Render *render, KrsPicture **picture)
     KrsStatus        status  = KRS_OK;
     for (int i = 0; i < 2 && status == KRS_OK; i++) {
         how.eye = i == 0 ? KRS_EYE_ON_LEFT : KRS_EYE_ON_RIGHT;
-        status  = krs_render(render->rendering, render->frame, &how, &eyes[i]);
+        status  = krs_render(render->rendering, render->state, &how, &eyes[i]);
     }
     if (status == KRS_OK)
         status = krs_picture_join(eyes[0], eyes[1], render->options->stereo == 1, picture);
@@ -239,8 +239,8 @@ static KrsStatus render_picture(Render *render, uint32_t frame, KrsPicture **pic
     if (render->options->stereo >= 0)
         return render_eyes(render, picture);
     if (!render->options->resume)
-        return krs_render(render->rendering, render->frame, &render->how, picture);
-    const CheckpointFrame resumed = {render->rendering, render->frame, &render->how,
+        return krs_render(render->rendering, render->state, &render->how, picture);
+    const CheckpointFrame resumed = {render->rendering, render->state, &render->how,
                                      render->samples, frame};
     return checkpoint_render(&render->checkpoint, &resumed, picture);
 }
@@ -275,7 +275,7 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     const Options *options = render->options;
     double         time    = options->time + (options->animated ? frame / options->fps : 0);
     KrsPicture    *picture = NULL;
-    KrsStatus      status  = scene_set_time(options, render->frame, time);
+    KrsStatus      status  = scene_set_time(options, render->state, time);
     if (status != KRS_OK)
         return status;
     status = read_others(render, frame);
@@ -326,11 +326,11 @@ static KrsStatus specialize(Render *render)
                                    count_samples(render, pixels_of_window(&render->how)));
     if (!edited)
         return KRS_OK;
-    krs_state_free(render->frame);
+    krs_state_free(render->state);
     krs_scene_free(render->scene);
-    render->frame = NULL;
+    render->state = NULL;
     render->scene = edited;
-    return scene_frame(options, edited, &render->frame);
+    return scene_frame(options, edited, &render->state);
 }
 
 /* With more samples, shaders that take longer to compile are better even if they are new.  What compilation takes
@@ -353,7 +353,7 @@ static KrsPurpose purpose_of(const Render *render)
 
 KrsStatus render_choose(Render *render)
 {
-    KrsStatus status = scene_frame(render->options, render->scene, &render->frame);
+    KrsStatus status = scene_frame(render->options, render->scene, &render->state);
     return status == KRS_OK ? choose_how(render) : status;
 }
 
@@ -426,7 +426,7 @@ void render_free(Render *render)
 {
     krs_rendering_free(render->rendering);
     krs_renderer_free(render->renderer);
-    krs_state_free(render->frame);
+    krs_state_free(render->state);
     krs_scene_free(render->scene);
 }
 

@@ -23,7 +23,7 @@ typedef struct SliceOutput {
 typedef struct Slicing {
     const Options  *options;
     const KrsScene *scene;
-    KrsState       *frame;
+    KrsState       *state;
     KrsSlicer      *slicer;
     SliceSheet      sheet;
     Meshing         meshing; /* what they share with meshes */
@@ -321,7 +321,7 @@ static KrsStatus open_slicer(Slicing *slicing)
         slicing->how.arcs  = slicing->how.arcs || arcs;
         slicing->how.lines = slicing->how.lines || !arcs;
     }
-    KrsStatus status = krs_slicer_new(slicing->frame, &slicing->how, &slicing->slicer);
+    KrsStatus status = krs_slicer_new(slicing->state, &slicing->how, &slicing->slicer);
     if (status == KRS_BAD_ARGUMENT)
         return refuse_error(slicing);
     return status == KRS_OK ? KRS_OK : say_status(status, options->files.items[0]);
@@ -526,13 +526,13 @@ KrsStatus command_slice(Options *options)
         status = scene_open(options, options->files.items[0], &scene);
     slicing.scene = scene;
     if (status == KRS_OK)
-        status = scene_frame(options, scene, &slicing.frame);
+        status = scene_frame(options, scene, &slicing.state);
     if (status == KRS_OK)
         status = find_options(&slicing);
     if (status == KRS_OK)
         status = write_sections(&slicing);
     krs_slicer_free(slicing.slicer);
-    krs_state_free(slicing.frame);
+    krs_state_free(slicing.state);
     krs_scene_free(scene);
     return status;
 }

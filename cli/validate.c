@@ -40,7 +40,7 @@ typedef struct Validation {
     const Options *options;
     const char    *path, *name; /* the latter is printed */
     KrsScene      *scene;
-    KrsState      *frame;
+    KrsState      *state;
     uint64_t       random;                /* state of the generator */
     double         low[3], high[3], size; /* the box that is tried, and its diagonal */
     uint64_t       balls;                 /* probes inside of balls so far */
@@ -89,7 +89,7 @@ static void march_to_surface(Validation *v)
     for (size_t i = 0; i < BATCH; i++)
         random_direction(&v->random, directions[i]);
     for (int step = 0; step < MARCH_STEPS; step++) {
-        krs_distance_bound(v->frame, (const double(*)[3])v->points, BATCH, distances);
+        krs_distance_bound(v->state, (const double(*)[3])v->points, BATCH, distances);
         for (size_t i = 1; i < BATCH; i += 2) {
             double advance = 0.9 * distances[i]; /* arrives nearly, from either side */
             if (fabs(advance) > 1e-3 * v->size && isfinite(advance))
@@ -128,7 +128,7 @@ static void print_component(const Validation *v, const double point[3])
 {
     KrsHit       hit;
     KrsComponent component;
-    krs_probe(v->frame, (const double(*)[3])point, 1, &hit);
+    krs_probe(v->state, (const double(*)[3])point, 1, &hit);
     if (hit.component > 0 && krs_component(v->scene, hit.component - 1, &component) == KRS_OK)
         printf(" near component %u (%s)", hit.component, component.name);
 }
@@ -193,7 +193,7 @@ static void measure_estimates(Validation *v, const KrsHit *hits, bool straight)
         for (size_t i = 0; i < BATCH; i++)
             for (int axis = 0; axis < 3; axis++)
                 points[i][axis] = hits[i].point[axis] + lengths[i] * directions[i][axis];
-        krs_distance_bound(v->frame, (const double(*)[3])points, BATCH, found);
+        krs_distance_bound(v->state, (const double(*)[3])points, BATCH, found);
         for (size_t i = 0; i < BATCH; i++) {
             if (!going[i])
                 continue;
@@ -221,7 +221,7 @@ static KrsStatus try_balls(Validation *v)
 {
     KrsHit hits[BATCH];
     double inside[BATCH][3], found[BATCH];
-    krs_probe(v->frame, (const double(*)[3])v->points, BATCH, hits);
+    krs_probe(v->state, (const double(*)[3])v->points, BATCH, hits);
     for (size_t i = 0; i < BATCH; i++)
         if (isnan(hits[i].distance)) {
             printf("%s: refuted: the distance", v->name);
@@ -235,7 +235,7 @@ static KrsStatus try_balls(Validation *v)
                 choose_inside(v, &hits[i], probe, inside[i]);
             else
                 memcpy(inside[i], v->points[i], sizeof inside[i]);
-        krs_distance_bound(v->frame, (const double(*)[3])inside, BATCH, found);
+        krs_distance_bound(v->state, (const double(*)[3])inside, BATCH, found);
         for (size_t i = 0; i < BATCH; i++) {
             if (!is_worth_trying(v, hits[i].distance) || is_estimate(v, &hits[i]))
                 continue;
@@ -260,7 +260,7 @@ static bool is_of_cell_aside(Validation *v, const double point[3], double answer
     for (int i = 0; i < CORNERS; i++)
         for (int axis = 0; axis < 3; axis++)
             around[i][axis] = point[axis] + (i >> axis & 1 ? aside : -aside);
-    krs_distance_bound(v->frame, (const double(*)[3])around, CORNERS, bounds);
+    krs_distance_bound(v->state, (const double(*)[3])around, CORNERS, bounds);
     for (int i = 0; i < CORNERS; i++) {
         least = fmin(least, bounds[i]);
         most  = fmax(most, bounds[i]);
@@ -276,13 +276,13 @@ static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *
     for (size_t i = 0; i < BATCH; i++)
         for (int axis = 0; axis < 3; axis++)
             rounded[i][axis] = given[i][axis] = (float)v->points[i][axis];
-    KrsStatus status = krs_device_distance(rendering, v->frame, (const float(*)[3])given, BATCH,
+    KrsStatus status = krs_device_distance(rendering, v->state, (const float(*)[3])given, BATCH,
                                            answered);
     if (status != KRS_OK) {
         say("%s", krs_renderer_message(renderer));
         return status;
     }
-    krs_distance_bound(v->frame, (const double(*)[3])rounded, BATCH, expected);
+    krs_distance_bound(v->state, (const double(*)[3])rounded, BATCH, expected);
     for (size_t i = 0; i < BATCH; i++) {
         double tolerance  = TOLERANCE_OF_SCALE * v->size + TOLERANCE_OF_VALUE * fabs(expected[i]);
         double difference = fabs(answered[i] - expected[i]) / tolerance;
@@ -415,7 +415,7 @@ static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
     if (status != KRS_OK)
         return status;
     choose_box(v);
-    status = scene_frame(v->options, v->scene, &v->frame);
+    status = scene_frame(v->options, v->scene, &v->state);
     if (status == KRS_OK && v->options->seconds > 0)
         status = try_search(v);
     if (status == KRS_OK)
@@ -429,7 +429,7 @@ static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
     if (status == KRS_OK)
         status = try_points(v, renderer, rendering);
     krs_rendering_free(rendering);
-    krs_state_free(v->frame);
+    krs_state_free(v->state);
     krs_scene_free(v->scene);
     return status;
 }

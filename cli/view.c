@@ -37,12 +37,12 @@ static bool is_stopped(void *user)
 static KrsStatus check_settings(const Options *options)
 {
     KrsScene *scene;
-    KrsState *frame  = NULL;
+    KrsState *state  = NULL;
     KrsStatus status = scene_open(options, options->files.items[0], &scene);
     if (status != KRS_OK)
         return status;
-    status = scene_frame(options, scene, &frame);
-    krs_state_free(frame);
+    status = scene_frame(options, scene, &state);
+    krs_state_free(state);
     krs_scene_free(scene);
     return status;
 }

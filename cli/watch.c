@@ -95,8 +95,8 @@ static KrsStatus make_shaders(Watch *watch)
 
 static KrsStatus make_picture(Watch *watch, double start)
 {
-    krs_state_free(watch->render.frame);
-    watch->render.frame = NULL;
+    krs_state_free(watch->render.state);
+    watch->render.state = NULL;
     KrsStatus status    = adopt(watch);
     if (status == KRS_OK)
         status = render_choose(&watch->render);

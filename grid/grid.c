@@ -74,16 +74,16 @@ static bool find_samples(KrsGrid *grid)
 }
 
 /* The least of distances that are exact outside is so, too. */
-static bool is_exact_outside(const KrsGrid *grid, const KrsState *frame)
+static bool is_exact_outside(const KrsGrid *grid, const KrsState *state)
 {
-    bool exact = !grid->options.within && frame->zone_count == 0 && !grid->solid.zoned;
-    for (size_t i = 0; i < frame->scene->shown_count && exact; i++)
+    bool exact = !grid->options.within && state->zone_count == 0 && !grid->solid.zoned;
+    for (size_t i = 0; i < state->scene->shown_count && exact; i++)
         if (grid->options.component == 0 || grid->options.component == i + 1)
-            exact = frame->scene->components[i].exact;
+            exact = state->scene->components[i].exact;
     return exact;
 }
 
-static KrsStatus find_mesh(KrsGrid *grid, KrsState *frame)
+static KrsStatus find_mesh(KrsGrid *grid, KrsState *state)
 {
     const KrsGridOptions *options = &grid->options;
     KrsMeshOptions        how     = {.component    = options->component,
@@ -95,7 +95,7 @@ static KrsStatus find_mesh(KrsGrid *grid, KrsState *frame)
     memcpy(how.high, options->high, sizeof how.high);
     /* Half of it is how far the distance to the mesh may be from the true one, to either side. */
     how.error        = 0.5 * (options->error > 0 ? options->error : USUAL_ERROR * options->cell);
-    KrsStatus status = krs_mesh(frame, &how, &grid->mesh);
+    KrsStatus status = krs_mesh(state, &how, &grid->mesh);
     if (status != KRS_OK)
         return status;
     grid->shape.error      = 2 * grid->mesh->error;
@@ -111,7 +111,7 @@ static KrsStatus find_mesh(KrsGrid *grid, KrsState *frame)
     return KRS_OK;
 }
 
-static KrsStatus open_fields(KrsGrid *grid, KrsState *frame)
+static KrsStatus open_fields(KrsGrid *grid, KrsState *state)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < grid->parts && status == KRS_OK; i++) {
@@ -119,18 +119,18 @@ static KrsStatus open_fields(KrsGrid *grid, KrsState *frame)
         *field           = (MeshField){.solid = &grid->solid, .cut = grid->options.within};
         memcpy(field->low, grid->low, sizeof field->low);
         memcpy(field->high, grid->high, sizeof field->high);
-        status = frame_copy_of(frame, &field->frame);
+        status = state_copy_of(state, &field->state);
         if (status != KRS_OK)
             return status;
-        frame_refresh_points(field->frame);
+        state_refresh_points(field->state);
         field_open(field, &grid->arena);
-        if (grid->options.materials && !frame_lanes(field->frame))
+        if (grid->options.materials && !state_lanes(field->state))
             return KRS_OUT_OF_MEMORY;
     }
     return status;
 }
 
-static KrsStatus prepare(KrsGrid *grid, KrsState *frame)
+static KrsStatus prepare(KrsGrid *grid, KrsState *state)
 {
     jmp_buf            exhausted;
     bool               empty;
@@ -142,14 +142,14 @@ static KrsStatus prepare(KrsGrid *grid, KrsState *frame)
     grid->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
-    status = open_fields(grid, frame);
+    status = open_fields(grid, state);
     if (status != KRS_OK)
         return status;
     if (!narrow(grid))
         return KRS_OK;
     if (!find_samples(grid))
         return KRS_BAD_ARGUMENT;
-    return grid->options.exact && !grid->options.fog ? find_mesh(grid, frame) : KRS_OK;
+    return grid->options.exact && !grid->options.fog ? find_mesh(grid, state) : KRS_OK;
 }
 
 static KrsStatus choose_components(KrsGrid *grid, const KrsScene *scene)
@@ -195,9 +195,9 @@ static void take_band(KrsGrid *grid)
     grid->shape.band              = options->fog ? 0 : options->band * options->cell;
 }
 
-KrsStatus krs_grid_new(KrsState *frame, const KrsGridOptions *options, KrsGrid **result)
+KrsStatus krs_grid_new(KrsState *state, const KrsGridOptions *options, KrsGrid **result)
 {
-    const KrsScene *scene = frame->scene;
+    const KrsScene *scene = state->scene;
     *result               = NULL;
     if (!options_are_valid(options, scene))
         return KRS_BAD_ARGUMENT;
@@ -212,9 +212,9 @@ KrsStatus krs_grid_new(KrsState *frame, const KrsGridOptions *options, KrsGrid *
     take_band(grid);
     KrsStatus status = choose_components(grid, scene);
     if (status == KRS_OK)
-        status = prepare(grid, frame);
+        status = prepare(grid, state);
     grid->shape.estimate   = grid->solid.estimate;
-    grid->shape.outside    = is_exact_outside(grid, frame);
+    grid->shape.outside    = is_exact_outside(grid, state);
     grid->memory.exhausted = NULL;
     if (status == KRS_OK)
         *result = grid;
@@ -228,7 +228,7 @@ void krs_grid_free(KrsGrid *grid)
     if (!grid)
         return;
     for (size_t i = 0; i < MAX_PARTS; i++)
-        frame_free(grid->fields[i].frame);
+        state_free(grid->fields[i].state);
     krs_mesh_free(grid->mesh);
     arena_free(&grid->arena);
     free(grid->solid.roots);

@@ -78,22 +78,22 @@ static void find_normals(const MeshField *field, const double (*points)[3], doub
         field_normal(field, points[i], 1e-6 * (1 + largest3(points[i])), normals[i]);
 }
 
-static void take_material(const KrsGrid *grid, KrsState *frame, size_t point, uint32_t nearest,
+static void take_material(const KrsGrid *grid, KrsState *state, size_t point, uint32_t nearest,
                           float color[3], uint32_t *material)
 {
-    const Node *roots = surface_roots(&frame->scene->roots,
+    const Node *roots = surface_roots(&state->scene->roots,
                                       (grid->chosen ? grid->chosen : nearest) - 1);
-    points_surface(frame, point, grid->chosen ? grid->chosen : nearest);
+    points_surface(state, point, grid->chosen ? grid->chosen : nearest);
     for (int k = 0; k < 3; k++) {
-        double part = frame->values[roots[ROOT_color]].v[k];
+        double part = state->values[roots[ROOT_color]].v[k];
         color[k]    = (float)(part > 0 ? min2(part, 1) : 0);
     }
-    *material = (uint32_t)frame->values[roots[ROOT_material]].v[0];
+    *material = (uint32_t)state->values[roots[ROOT_material]].v[0];
 }
 
 KrsStatus add_materials(const KrsGrid *grid, MeshField *field, const size_t at[3], Brick *brick)
 {
-    if (!frame_lanes(field->frame))
+    if (!state_lanes(field->state))
         return KRS_OUT_OF_MEMORY;
     for (size_t first = 0; first < BRICK_SAMPLES; first += MAX_FIELD_POINTS) {
         double   points[MAX_FIELD_POINTS][3], normals[MAX_FIELD_POINTS][3];
@@ -102,10 +102,10 @@ KrsStatus add_materials(const KrsGrid *grid, MeshField *field, const size_t at[3
         for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
             sample_place(grid, at, first + i, points[i]);
         find_normals(field, (const double(*)[3])points, normals);
-        points_look(field->frame, (const double(*)[3])points, (const double(*)[3])normals,
+        points_look(field->state, (const double(*)[3])points, (const double(*)[3])normals,
                     MAX_FIELD_POINTS, distances, nearest);
         for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
-            take_material(grid, field->frame, i, nearest[i], brick->colors[first + i],
+            take_material(grid, field->state, i, nearest[i], brick->colors[first + i],
                           &brick->materials[first + i]);
     }
     return KRS_OK;

@@ -224,7 +224,7 @@ static void act_write_camera(Viewing *viewing)
     KrsStatus       status = KRS_BAD_ARGUMENT;
     KrsCamera       before;
     if (viewing->diagnostics.errors == 0 &&
-        krs_state_camera(viewing->frame, viewing->camera, &before) == KRS_OK)
+        krs_state_camera(viewing->state, viewing->camera, &before) == KRS_OK)
         status = camera_text_write(scene, viewing->camera, &before, &viewing->view.camera,
                                    viewing->options->path);
     if (!is_written(viewing, status))

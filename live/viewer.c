@@ -372,7 +372,7 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     painter_free(viewing.painter);
     window_close(viewing.window);
     terminal_close(viewing.terminal);
-    krs_state_free(viewing.frame);
+    krs_state_free(viewing.state);
     view_free(&viewing.view);
     history_free(viewing.history);
     free(viewing.pixels);

@@ -25,7 +25,7 @@ void viewing_show(Viewing *viewing) { viewing->view_changed = true; }
 void viewing_set_time(Viewing *viewing, double time)
 {
     viewing->view.time = fmax(time, 0);
-    krs_state_set_time(viewing->frame, viewing->view.time);
+    krs_state_set_time(viewing->state, viewing->view.time);
     if (!viewing->moved)
         viewing_take_camera(viewing, viewing->camera); /* it may move with the time */
     viewing_show(viewing);
@@ -113,17 +113,17 @@ static void set_frame(Viewing *viewing)
     for (size_t i = 0; i < krs_parameter_count(scene); i++) {
         KrsParameter parameter;
         krs_parameter(scene, i, &parameter);
-        krs_state_set(viewing->frame, parameter.name, viewing->view.values[i],
+        krs_state_set(viewing->state, parameter.name, viewing->view.values[i],
                       parameter.components);
     }
-    krs_state_set_time(viewing->frame, viewing->view.time);
+    krs_state_set_time(viewing->state, viewing->view.time);
 }
 
 void viewing_take_camera(Viewing *viewing, size_t camera)
 {
     KrsCamera found;
     set_frame(viewing);
-    if (krs_state_camera(viewing->frame, camera, &found) != KRS_OK)
+    if (krs_state_camera(viewing->state, camera, &found) != KRS_OK)
         return;
     viewing->camera      = camera;
     viewing->view.camera = found;
@@ -134,7 +134,7 @@ void viewing_take_camera(Viewing *viewing, size_t camera)
 KrsState *viewing_frame(Viewing *viewing)
 {
     set_frame(viewing);
-    return viewing->frame;
+    return viewing->state;
 }
 
 static void set_defaults(Viewing *viewing)
@@ -265,14 +265,14 @@ void viewing_adopt(Viewing *viewing, Version *version)
 {
     const KrsScene *scene  = version_scene(version);
     View            before = viewing->view;
-    KrsState       *frame  = NULL;
+    KrsState       *state  = NULL;
     double(*values)[4]     = calloc(krs_parameter_count(scene) + 1, sizeof *values);
-    if (!values || krs_state_new(scene, &frame) != KRS_OK) {
+    if (!values || krs_state_new(scene, &state) != KRS_OK) {
         free(values);
         return;
     }
-    krs_state_free(viewing->frame);
-    viewing->frame        = frame;
+    krs_state_free(viewing->state);
+    viewing->state        = state;
     viewing->view.version = version_hold(version);
     viewing->view.values  = values;
     set_defaults(viewing);

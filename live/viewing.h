@@ -31,7 +31,7 @@ typedef struct Viewing {
                reading_since; /* viewing_now, when a saved text began to be compiled; 0: none is */
     atomic_int read_status;   /* of the document, where no edit will mend it */
 
-    KrsState    *frame; /* of the view's version: cameras, and whether values fit */
+    KrsState    *state; /* of the view's version: cameras, and whether values fit */
     View         view;
     bool         view_changed;
     size_t       camera;         /* of the scene's */

@@ -26,7 +26,7 @@ static bool mesher_goes_on(void *user, double fraction)
     return measurer_goes_on(user, 0, fraction);
 }
 
-static KrsStatus make_mesh(Measurer *m, KrsState *frame)
+static KrsStatus make_mesh(Measurer *m, KrsState *state)
 {
     const KrsMeasureOptions *options = m->options;
     KrsMeshOptions           how     = {.error        = options->error,
@@ -38,7 +38,7 @@ static KrsStatus make_mesh(Measurer *m, KrsState *frame)
     memcpy(how.low, options->low, sizeof how.low);
     memcpy(how.high, options->high, sizeof how.high);
     m->goal = MESH_DONE;
-    return krs_mesh(frame, &how, &m->mesh);
+    return krs_mesh(state, &how, &m->mesh);
 }
 
 /* The box around the mesh. */
@@ -55,9 +55,9 @@ static void find_box(Measurer *m)
     }
 }
 
-static KrsStatus open_fields(Measurer *m, KrsState *frame)
+static KrsStatus open_fields(Measurer *m, KrsState *state)
 {
-    const KrsScene          *scene   = frame->scene;
+    const KrsScene          *scene   = state->scene;
     const KrsMeasureOptions *options = m->options;
     bool *wanted = options->component ? arena_new_array(&m->arena, bool, scene->component_count + 1)
                                       : NULL;
@@ -75,9 +75,9 @@ static KrsStatus open_fields(Measurer *m, KrsState *frame)
             field->low[k]  = options->within ? max2(range.low, options->low[k]) : range.low;
             field->high[k] = options->within ? min2(range.high, options->high[k]) : range.high;
         }
-        status = frame_copy_of(frame, &field->frame);
+        status = state_copy_of(state, &field->state);
         if (status == KRS_OK) {
-            frame_refresh_points(field->frame);
+            state_refresh_points(field->state);
             field_open(field, &m->arena);
             field->ranges.unroll = true;
         }
@@ -119,11 +119,11 @@ static void measure_all(Measurer *m)
         measure_lying(m);
 }
 
-static KrsStatus run(Measurer *m, KrsState *frame)
+static KrsStatus run(Measurer *m, KrsState *state)
 {
     KrsMeasures *measures = m->measures;
     jmp_buf      exhausted;
-    KrsStatus    status      = make_mesh(m, frame);
+    KrsStatus    status      = make_mesh(m, state);
     measures->wall.thickness = INFINITY;
     if (status != KRS_OK)
         return status;
@@ -137,7 +137,7 @@ static KrsStatus run(Measurer *m, KrsState *frame)
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
     find_box(m);
-    status = open_fields(m, frame);
+    status = open_fields(m, state);
     if (status == KRS_OK)
         measure_all(m);
     m->memory.exhausted = NULL;
@@ -158,13 +158,13 @@ static bool take_options(Measurer *m)
 static void close_measurer(Measurer *m)
 {
     for (int i = 0; i < MAX_PARTS; i++)
-        frame_free(m->fields[i].frame);
+        state_free(m->fields[i].state);
     krs_mesh_free(m->mesh);
     arena_free(&m->arena);
     free(m);
 }
 
-KrsStatus krs_measure(KrsState *frame, const KrsMeasureOptions *options, KrsMeasures **measures)
+KrsStatus krs_measure(KrsState *state, const KrsMeasureOptions *options, KrsMeasures **measures)
 {
     static const KrsMeasureOptions none   = {0};
     KrsStatus                      status = KRS_OUT_OF_MEMORY;
@@ -173,7 +173,7 @@ KrsStatus krs_measure(KrsState *frame, const KrsMeasureOptions *options, KrsMeas
     if (!m)
         return status;
     m->options      = options ? options : &none;
-    m->memory       = frame->scene->memory;
+    m->memory       = state->scene->memory;
     m->memory.used  = 0;
     m->memory.limit = m->options->memory_limit ? m->options->memory_limit : KRS_USUAL_MEMORY;
     m->arena.memory = &m->memory;
@@ -181,7 +181,7 @@ KrsStatus krs_measure(KrsState *frame, const KrsMeasureOptions *options, KrsMeas
     if (m->measures)
         m->measures->orientations = calloc(MAX_ORIENTATIONS, sizeof *m->measures->orientations);
     if (m->measures && m->measures->orientations)
-        status = take_options(m) ? run(m, frame) : KRS_BAD_ARGUMENT;
+        status = take_options(m) ? run(m, state) : KRS_BAD_ARGUMENT;
     if (status == KRS_OK)
         *measures = m->measures;
     else

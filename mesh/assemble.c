@@ -16,7 +16,7 @@ enum { MAX_VISITS = 1 << 20 };
 static const double ROUNDING_OF_MIRRORS = 1e-9;
 
 typedef struct Assembler {
-    KrsState             *frame;
+    KrsState             *state;
     const KrsMeshOptions *options;
     const Assembly       *from;
     KrsAssembly          *to;
@@ -30,12 +30,12 @@ typedef struct Assembler {
 
 static double number_of(const Assembler *a, Node node, int component)
 {
-    return a->frame->values[node].v[component];
+    return a->state->values[node].v[component];
 }
 
 static const Node *roots_at(const Assembler *a, uint32_t first)
 {
-    return roots_of(&a->frame->scene->roots, ROOTS_ASSEMBLY).items + first;
+    return roots_of(&a->state->scene->roots, ROOTS_ASSEMBLY).items + first;
 }
 
 static void read_mirror(const Assembler *a, uint32_t root, double normal[3], double *offset)
@@ -74,7 +74,7 @@ static void read_transform(const Assembler *a, const AssemblyTransform *from, Kr
 /* The items of the scene; behind them are one of what is not taken apart, and one of all. */
 static bool copy_items(Assembler *a)
 {
-    size_t       items = a->from->items.count, components = a->frame->scene->component_count;
+    size_t       items = a->from->items.count, components = a->state->scene->component_count;
     KrsAssembly *to  = a->to;
     to->items        = allocator_new(&to->allocator, items + 2, sizeof *to->items);
     to->transforms   = allocator_new(&to->allocator, a->from->transforms.count + components,
@@ -130,7 +130,7 @@ static bool has_cuts(Assembler *a, size_t number, char *asked)
 static bool is_wanted(const Assembler *a, size_t lowered)
 {
     return a->options->component == 0 ||
-           a->frame->scene->lowered[a->options->component - 1] == lowered;
+           a->state->scene->lowered[a->options->component - 1] == lowered;
 }
 
 /* False: none is. */
@@ -138,7 +138,7 @@ static bool choose_components(Assembler *a, char *asked)
 {
     const uint32_t *of_component = a->from->of_component;
     bool            any          = false;
-    for (size_t i = 0; i < a->frame->scene->component_count; i++) {
+    for (size_t i = 0; i < a->state->scene->component_count; i++) {
         a->apart[i] = is_wanted(a, i) && of_component[i] != NO_ITEM &&
                       !isinf(a->search.bounds[of_component[i]].ball.radius) &&
                       !has_cuts(a, of_component[i], asked);
@@ -161,10 +161,10 @@ static void add_last_items(Assembler *a)
 {
     KrsAssembly *to    = a->to;
     size_t       first = to->transform_count;
-    for (size_t i = 0; i < a->frame->scene->component_count; i++)
+    for (size_t i = 0; i < a->state->scene->component_count; i++)
         if (a->apart[i])
             place_still(to, a->from->of_component[i]);
-    for (size_t i = 0; i < a->frame->scene->component_count; i++)
+    for (size_t i = 0; i < a->state->scene->component_count; i++)
         if (is_wanted(a, i) && !a->apart[i]) {
             place_still(to, to->item_count++);
             break;
@@ -211,7 +211,7 @@ static KrsStatus mesh_item(Assembler *a, size_t number, const MeshSolid *solid)
     options.progress = a->options->progress ? report_progress : NULL;
     options.user     = a;
     a->meshed++;
-    return mesh_solid(a->frame, &options, solid, &a->to->items[number].mesh);
+    return mesh_solid(a->state, &options, solid, &a->to->items[number].mesh);
 }
 
 static KrsStatus mesh_part(Assembler *a, size_t number)
@@ -223,8 +223,8 @@ static KrsStatus mesh_part(Assembler *a, size_t number)
                                  .root_count = 1,
                                  .box        = item->box,
                                  .estimate   = item->estimate,
-                                 .plain      = has_one_material(a->frame->scene, NULL),
-                                 .steps      = materials_step(a->frame->scene, NULL),
+                                 .plain      = has_one_material(a->state->scene, NULL),
+                                 .steps      = materials_step(a->state->scene, NULL),
                                  .copy       = (const double(*)[4])a->to->items[number].first_copy};
     return mesh_item(a, number, &solid);
 }
@@ -232,7 +232,7 @@ static KrsStatus mesh_part(Assembler *a, size_t number)
 /* What is not taken apart, as one mesh. */
 static KrsStatus mesh_rest(Assembler *a, size_t number)
 {
-    const KrsScene *scene  = a->frame->scene;
+    const KrsScene *scene  = a->state->scene;
     MeshSolid       solid  = {.roots = malloc(solid_root_bytes(scene))};
     bool           *wanted = calloc(scene->component_count + 1, sizeof *wanted);
     KrsStatus       status = KRS_OUT_OF_MEMORY;
@@ -286,7 +286,7 @@ static void find_box(Assembler *a)
 /* What moves would stand still where it is not taken apart. */
 static bool stands_still(const Assembler *a)
 {
-    for (size_t i = 0; a->from->motions && i < a->frame->scene->component_count; i++)
+    for (size_t i = 0; a->from->motions && i < a->state->scene->component_count; i++)
         if (is_wanted(a, i) && !(a->apart && a->apart[i]) && a->from->motions[i].moves)
             return true;
     return false;
@@ -313,26 +313,26 @@ static KrsStatus assemble(Assembler *a)
     return status;
 }
 
-static bool is_possible(const KrsState *frame, const KrsMeshOptions *options)
+static bool is_possible(const KrsState *state, const KrsMeshOptions *options)
 {
-    return frame->scene->assembly.items.count > 0 && !options->within && frame->zone_count == 0 &&
-           zone_root(frame->scene) == NODE_NONE;
+    return state->scene->assembly.items.count > 0 && !options->within && state->zone_count == 0 &&
+           zone_root(state->scene) == NODE_NONE;
 }
 
-KrsStatus krs_assemble(KrsState *frame, const KrsMeshOptions *options, KrsAssembly **assembly)
+KrsStatus krs_assemble(KrsState *state, const KrsMeshOptions *options, KrsAssembly **assembly)
 {
     static const KrsMeshOptions none = {0};
     Assembler                   a    = {
-                             .frame = frame, .options = options ? options : &none, .from = &frame->scene->assembly};
+                             .state = state, .options = options ? options : &none, .from = &state->scene->assembly};
     *assembly = NULL;
-    if (a.options->component > frame->scene->shown_count || frame->scene->program.open_surfaces)
+    if (a.options->component > state->scene->shown_count || state->scene->program.open_surfaces)
         return KRS_BAD_ARGUMENT;
-    if (!is_possible(frame, a.options))
+    if (!is_possible(state, a.options))
         return stands_still(&a) ? KRS_BAD_SCENE : KRS_OK;
-    frame_refresh(frame);
-    a.to = allocator_new(&frame->scene->options.allocator, 1, sizeof *a.to);
+    state_refresh(state);
+    a.to = allocator_new(&state->scene->options.allocator, 1, sizeof *a.to);
     if (a.to)
-        a.to->allocator = frame->scene->options.allocator;
+        a.to->allocator = state->scene->options.allocator;
     KrsStatus status = a.to ? assemble(&a) : KRS_OUT_OF_MEMORY;
     if (status == KRS_OK && a.to->copies > 0)
         *assembly = a.to;
@@ -366,10 +366,10 @@ static bool has_mirrors(const Assembly *assembly)
     return false;
 }
 
-KrsStatus krs_assembly_transform(KrsState *frame, KrsAssembly *assembly)
+KrsStatus krs_assembly_transform(KrsState *state, KrsAssembly *assembly)
 {
-    Assembler a = {.frame = frame, .from = &frame->scene->assembly, .to = assembly};
-    frame_refresh(frame);
+    Assembler a = {.state = state, .from = &state->scene->assembly, .to = assembly};
+    state_refresh(state);
     for (size_t i = 0; i < a.from->transforms.count; i++)
         read_transform(&a, &a.from->transforms.items[i], &assembly->transforms[i]);
     if (!has_mirrors(a.from))
@@ -391,21 +391,21 @@ KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *m
     return KRS_OK;
 }
 
-size_t krs_component_beams(KrsState *frame, size_t index, KrsBeam *beams)
+size_t krs_component_beams(KrsState *state, size_t index, KrsBeam *beams)
 {
-    const KrsScene *scene = frame->scene;
-    if (index >= scene->shown_count || !scene->assembly.beams || frame->zone_count > 0 ||
+    const KrsScene *scene = state->scene;
+    if (index >= scene->shown_count || !scene->assembly.beams || state->zone_count > 0 ||
         zone_root(scene) != NODE_NONE)
         return 0;
     const AssemblyBeams *found = &scene->assembly.beams[index];
     const SceneBeam     *nodes = (const SceneBeam *)(roots_of(&scene->roots, ROOTS_ASSEMBLY).items +
                                                  found->root);
-    frame_refresh(frame);
+    state_refresh(state);
     for (size_t i = 0; beams && i < found->count; i++)
         for (int end = 0; end < 2; end++) {
-            beams[i].radii[end] = frame->values[nodes[i].radii[end]].v[0];
+            beams[i].radii[end] = state->values[nodes[i].radii[end]].v[0];
             for (int k = 0; k < 3; k++)
-                beams[i].ends[end][k] = frame->values[nodes[i].ends[end]].v[k];
+                beams[i].ends[end][k] = state->values[nodes[i].ends[end]].v[k];
         }
     return found->count;
 }

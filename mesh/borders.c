@@ -63,7 +63,7 @@ typedef struct Borders {
 /* A triangle in the scene; `margin` is the least weight that points have of each corner. */
 typedef struct Look {
     Borders  *b;
-    KrsState *frame;
+    KrsState *state;
     bool      asks;                                 /* whether the mesh is still wanted */
     double    corners[3][3], margin[3], heights[3]; /* of the corners */
     double    lengths[3];                           /* of the edges from them */
@@ -96,7 +96,7 @@ static void find_labels(Look *look, const double (*weights)[3], size_t count, ui
         for (int k = 0; k < 3; k++)
             add_scaled3(points[i], points[i], weights[i][k], look->corners[k]);
     }
-    if (frame_probe(look->frame, (const double(*)[3])points, count, look->b->normals, hits) !=
+    if (state_probe(look->state, (const double(*)[3])points, count, look->b->normals, hits) !=
         KRS_OK)
         atomic_store(&look->b->failed, true);
     else
@@ -291,7 +291,7 @@ static void look_at_some(void *task, size_t part, size_t parts)
 {
     enum { SOME = 16 };
     Borders *b    = task;
-    Look     look = {.b = b, .frame = b->frames[part], .asks = part == 0};
+    Look     look = {.b = b, .state = b->frames[part], .asks = part == 0};
     (void)parts;
     while (!atomic_load(&b->stopped) && !atomic_load(&b->failed)) {
         size_t begin = atomic_fetch_add(&b->next, SOME);
@@ -397,13 +397,13 @@ static void split_all(Borders *b)
         split_triangle(b, &splits, i);
 }
 
-static KrsStatus open_borders(Borders *b, KrsState *frame, const KrsMesh *mesh)
+static KrsStatus open_borders(Borders *b, KrsState *state, const KrsMesh *mesh)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
-        status = frame_copy_of(frame, &b->frames[i]);
+        status = state_copy_of(state, &b->frames[i]);
         if (status == KRS_OK)
-            frame_refresh_points(b->frames[i]);
+            state_refresh_points(b->frames[i]);
     }
     for (size_t i = 0; i < mesh->vertex_count && status == KRS_OK; i++) {
         array_reserve_large(&b->arena, &b->vertices);
@@ -439,13 +439,13 @@ static KrsStatus replace_mesh(const Borders *b, KrsMesh *mesh)
     return KRS_OK;
 }
 
-static KrsStatus split(Borders *b, KrsState *frame, KrsMesh *mesh)
+static KrsStatus split(Borders *b, KrsState *state, KrsMesh *mesh)
 {
     jmp_buf exhausted;
     b->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
-    KrsStatus status = open_borders(b, frame, mesh);
+    KrsStatus status = open_borders(b, state, mesh);
     for (; status == KRS_OK && b->round < MAX_ROUNDS && b->fresh.count > 0; b->round++) {
         b->mixed  = arena_new_array(&b->arena, bool, b->triangles.count);
         b->wishes = arena_new_array(&b->arena, Wish, b->triangles.count);
@@ -472,7 +472,7 @@ static double size_of(const KrsMesh *mesh)
     return size;
 }
 
-KrsStatus mesh_split_at_borders(KrsState *frame, const KrsMeshOptions *options,
+KrsStatus mesh_split_at_borders(KrsState *state, const KrsMeshOptions *options,
                                 const double (*copy)[4], KrsMesh      *mesh)
 {
     Borders b        = {.options = options, .copy = copy};
@@ -481,9 +481,9 @@ KrsStatus mesh_split_at_borders(KrsState *frame, const KrsMeshOptions *options,
     b.spacing        = fmax(SPACING * b.error, MIN_SPACING * scale * size_of(mesh));
     b.memory.limit   = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
     b.arena.memory   = &b.memory;
-    KrsStatus status = mesh->triangle_count > 0 ? split(&b, frame, mesh) : KRS_OK;
+    KrsStatus status = mesh->triangle_count > 0 ? split(&b, state, mesh) : KRS_OK;
     for (int i = 0; i < MAX_PARTS; i++)
-        frame_free(b.frames[i]);
+        state_free(b.frames[i]);
     arena_free(&b.arena);
     return status;
 }

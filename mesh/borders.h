@@ -12,7 +12,7 @@
  * stays the same.  Triangles are looked at about two errors apart, or a 500th of the size of the mesh if that is more.  `copy`: where in the scene a copy of the mesh is; NULL: it is where it
  * is.  Of the options it asks for error, memory_limit, progress and user.  On failure the mesh is as it was.
  */
-KrsStatus mesh_split_at_borders(KrsState *frame, const KrsMeshOptions *options,
+KrsStatus mesh_split_at_borders(KrsState *state, const KrsMeshOptions *options,
                                 const double (*copy)[4], KrsMesh      *mesh);
 
 #endif

@@ -44,7 +44,7 @@ static bool is_nothing(const Mesher *m)
     return m->low[0] >= m->high[0] || m->low[1] >= m->high[1] || m->low[2] >= m->high[2];
 }
 
-static KrsStatus open_fields(Mesher *m, KrsState *frame)
+static KrsStatus open_fields(Mesher *m, KrsState *state)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
@@ -52,9 +52,9 @@ static KrsStatus open_fields(Mesher *m, KrsState *frame)
         *field           = (MeshField){.solid = m->solid, .cut = m->options->within};
         memcpy(field->low, m->low, sizeof field->low);
         memcpy(field->high, m->high, sizeof field->high);
-        status = frame_copy_of(frame, &field->frame);
+        status = state_copy_of(state, &field->state);
         if (status == KRS_OK) {
-            frame_refresh_points(field->frame);
+            state_refresh_points(field->state);
             field_open(field, &m->arena);
         }
     }
@@ -64,7 +64,7 @@ static KrsStatus open_fields(Mesher *m, KrsState *frame)
 static void close_mesher(Mesher *m)
 {
     for (int i = 0; i < MAX_PARTS; i++)
-        frame_free(m->fields[i].frame);
+        state_free(m->fields[i].state);
     arena_free(&m->arena);
     free(m);
 }
@@ -142,14 +142,14 @@ static bool find_flat(Mesher *m)
     return true;
 }
 
-static KrsStatus run(Mesher *m, KrsState *frame, KrsMesh **mesh)
+static KrsStatus run(Mesher *m, KrsState *state, KrsMesh **mesh)
 {
     jmp_buf exhausted;
     m->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
     bool      draft  = false;
-    KrsStatus status = is_nothing(m) ? KRS_OK : open_fields(m, frame);
+    KrsStatus status = is_nothing(m) ? KRS_OK : open_fields(m, state);
     if (status == KRS_OK && !is_nothing(m) && !find_flat(m)) {
         draft = m->options->draft;
         m->error -= m->spared;
@@ -161,7 +161,7 @@ static KrsStatus run(Mesher *m, KrsState *frame, KrsMesh **mesh)
     } else
         m->spared = 0;
     if (status == KRS_OK)
-        status = copy_mesh(m, &frame->scene->options.allocator, mesh);
+        status = copy_mesh(m, &state->scene->options.allocator, mesh);
     if (status == KRS_OK)
         (*mesh)->estimate = m->solid->estimate || draft;
     m->memory.exhausted = NULL;
@@ -225,7 +225,7 @@ static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh
 }
 
 /* `*spared`: of the error, for leaving out triangles; `*handles`: as of Mesher. */
-static KrsStatus mesh_in_turn(KrsState *frame, const KrsMeshOptions *options,
+static KrsStatus mesh_in_turn(KrsState *state, const KrsMeshOptions *options,
                               const MeshSolid *solid, int turn, KrsMesh **mesh, double *spared,
                               size_t *handles)
 {
@@ -234,11 +234,11 @@ static KrsStatus mesh_in_turn(KrsState *frame, const KrsMeshOptions *options,
         return KRS_OUT_OF_MEMORY;
     m->options       = options;
     m->solid         = solid;
-    m->memory        = frame->scene->memory;
+    m->memory        = state->scene->memory;
     m->memory.used   = 0;
     m->memory.limit  = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
     m->arena.memory  = &m->memory;
-    KrsStatus status = options_are_valid(m, turn) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
+    KrsStatus status = options_are_valid(m, turn) ? run(m, state, mesh) : KRS_BAD_ARGUMENT;
     *spared          = m->spared;
     *handles         = m->handles;
     close_mesher(m);
@@ -246,7 +246,7 @@ static KrsStatus mesh_in_turn(KrsState *frame, const KrsMeshOptions *options,
 }
 
 /* Where a mesh has handles they are mostly those of its tetrahedra at a sharp edge, so others are tried. */
-static KrsStatus mesh_once(KrsState *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+static KrsStatus mesh_once(KrsState *state, const KrsMeshOptions *options, const MeshSolid *solid,
                            KrsMesh **mesh)
 {
     Step           step    = {options, 0, options->simplify ? MESHED : 1, 0};
@@ -258,30 +258,30 @@ static KrsStatus mesh_once(KrsState *frame, const KrsMeshOptions *options, const
     for (int turn = 0; turn < TURNS && status == KRS_OK && handles > 0; turn++) {
         krs_mesh_free(*mesh);
         *mesh  = NULL;
-        status = mesh_in_turn(frame, &these, solid, turn, mesh, &spared, &handles);
+        status = mesh_in_turn(state, &these, solid, turn, mesh, &spared, &handles);
     }
     return status == KRS_OK && spared > 0 ? leave_out(options, spared, mesh) : status;
 }
 
 /* Half of the error needs several times the memory: where there is not so much, no triangle is left out. */
-static KrsStatus mesh_all(KrsState *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+static KrsStatus mesh_all(KrsState *state, const KrsMeshOptions *options, const MeshSolid *solid,
                           KrsMesh **mesh)
 {
     KrsMeshOptions all    = *options;
-    KrsStatus      status = mesh_once(frame, options, solid, mesh);
+    KrsStatus      status = mesh_once(state, options, solid, mesh);
     all.simplify          = false;
     if (status == KRS_OUT_OF_MEMORY && options->simplify)
-        status = mesh_once(frame, &all, solid, mesh);
+        status = mesh_once(state, &all, solid, mesh);
     return status;
 }
 
 /* Triangles of one material each. */
-static KrsStatus split_at_borders(KrsState *frame, const KrsMeshOptions *options,
+static KrsStatus split_at_borders(KrsState *state, const KrsMeshOptions *options,
                                   const MeshSolid *solid, KrsMesh **mesh)
 {
     Step           step   = {options, ALL_MESHED, 1 - ALL_MESHED, 0};
     KrsMeshOptions these  = options_of_step(&step);
-    KrsStatus      status = mesh_split_at_borders(frame, &these, solid->copy, *mesh);
+    KrsStatus      status = mesh_split_at_borders(state, &these, solid->copy, *mesh);
     if (status == KRS_OK)
         return KRS_OK;
     krs_mesh_free(*mesh);
@@ -289,16 +289,16 @@ static KrsStatus split_at_borders(KrsState *frame, const KrsMeshOptions *options
     return status;
 }
 
-KrsStatus mesh_solid(KrsState *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+KrsStatus mesh_solid(KrsState *state, const KrsMeshOptions *options, const MeshSolid *solid,
                      KrsMesh **mesh)
 {
     bool           steps  = solid->steps && !solid->plain && !options->even;
     bool           split  = steps && !options->shape;
     Step           step   = {options, 0, split ? ALL_MESHED : 1, 0};
     KrsMeshOptions these  = options_of_step(&step);
-    KrsStatus      status = mesh_all(frame, &these, solid, mesh);
+    KrsStatus      status = mesh_all(state, &these, solid, mesh);
     if (status == KRS_OK && split)
-        status = split_at_borders(frame, options, solid, mesh);
+        status = split_at_borders(state, options, solid, mesh);
     if (status == KRS_OK) {
         (*mesh)->steps   = steps;
         (*mesh)->colored = options->simplify && !options->even && !solid->plain && !steps &&
@@ -307,9 +307,9 @@ KrsStatus mesh_solid(KrsState *frame, const KrsMeshOptions *options, const MeshS
     return status;
 }
 
-KrsStatus krs_mesh(KrsState *frame, const KrsMeshOptions *options, KrsMesh **mesh)
+KrsStatus krs_mesh(KrsState *state, const KrsMeshOptions *options, KrsMesh **mesh)
 {
-    const KrsScene *scene  = frame->scene;
+    const KrsScene *scene  = state->scene;
     size_t          number = options ? options->component : 0;
     MeshSolid       solid  = {.roots = malloc(solid_root_bytes(scene))};
     bool           *wanted = number ? calloc(scene->component_count + 1, sizeof *wanted) : NULL;
@@ -321,7 +321,7 @@ KrsStatus krs_mesh(KrsState *frame, const KrsMeshOptions *options, KrsMesh **mes
         if (wanted)
             wanted[scene->lowered[number - 1]] = true;
         solid_of_components(scene, wanted, &solid);
-        status = mesh_solid(frame, options ? options : &no_options, &solid, mesh);
+        status = mesh_solid(state, options ? options : &no_options, &solid, mesh);
     }
     free(wanted);
     free(solid.roots);

@@ -7,7 +7,7 @@
 #include "compiler/field/solid.h"
 
 /* As krs_mesh, which it is behind; the component of the options does not count. */
-KrsStatus mesh_solid(KrsState *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+KrsStatus mesh_solid(KrsState *state, const KrsMeshOptions *options, const MeshSolid *solid,
                      KrsMesh **mesh);
 
 #endif

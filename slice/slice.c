@@ -58,7 +58,7 @@ static bool find_box(KrsSlicer *slicer)
                                             : DEFAULT_ERROR * longest) == KRS_OK;
 }
 
-static KrsStatus open_fields(KrsSlicer *slicer, KrsState *frame)
+static KrsStatus open_fields(KrsSlicer *slicer, KrsState *state)
 {
     jmp_buf            exhausted;
     volatile KrsStatus status = KRS_OK;
@@ -71,9 +71,9 @@ static KrsStatus open_fields(KrsSlicer *slicer, KrsState *frame)
                       .solid = &slicer->solid, .cut = slicer->options.within, .skin = SKIN * slicer->size};
         memcpy(field->low, slicer->low, sizeof field->low);
         memcpy(field->high, slicer->high, sizeof field->high);
-        status = frame_copy_of(frame, &field->frame);
+        status = state_copy_of(state, &field->state);
         if (status == KRS_OK) {
-            frame_refresh_points(field->frame);
+            state_refresh_points(field->state);
             field_open(field, &slicer->arena);
             /* Derivatives of instance groups have no bounds; those of few instances have. */
             field->ranges.unroll = true;
@@ -82,9 +82,9 @@ static KrsStatus open_fields(KrsSlicer *slicer, KrsState *frame)
     return status;
 }
 
-static KrsStatus open_slicer(KrsSlicer *slicer, KrsState *frame)
+static KrsStatus open_slicer(KrsSlicer *slicer, KrsState *state)
 {
-    const KrsScene *scene  = frame->scene;
+    const KrsScene *scene  = state->scene;
     size_t          number = slicer->options.component;
     bool           *wanted = number ? calloc(scene->component_count + 1, sizeof *wanted) : NULL;
     slicer->solid.roots    = malloc(solid_root_bytes(scene));
@@ -99,17 +99,17 @@ static KrsStatus open_slicer(KrsSlicer *slicer, KrsState *frame)
     slicer->parts = parallel_parts();
     if (!find_box(slicer))
         return KRS_BAD_ARGUMENT;
-    KrsStatus status = open_fields(slicer, frame);
+    KrsStatus status = open_fields(slicer, state);
     if (status == KRS_OK && slicer->parts > 0 &&
         !narrow_box(&slicer->fields[0], slicer->low, slicer->high))
         slicer->parts = 0;
     return status;
 }
 
-KrsStatus krs_slicer_new(KrsState *frame, const KrsSliceOptions *options, KrsSlicer **result)
+KrsStatus krs_slicer_new(KrsState *state, const KrsSliceOptions *options, KrsSlicer **result)
 {
     static const KrsSliceOptions none  = {0};
-    const KrsScene              *scene = frame->scene;
+    const KrsScene              *scene = state->scene;
     *result                            = NULL;
     if (options && (options->component > scene->shown_count || !(options->error >= 0) ||
                     isinf(options->error)))
@@ -123,7 +123,7 @@ KrsStatus krs_slicer_new(KrsState *frame, const KrsSliceOptions *options, KrsSli
     slicer->memory.limit = slicer->options.memory_limit ? slicer->options.memory_limit
                                                         : KRS_USUAL_MEMORY;
     slicer->arena.memory = &slicer->memory;
-    KrsStatus status     = open_slicer(slicer, frame);
+    KrsStatus status     = open_slicer(slicer, state);
     if (status == KRS_OK)
         *result = slicer;
     else
@@ -136,7 +136,7 @@ void krs_slicer_free(KrsSlicer *slicer)
     if (!slicer)
         return;
     for (size_t i = 0; i < MAX_PARTS; i++)
-        frame_free(slicer->fields[i].frame);
+        state_free(slicer->fields[i].state);
     arena_free(&slicer->arena);
     free(slicer->solid.roots);
     free(slicer);

@@ -49,7 +49,7 @@ static bool open_subject(Subject *s, int spheres)
     if (krs_compile_text(text, strlen(text), "bench.krs", &options, &scene) != KRS_OK ||
         krs_state_new(scene, &s->frame) != KRS_OK)
         return false;
-    frame_refresh(s->frame);
+    state_refresh(s->frame);
     const Node root = distance_root(&scene->roots, 0);
     s->tape         = lane_tape_new(&scene->distance, &root, 1, true, 0, &s->arena);
     s->tape.scalars = arena_new_array(&s->arena, double, s->tape.scalar_count + 1);

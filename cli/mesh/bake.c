@@ -103,12 +103,12 @@ static Texel texel_of(const KrsHit *hit)
 }
 
 /* The surface is nearest along the gradient. */
-static KrsStatus move_to_surface(const Baking *b, KrsState *frame, double (*points)[3],
+static KrsStatus move_to_surface(const Baking *b, KrsState *state, double (*points)[3],
                                  size_t count)
 {
     double    distances[PROBES], off[PROBES][3], normals[PROBES][3];
     size_t    which[PROBES], moved = 0;
-    KrsStatus status = krs_distance(frame, (const double(*)[3])points, count, distances);
+    KrsStatus status = krs_distance(state, (const double(*)[3])points, count, distances);
     for (size_t i = 0; i < count && status == KRS_OK; i++) {
         double away = fabs(distances[i]);
         if (away <= ON_SURFACE * b->error || away > b->error)
@@ -117,25 +117,25 @@ static KrsStatus move_to_surface(const Baking *b, KrsState *frame, double (*poin
         which[moved++] = i;
     }
     if (moved > 0 && status == KRS_OK)
-        status = krs_normal(frame, (const double(*)[3])off, moved, normals);
+        status = krs_normal(state, (const double(*)[3])off, moved, normals);
     for (size_t k = 0; k < moved && status == KRS_OK; k++)
         add_scaled3(points[which[k]], off[k], -distances[which[k]], normals[k]);
     return status;
 }
 
-static KrsStatus bake_some(Baking *b, KrsState *frame, const size_t *pixels, double (*points)[3],
+static KrsStatus bake_some(Baking *b, KrsState *state, const size_t *pixels, double (*points)[3],
                            size_t count)
 {
     KrsHit    hits[PROBES];
-    KrsStatus status = move_to_surface(b, frame, points, count);
+    KrsStatus status = move_to_surface(b, state, points, count);
     if (status == KRS_OK)
-        status = krs_probe(frame, (const double(*)[3])points, count, hits);
+        status = krs_probe(state, (const double(*)[3])points, count, hits);
     for (size_t i = 0; i < count && status == KRS_OK; i++)
         b->texels[pixels[i]] = texel_of(&hits[i]);
     return status;
 }
 
-static KrsStatus bake_row(Baking *b, KrsState *frame, size_t row)
+static KrsStatus bake_row(Baking *b, KrsState *state, size_t row)
 {
     double    points[PROBES][3];
     size_t    pixels[PROBES], count = 0, end = (row + 1) * b->atlas.side;
@@ -146,7 +146,7 @@ static KrsStatus bake_row(Baking *b, KrsState *frame, size_t row)
             pixels[count++] = i;
         }
         if (count == PROBES || (i + 1 == end && count > 0)) {
-            status = bake_some(b, frame, pixels, points, count);
+            status = bake_some(b, state, pixels, points, count);
             count  = 0;
         }
     }
@@ -268,7 +268,7 @@ static KrsHit look_at_piece(const Baking *b, const Piece *piece)
         point_of(b, piece->spread.first, point);
     else
         mesh_middle(b->parts, piece->triangle, point);
-    krs_probe(b->meshing->frame, (const double(*)[3])point, 1, &hit);
+    krs_probe(b->meshing->state, (const double(*)[3])point, 1, &hit);
     return hit;
 }
 

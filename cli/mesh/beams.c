@@ -31,9 +31,9 @@ bool add_beams(const Meshing *meshing, size_t component, Bodies *bodies)
     if (component == 0 && krs_component_count(meshing->scene) > 1)
         return false;
     size_t index    = component > 0 ? component - 1 : 0;
-    body.beam_count = krs_component_beams(meshing->frame, index, NULL);
+    body.beam_count = krs_component_beams(meshing->state, index, NULL);
     body.beams      = arena_new_array(arena, KrsBeam, body.beam_count + 1);
-    krs_component_beams(meshing->frame, index, body.beams);
+    krs_component_beams(meshing->state, index, body.beams);
     if (!are_beams(body.beams, body.beam_count))
         return false;
     array_push(arena, bodies, body);
@@ -51,7 +51,7 @@ void take_beams(const Meshing *meshing, const Body *body, MeshBody *to)
         return;
     for (int k = 0; k < 3; k++)
         middle[k] = 0.5 * (body->beams[0].ends[0][k] + body->beams[0].ends[1][k]);
-    krs_probe(meshing->frame, (const double(*)[3])middle, 1, &hit);
+    krs_probe(meshing->state, (const double(*)[3])middle, 1, &hit);
     for (int k = 0; k < 3; k++)
         to->color[k] = color_byte(hit.color[k]);
 }

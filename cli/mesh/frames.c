@@ -74,7 +74,7 @@ static void frame_triangle(const Meshing *meshing, const MeshParts *parts, const
             double corner = parts->in_scene[triangle[i]][k];
             points[i][k]  = corner + STEP * (middle - corner);
         }
-    krs_probe(meshing->frame, (const double(*)[3])points, 3, hits);
+    krs_probe(meshing->state, (const double(*)[3])points, 3, hits);
     for (int i = 0; i < 3; i++)
         set_frame(part->first_copy, &hits[i], face, &frames[i]);
 }

@@ -204,7 +204,7 @@ static void group_triangles(const Meshing *meshing, const MeshParts *parts, Grou
         now = count - i < PROBES ? count - i : PROBES;
         for (size_t t = 0; t < now; t++)
             mesh_middle(parts, i + t, middles[t]);
-        krs_probe(meshing->frame, (const double(*)[3])middles, now, hits);
+        krs_probe(meshing->state, (const double(*)[3])middles, now, hits);
         for (size_t t = 0; t < now; t++)
             of[i + t] = take_triangle(groups, &hits[t],
                                       area_of(parts->in_scene, parts->triangles[i + t]));

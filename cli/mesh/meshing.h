@@ -47,7 +47,7 @@ typedef struct Summary {
 typedef struct Meshing {
     const Options  *options;
     const KrsScene *scene;
-    KrsState       *frame;
+    KrsState       *state;
     KrsMeshOptions  how;
     double          scale; /* from the scene to the file */
     Progress        progress;

@@ -53,11 +53,11 @@ static bool take_matrix(void *user, const KrsItem *item, const double matrix[3][
 static KrsStatus sample(Motion *motion, double frame, Matrix *matrices)
 {
     const Options *options = motion->meshing->options;
-    KrsStatus      status  = scene_set_time(options, motion->meshing->frame,
+    KrsStatus      status  = scene_set_time(options, motion->meshing->state,
                                             options->time + frame / options->fps);
     if (status != KRS_OK)
         return status;
-    status = krs_assembly_transform(motion->meshing->frame, motion->assembly);
+    status = krs_assembly_transform(motion->meshing->state, motion->assembly);
     if (status == KRS_BAD_SCENE)
         say("at frame %g a mirror cuts what moves", frame);
     motion->to      = matrices;

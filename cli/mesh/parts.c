@@ -147,7 +147,7 @@ static void find_colors(const Meshing *meshing, Joined *joined)
     KrsHit hits[PROBES];
     for (size_t i = 0, now; i < joined->vertex_count; i += now) {
         now = joined->vertex_count - i < PROBES ? joined->vertex_count - i : PROBES;
-        krs_probe(meshing->frame, (const double(*)[3])joined->places + i, now, hits);
+        krs_probe(meshing->state, (const double(*)[3])joined->places + i, now, hits);
         for (size_t k = 0; k < 3 * now; k++)
             colors[i + k / 3][k % 3] = color_byte(hits[k / 3].color[k % 3]);
     }
@@ -171,7 +171,7 @@ static void find_corner_colors(const Meshing *meshing, const MeshPart *part, Mes
         now = end - i < PROBES ? end - i : PROBES;
         find_middles(parts, i, now, middles);
         if (part->steps)
-            krs_probe(meshing->frame, (const double(*)[3])middles, now, hits);
+            krs_probe(meshing->state, (const double(*)[3])middles, now, hits);
         for (size_t k = 0; k < 3 * now; k++) {
             unsigned char *color = colors[i + k / 3][k % 3];
             memcpy(color, parts->colors[parts->triangles[i + k / 3][k % 3]], 3);

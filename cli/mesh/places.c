@@ -46,7 +46,7 @@ static bool walk(const Meshing *meshing, const Triangle *triangle, int corner,
     double points[STEPS][3], found[STEPS][2], step[2] = {first[0] / STEPS, first[1] / STEPS};
     for (int i = 0; i < STEPS; i++)
         point_between(triangle->middle, triangle->corners[corner], (i + 1.0) / STEPS, points[i]);
-    if (krs_texture_uvs(meshing->frame, (const double(*)[3])points, STEPS, found) != KRS_OK)
+    if (krs_texture_uvs(meshing->state, (const double(*)[3])points, STEPS, found) != KRS_OK)
         return false;
     memcpy(place, triangle->around[0], 2 * sizeof *place);
     for (int k = 0; k < 2; k++)
@@ -99,7 +99,7 @@ static KrsStatus find_all(const Meshing *meshing, const double (*points)[3], siz
     KrsStatus status = KRS_OK;
     for (size_t i = 0, now; i < count && status == KRS_OK; i += now) {
         now    = count - i < PROBES ? count - i : PROBES;
-        status = krs_texture_uvs(meshing->frame, points + i, now, places + i);
+        status = krs_texture_uvs(meshing->state, points + i, now, places + i);
     }
     return status;
 }
@@ -121,7 +121,7 @@ static bool place_triangle(const Meshing *meshing, const MeshParts *parts, size_
             around[i][k] += STEP * (triangle.corners[i][k] - triangle.corners[0][k]);
     }
     memset(places, 0, 3 * sizeof *places);
-    if (krs_texture_uvs(meshing->frame, (const double(*)[3])around, 3, triangle.around) != KRS_OK)
+    if (krs_texture_uvs(meshing->state, (const double(*)[3])around, 3, triangle.around) != KRS_OK)
         return false;
     return isnan(triangle.around[0][0]) || continue_places(meshing, &triangle, places);
 }

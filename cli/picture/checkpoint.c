@@ -271,7 +271,7 @@ static KrsStatus add_samples(Checkpoint *checkpoint, const CheckpointFrame *fram
         const uint32_t portion = due < 1 ? 1 : due < left ? (uint32_t)due : left;
         checkpoint->done       = (double)before / all;
         checkpoint->share      = (double)portion / all;
-        status                 = krs_film_add(film, frame->frame, NULL, portion);
+        status                 = krs_film_add(film, frame->state, NULL, portion);
         const double end       = clock_now();
         seconds                = fmax((end - start) / portion, 1e-9);
         if (status == KRS_OK && portion < left && end - written >= between) {

@@ -18,7 +18,7 @@ typedef struct Checkpoint {
 /* What the samples of a frame are made by. */
 typedef struct CheckpointFrame {
     KrsRendering           *rendering;
-    KrsState               *frame;
+    KrsState               *state;
     const KrsRenderOptions *how;
     uint32_t                samples, number;
 } CheckpointFrame;

@@ -14,7 +14,7 @@ typedef struct Render {
     const char     **outputs;
     size_t           output_count;
     KrsScene        *scene;
-    KrsState        *frame;
+    KrsState        *state;
     KrsRenderer     *renderer;
     KrsRendering    *rendering;
     KrsRenderOptions how;

@@ -251,7 +251,7 @@ static KrsStatus say_outside(const Options *options, const KrsParameter *paramet
 
 /* Why krs_state_set refused a setting. */
 static KrsStatus say_refused_setting(const Options *options, const KrsScene *scene,
-                                     const KrsState *frame, const Setting *setting)
+                                     const KrsState *state, const Setting *setting)
 {
     KrsParameter parameter;
     size_t       index = 0;
@@ -267,7 +267,7 @@ static KrsStatus say_refused_setting(const Options *options, const KrsScene *sce
     for (size_t i = 0; i < setting->count; i++)
         if (!(setting->values[i] >= parameter.low[i] && setting->values[i] <= parameter.high[i]))
             return say_outside(options, &parameter, i, setting->values[i]);
-    const char *place = krs_state_unbounded(frame);
+    const char *place = krs_state_unbounded(state);
     if (place)
         return say_usage(options,
                          "with this value of param `%s` the slope of the expression at %s "
@@ -277,39 +277,39 @@ static KrsStatus say_refused_setting(const Options *options, const KrsScene *sce
                      setting->name);
 }
 
-KrsStatus scene_set_time(const Options *options, KrsState *frame, double time)
+KrsStatus scene_set_time(const Options *options, KrsState *state, double time)
 {
-    if (krs_state_set_time(frame, time) == KRS_OK)
+    if (krs_state_set_time(state, time) == KRS_OK)
         return KRS_OK;
-    const char *place = krs_state_unbounded(frame);
+    const char *place = krs_state_unbounded(state);
     if (place)
         return say_usage(options, "at time %g the slope of the expression at %s has no bound", time,
                          place);
     return say_usage(options, "at time %g something in the scene is not finite", time);
 }
 
-KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsState **frame)
+KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsState **state)
 {
-    KrsStatus status = krs_state_new(scene, frame);
+    KrsStatus status = krs_state_new(scene, state);
     if (status != KRS_OK)
         return say_status(status, options->files.items[0]);
     for (size_t i = 0; i < options->settings.count && status == KRS_OK; i++) {
         const Setting *setting = &options->settings.items[i];
-        status = krs_state_set(*frame, setting->name, setting->values, setting->count);
+        status = krs_state_set(*state, setting->name, setting->values, setting->count);
         if (status == KRS_BAD_ARGUMENT)
-            say_refused_setting(options, scene, *frame, setting);
+            say_refused_setting(options, scene, *state, setting);
     }
     if (status == KRS_OK)
-        status = krs_state_set_zones(*frame, (const double(*)[4])options->zones,
+        status = krs_state_set_zones(*state, (const double(*)[4])options->zones,
                                      options->zone_count);
     if (status == KRS_OK)
-        status = scene_set_time(options, *frame, options->time);
+        status = scene_set_time(options, *state, options->time);
     if (status == KRS_OK && shows_pictures(options) &&
         (options->settings.count > 0 || options->time != 0))
-        status = krs_state_fit_camera(*frame);
+        status = krs_state_fit_camera(*state);
     if (status != KRS_OK) {
-        krs_state_free(*frame);
-        *frame = NULL;
+        krs_state_free(*state);
+        *state = NULL;
     }
     return status;
 }

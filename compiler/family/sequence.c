@@ -142,7 +142,8 @@ typedef struct SequenceState {
 } SequenceState;
 
 /* Before the first `count` stages, up to the next sphere among them. */
-static SequenceState *state_new(Lowering *l, const Shape *krs, LowerContext context, uint32_t count)
+static SequenceState *sequence_state_new(Lowering *l, const Shape *krs, LowerContext context,
+                                         uint32_t count)
 {
     SequenceState *state = arena_new(l->scratch, SequenceState);
     uint32_t       run   = 0;
@@ -284,7 +285,7 @@ static SequenceState *enter_sphere(Lowering *l, SequenceState *state, uint32_t i
     normal_sphere(l, &state->path, stage, point, &fold);
     LowerContext context  = context_behind(&state->path, state->context, fold.point);
     context.reach         = reach_behind_inversion(context.reach);
-    SequenceState *behind = state_new(l, krs, context, index);
+    SequenceState *behind = sequence_state_new(l, krs, context, index);
     behind->id            = state->id;
     behind->level         = state->level - 1;
     behind->nearest       = state->nearest;
@@ -322,7 +323,7 @@ static SequenceState *leave_sphere(Lowering *l, SequenceState *state)
 
 Lowered lower_krs(Lowering *l, const Shape *shape, LowerContext context)
 {
-    SequenceState *state = state_new(l, shape, context, shape->stage_count);
+    SequenceState *state = sequence_state_new(l, shape, context, shape->stage_count);
     watch_orbit(l, state);
     for (uint32_t i = shape->stage_count; i-- > 0;) {
         const SequenceStage *stage = &shape->stages[i];

@@ -11,12 +11,12 @@
 static LaneTape make_tape(const MeshField *field, Arena *arena)
 {
     const MeshSolid *solid = field->solid;
-    const Tape      *of    = solid->tape ? solid->tape : &field->frame->tapes.distance;
+    const Tape      *of    = solid->tape ? solid->tape : &field->state->tapes.distance;
     LaneTape tape = lane_tape_new_steep(of, solid->roots, solid->root_count + solid->zoned, true,
                                         solid->zoned, arena);
     tape.output_count = 1;
     tape.scalars      = arena_new_array(arena, double, tape.scalar_count + 1);
-    lane_tape_scalars(&tape, field->frame->values, tape.scalars);
+    lane_tape_scalars(&tape, field->state->values, tape.scalars);
     return tape;
 }
 
@@ -33,9 +33,9 @@ void field_open(MeshField *field, Arena *arena)
 {
     field->tape          = make_tape(field, arena);
     field->work          = lane_work_in(arena_alloc(arena, lane_work_bytes(&field->tape), 1),
-                                        field->frame->values);
+                                        field->state->values);
     field->ranges        = lane_ranges_new(&field->tape, arena);
-    field->ranges.values = field->frame->values;
+    field->ranges.values = field->state->values;
     field->slopes        = lane_slopes_new(&field->tape, arena);
     field->hessians      = lane_hessians_new(&field->tape, arena);
     field->region_bytes  = bytes_of_region(&field->tape);
@@ -139,10 +139,10 @@ static double distance_to_cut(const MeshField *field, const double point[3])
     return outside > 0 ? sqrt(outside) : inside;
 }
 
-static double cut_by_zones(const KrsState *frame, const double point[3], double distance)
+static double cut_by_zones(const KrsState *state, const double point[3], double distance)
 {
-    for (size_t i = 0; i < frame->zone_count; i++)
-        distance = max2(distance, frame->zones[i][3] - distance3(point, frame->zones[i]));
+    for (size_t i = 0; i < state->zone_count; i++)
+        distance = max2(distance, state->zones[i][3] - distance3(point, state->zones[i]));
     return distance;
 }
 
@@ -152,7 +152,7 @@ void field_distances(const MeshField *field, const double (*points)[3], size_t c
     lane_run(tape_at(field, points, count), &field->work, LANE_DOUBLE,
              (LanePoints){.points = points, .count = count}, 0, 1, distances);
     for (size_t i = 0; i < count; i++) {
-        distances[i] = cut_by_zones(field->frame, points[i], distances[i]);
+        distances[i] = cut_by_zones(field->state, points[i], distances[i]);
         if (field->cut)
             distances[i] = max2(distances[i], distance_to_cut(field, points[i]));
         distances[i] -= field->skin;
@@ -200,7 +200,7 @@ static Range range_of_cuts(const MeshField *field, Box box)
     double middle[3];
     for (int k = 0; k < 3; k++)
         middle[k] = 0.5 * (box.axis[k].low + box.axis[k].high);
-    double cut = cut_by_zones(field->frame, middle, -INFINITY);
+    double cut = cut_by_zones(field->state, middle, -INFINITY);
     if (field->cut)
         cut = max2(cut, distance_to_cut(field, middle));
     return cut > -INFINITY ? range_around(cut, box) : range_of(-INFINITY);
@@ -208,7 +208,7 @@ static Range range_of_cuts(const MeshField *field, Box box)
 
 bool field_is_cut(const MeshField *field, Box box)
 {
-    return (field->cut || field->frame->zone_count > 0) &&
+    return (field->cut || field->state->zone_count > 0) &&
            lane_ranges_run(tape_in(field, &box), &field->ranges, box).low <
                range_of_cuts(field, box).high;
 }
@@ -251,7 +251,7 @@ bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope
     *range               = range_max(own, cut);
     if (range->low > 0 || range->high < 0)
         return false;
-    if (own.high <= cut.low && field->frame->zone_count == 0)
+    if (own.high <= cut.low && field->state->zone_count == 0)
         return slope_of_cut(field, box, slope);
     if (lane_is_boundless(tape, &field->ranges, tape->outputs[0]) ||
         !lane_slopes_run(tape, &field->ranges, field->slopes, slope))
@@ -269,7 +269,7 @@ bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slo
     Range           cut  = range_of_cuts(field, box);
     *range               = range_max(own, cut);
     *hessian             = (LaneHessian){.known = true, .flat = true};
-    if (own.high <= cut.low && field->frame->zone_count == 0)
+    if (own.high <= cut.low && field->state->zone_count == 0)
         return slope_of_cut(field, box, slope);
     return own.low >= cut.high && !lane_is_undecided(tape, &field->ranges) &&
            !lane_is_boundless(tape, &field->ranges, tape->outputs[0]) &&

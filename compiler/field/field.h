@@ -25,7 +25,7 @@ enum { MAX_REGIONS = 8, MAX_FIELD_POINTS = LANES };
 
 /* For one thread. */
 typedef struct MeshField {
-    KrsState        *frame; /* its own */
+    KrsState        *state; /* its own */
     const MeshSolid *solid;
     bool             cut; /* nothing is solid outside of the box */
     double           low[3], high[3];

@@ -97,14 +97,14 @@ static bool camera_moves(const Graph *graph, const SceneCamera *camera)
 }
 
 /* The pictures of all cameras; 0: one of them moves, has a lens, or frames all there is. */
-static size_t find_pyramids(const Compilation *c, KrsState *frame, Pyramid *pyramids)
+static size_t find_pyramids(const Compilation *c, KrsState *state, Pyramid *pyramids)
 {
     KrsView view;
     size_t  count = c->elaborated.cameras.count;
     for (size_t i = 0; i < count; i++) {
         const SceneCamera *camera = &c->elaborated.cameras.items[i];
         if (camera->standing_in || camera->lens || camera_moves(c->elaborated.graph, camera) ||
-            frame_view(frame, i, &view) != KRS_OK)
+            state_view(state, i, &view) != KRS_OK)
             return 0;
         pyramids[i] = pyramid_of(&view.camera, widest_aspect(&view.image));
     }
@@ -150,7 +150,7 @@ static void warn_of_unseen(Compilation *c, const Pyramid *pyramids, size_t count
     }
 }
 
-static void warn_of_inside(Compilation *c, KrsState *frame)
+static void warn_of_inside(Compilation *c, KrsState *state)
 {
     for (size_t i = 0; i < c->elaborated.cameras.count; i++) {
         const SceneCamera *camera = &c->elaborated.cameras.items[i];
@@ -158,9 +158,9 @@ static void warn_of_inside(Compilation *c, KrsState *frame)
         KrsHit             hit;
         double             distance;
         const double(*eye)[3] = (const double(*)[3])view.camera.eye;
-        if (camera->standing_in || frame_view(frame, i, &view) != KRS_OK ||
-            krs_distance(frame, eye, 1, &distance) != KRS_OK || !(distance < 0) ||
-            krs_probe(frame, eye, 1, &hit) != KRS_OK || hit.component == 0)
+        if (camera->standing_in || state_view(state, i, &view) != KRS_OK ||
+            krs_distance(state, eye, 1, &distance) != KRS_OK || !(distance < 0) ||
+            krs_probe(state, eye, 1, &hit) != KRS_OK || hit.component == 0)
             continue;
         const Component *around = &c->elaborated.shown.items[hit.component - 1];
         Diag            *diag   = diag_add(&c->diags, DIAG_CAMERA_INSIDE, camera->span,
@@ -184,14 +184,14 @@ static double brightest_value(const KrsView *view, const KrsLight *light, double
 }
 
 /* A bound on the distance makes a light brighter than it is, so it is not blamed without cause. */
-static void warn_of_dim_light(Compilation *c, KrsState *frame, const KrsView *view, size_t index)
+static void warn_of_dim_light(Compilation *c, KrsState *state, const KrsView *view, size_t index)
 {
     const SceneLight *light = &c->elaborated.lights.items[index];
     const Graph      *graph = c->elaborated.graph;
     double            distance;
     if (!light->positional || !graph_is_constant(graph, light->nodes.vector) ||
         !graph_is_constant(graph, light->nodes.color) ||
-        krs_distance(frame, &view->lights[index].vector, 1, &distance) != KRS_OK ||
+        krs_distance(state, &view->lights[index].vector, 1, &distance) != KRS_OK ||
         !(distance > 0) || !isfinite(distance))
         return;
     double value = brightest_value(view, &view->lights[index], distance);
@@ -224,19 +224,19 @@ static const Component *plane_before(const Compilation *c, const double directio
 }
 
 /* The solid around a light, all of which is in it; what lets light through is none. */
-static const Component *solid_around(const Compilation *c, KrsState *frame, const KrsLight *light)
+static const Component *solid_around(const Compilation *c, KrsState *state, const KrsLight *light)
 {
     const double reach = light->softness + 0.5 * hypot(light->size[0], light->size[1]);
     double       distance;
     KrsHit       hit;
-    if (krs_distance(frame, &light->vector, 1, &distance) != KRS_OK || !(distance < -reach) ||
-        krs_probe(frame, &light->vector, 1, &hit) != KRS_OK || hit.component == 0)
+    if (krs_distance(state, &light->vector, 1, &distance) != KRS_OK || !(distance < -reach) ||
+        krs_probe(state, &light->vector, 1, &hit) != KRS_OK || hit.component == 0)
         return NULL;
     const Component *shown = &c->elaborated.shown.items[hit.component - 1];
     return c->is_medium[shown->lowered] ? NULL : shown;
 }
 
-static void warn_of_hidden_light(Compilation *c, KrsState *frame, const KrsView *view, size_t index)
+static void warn_of_hidden_light(Compilation *c, KrsState *state, const KrsView *view, size_t index)
 {
     const SceneLight *light = &c->elaborated.lights.items[index];
     const KrsLight   *now   = &view->lights[index];
@@ -245,7 +245,7 @@ static void warn_of_hidden_light(Compilation *c, KrsState *frame, const KrsView 
         !graph_is_constant(graph, light->nodes.softness) ||
         !graph_is_constant(graph, light->nodes.size))
         return;
-    const Component *before = light->positional ? solid_around(c, frame, now)
+    const Component *before = light->positional ? solid_around(c, state, now)
                                                 : plane_before(c, now->vector);
     if (!before)
         return;
@@ -261,28 +261,28 @@ static void warn_of_hidden_light(Compilation *c, KrsState *frame, const KrsView 
     diag_secondary(&c->diags, diag, before->span, light->positional ? "this solid" : "this plane");
 }
 
-static void warn_of_lights(Compilation *c, KrsState *frame)
+static void warn_of_lights(Compilation *c, KrsState *state)
 {
     KrsView view;
-    if (c->elaborated.cameras.count == 0 || frame_view(frame, 0, &view) != KRS_OK)
+    if (c->elaborated.cameras.count == 0 || state_view(state, 0, &view) != KRS_OK)
         return;
     for (size_t i = 0; i < c->elaborated.lights.count; i++) {
-        warn_of_dim_light(c, frame, &view, i);
-        warn_of_hidden_light(c, frame, &view, i);
+        warn_of_dim_light(c, state, &view, i);
+        warn_of_hidden_light(c, state, &view, i);
     }
 }
 
 KrsStatus pass_visibility(Compilation *c)
 {
     Pyramid  *pyramids = arena_new_array(&c->scratch, Pyramid, c->elaborated.cameras.count + 1);
-    KrsState *frame;
-    KrsStatus status = frame_new(c->scene, &frame);
+    KrsState *state;
+    KrsStatus status = state_new(c->scene, &state);
     if (status != KRS_OK)
         return status;
-    warn_of_unseen(c, pyramids, find_pyramids(c, frame, pyramids));
-    warn_of_inside(c, frame);
-    warn_of_lights(c, frame);
-    frame_free(frame);
+    warn_of_unseen(c, pyramids, find_pyramids(c, state, pyramids));
+    warn_of_inside(c, state);
+    warn_of_lights(c, state);
+    state_free(state);
     return KRS_OK;
 }
 

@@ -50,7 +50,7 @@ KrsStatus krs_refute(const char *text, size_t length, const char *name, const Kr
 
 /* As krs_distance, but as shaders find it: where the clearance of a grid's cell is less than the
    distance to the parts that its list has, it is that clearance (graph/grid.h). */
-KrsStatus krs_distance_bound(KrsState *frame, const double (*points)[3], size_t count,
+KrsStatus krs_distance_bound(KrsState *state, const double (*points)[3], size_t count,
                              double *distances);
 
 /* A pass of the compiler: a row of passes.def. */

@@ -50,7 +50,7 @@ typedef struct Rays {
     double     seen[2 * ROUNDS * RAYS][3];
     size_t     seen_count;
     Box        box;    /* around what is seen */
-    const Box *boxes;  /* of components in the frame: frame_find_boxes */
+    const Box *boxes;  /* of components in the frame: state_find_boxes */
     bool       apart;  /* they keep away from what has no end, as a floor */
     uint64_t   most;   /* operations of the frame, at the end */
     RayLimits  limits; /* of the round */
@@ -105,15 +105,15 @@ static void make_rays(const Ball *ball, int count, Rays *rays)
     }
 }
 
-static void begin_round(const KrsState *frame, Rays *rays)
+static void begin_round(const KrsState *state, Rays *rays)
 {
-    uint64_t left = frame->ran < rays->most ? rays->most - frame->ran : 0;
-    rays->limits  = (RayLimits){MAX_STEPS, frame->ran + left / SHARE};
+    uint64_t left = state->ran < rays->most ? rays->most - state->ran : 0;
+    rays->limits  = (RayLimits){MAX_STEPS, state->ran + left / SHARE};
 }
 
-static void note_hit(KrsState *frame, const KrsHit *hit, Rays *rays)
+static void note_hit(KrsState *state, const KrsHit *hit, Rays *rays)
 {
-    if (!hit->hit || !box_is_finite(frame_box(frame, rays->boxes, hit->component - 1)))
+    if (!hit->hit || !box_is_finite(state_box(state, rays->boxes, hit->component - 1)))
         return;
     memcpy(rays->seen[rays->seen_count++], hit->point, sizeof hit->point);
     rays->box = box_hull(rays->box, box_of_point(hit->point));
@@ -122,19 +122,19 @@ static void note_hit(KrsState *frame, const KrsHit *hit, Rays *rays)
 /* Casts rays and notes what they hit of bounded components, as long as they do not take too much; false
    after a few unresolved ones.  Distances that are much too short need many steps, and then the camera
    is placed by what is seen so far. */
-static bool cast_rays(KrsState *frame, Rays *rays, int count, double radius)
+static bool cast_rays(KrsState *state, Rays *rays, int count, double radius)
 {
     const uint64_t most       = rays->limits.ran;
     int            unresolved = 0;
-    for (int i = 0; i < count && unresolved <= MAX_UNRESOLVED && frame->ran < most; i += BATCH) {
+    for (int i = 0; i < count && unresolved <= MAX_UNRESOLVED && state->ran < most; i += BATCH) {
         int now = count - i < BATCH ? count - i : BATCH;
-        if (frame_raycast(frame, (const double(*)[3])rays->origins + i,
+        if (state_raycast(state, (const double(*)[3])rays->origins + i,
                           (const double(*)[3])rays->directions + i, (size_t)now, 4 * radius,
                           1e-3 * radius, rays->limits, rays->hits) != KRS_OK)
             return false;
         for (const KrsHit *hit = rays->hits; hit < rays->hits + now; hit++) {
-            note_hit(frame, hit, rays);
-            unresolved += hit->unresolved && frame->ran < most;
+            note_hit(state, hit, rays);
+            unresolved += hit->unresolved && state->ran < most;
         }
     }
     return unresolved <= MAX_UNRESOLVED;
@@ -201,7 +201,7 @@ static void halve_cells(Cells *cells)
 
 /* Leaves out the cells that are inside of a box, and those that the distance at their middle shows
    to be empty. */
-static void reduce_cells(KrsState *frame, const Box *known, Cells *cells)
+static void reduce_cells(KrsState *state, const Box *known, Cells *cells)
 {
     size_t outside = 0, kept = 0;
     for (size_t i = 0; i < cells->count; i++)
@@ -209,7 +209,7 @@ static void reduce_cells(KrsState *frame, const Box *known, Cells *cells)
             cells->boxes[outside] = cells->boxes[i];
             box_centre(cells->boxes[i], cells->middles[outside++]);
         }
-    if (krs_distance(frame, (const double(*)[3])cells->middles, outside, cells->distances) !=
+    if (krs_distance(state, (const double(*)[3])cells->middles, outside, cells->distances) !=
         KRS_OK)
         outside = 0;
     for (size_t i = 0; i < outside; i++)
@@ -221,13 +221,13 @@ static void reduce_cells(KrsState *frame, const Box *known, Cells *cells)
 }
 
 /* Leaves out the cells that are next to what has no end. */
-static void keep_separate(KrsState *frame, const Rays *rays, Cells *cells)
+static void keep_separate(KrsState *state, const Rays *rays, Cells *cells)
 {
     size_t kept = 0;
-    frame_refresh_points(frame);
-    for (size_t i = 0; i < cells->count && frame->ran < rays->limits.ran; i++) {
-        uint32_t nearest = frame_nearest_component(frame, cells->middles[i]);
-        if (nearest == 0 || !box_is_finite(frame_box(frame, rays->boxes, nearest - 1)))
+    state_refresh_points(state);
+    for (size_t i = 0; i < cells->count && state->ran < rays->limits.ran; i++) {
+        uint32_t nearest = state_nearest_component(state, cells->middles[i]);
+        if (nearest == 0 || !box_is_finite(state_box(state, rays->boxes, nearest - 1)))
             continue;
         memcpy(cells->middles[kept], cells->middles[i], sizeof *cells->middles);
         cells->boxes[kept++] = cells->boxes[i];
@@ -237,27 +237,27 @@ static void keep_separate(KrsState *frame, const Rays *rays, Cells *cells)
 
 /* Finds cells of a box that may not be empty and are not inside of another one.  Where there are too
    many they remain larger. */
-static void find_cells(KrsState *frame, Box box, const Rays *rays, const Box *known, size_t most,
+static void find_cells(KrsState *state, Box box, const Rays *rays, const Box *known, size_t most,
                        Cells *cells)
 {
     cells->count    = 1;
     cells->boxes[0] = box;
-    for (int i = 0; i < HALVINGS && cells->count <= most && frame->ran < rays->limits.ran; i++) {
+    for (int i = 0; i < HALVINGS && cells->count <= most && state->ran < rays->limits.ran; i++) {
         halve_cells(cells);
-        reduce_cells(frame, known, cells);
+        reduce_cells(state, known, cells);
         if (rays->apart)
-            keep_separate(frame, rays, cells);
+            keep_separate(state, rays, cells);
     }
 }
 
 /* Makes a ray from around the ball to the point of a surface that is next to the middle of a cell, as
    far as distance and normal there tell it. */
-static void make_ray_to_cell(KrsState *frame, const Ball *ball, int i, int count,
+static void make_ray_to_cell(KrsState *state, const Ball *ball, int i, int count,
                              const double middle[3], Rays *rays)
 {
     KrsHit near = {.distance = 0};
     double to[3];
-    krs_probe(frame, (const double(*)[3])middle, 1, &near);
+    krs_probe(state, (const double(*)[3])middle, 1, &near);
     for (int k = 0; k < 3; k++)
         to[k] = (middle[k] - near.distance * near.normal[k] - ball->centre[k]) / ball->radius;
     make_ray(ball, i, count, to, rays);
@@ -265,33 +265,33 @@ static void make_ray_to_cell(KrsState *frame, const Ball *ball, int i, int count
 
 /* Casts rays to cells in which there may be something that is not seen yet, until none hits anything
    outside of what is seen and a margin. */
-static void search_beyond(KrsState *frame, Box box, int most, double margin, Cells *cells,
+static void search_beyond(KrsState *state, Box box, int most, double margin, Cells *cells,
                           Rays *rays)
 {
     Ball outer = ball_around(box);
     bool more  = true;
     for (int round = 0; round < ROUNDS && more; round++) {
         Box known = box_grow(rays->box, margin);
-        begin_round(frame, rays);
-        find_cells(frame, box, rays, &known, (size_t)most * CELLS_A_RAY, cells);
+        begin_round(state, rays);
+        find_cells(state, box, rays, &known, (size_t)most * CELLS_A_RAY, cells);
         int wished = cells->count < (size_t)most ? (int)cells->count : most, count = 0;
         /* If there are more cells than rays, to some. */
-        for (; count < wished && frame->ran < rays->limits.ran; count++) {
+        for (; count < wished && state->ran < rays->limits.ran; count++) {
             size_t cell = (size_t)spread(count, wished) * cells->count / (size_t)wished;
-            make_ray_to_cell(frame, &outer, count, wished, cells->middles[cell], rays);
+            make_ray_to_cell(state, &outer, count, wished, cells->middles[cell], rays);
         }
-        more = cast_rays(frame, rays, count, outer.radius) && !is_inside(&rays->box, &known);
+        more = cast_rays(state, rays, count, outer.radius) && !is_inside(&rays->box, &known);
     }
 }
 
 /* The ball around what rays hit: each round makes it smaller, and so the rays of the next one
    denser.  False when rays cost too much. */
-static bool cast_rounds(KrsState *frame, int count, Rays *rays, Ball *ball)
+static bool cast_rounds(KrsState *state, int count, Rays *rays, Ball *ball)
 {
     for (int round = 0; round < ROUNDS; round++) {
-        begin_round(frame, rays);
+        begin_round(state, rays);
         make_rays(ball, count, rays);
-        if (!cast_rays(frame, rays, count, ball->radius))
+        if (!cast_rays(state, rays, count, ball->radius))
             return false;
         if (!shrink_ball(rays->box, ball))
             return true;
@@ -301,33 +301,33 @@ static bool cast_rounds(KrsState *frame, int count, Rays *rays, Ball *ball)
 
 /* Finds the ball that the picture shows, within the one of the box: around what rays hit, and around
    what they have missed. */
-static void look_for_ball(KrsState *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
+static void look_for_ball(KrsState *state, Box box, Rays *rays, Cells *cells, Ball *ball)
 {
     double most      = ball->radius;
-    int    count     = count_rays(frame->scene);
+    int    count     = count_rays(state->scene);
     rays->seen_count = 0;
     rays->box        = box_empty;
-    if (!cast_rounds(frame, count, rays, ball))
+    if (!cast_rounds(state, count, rays, ball))
         return;
     double margin = MARGIN * ball->radius;
     Box    first  = box_grow(rays->box, margin);
-    search_beyond(frame, box, count, margin, cells, rays);
+    search_beyond(state, box, count, margin, cells, rays);
     if (!is_inside(&rays->box, &first))
         grow_ball(rays, most, ball);
 }
 
 /* Of a box that is much too large a floor may be hit, and nothing else: then all is tried again, if that takes
    little time. */
-static void find_ball(KrsState *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
+static void find_ball(KrsState *state, Box box, Rays *rays, Cells *cells, Ball *ball)
 {
     const Ball outer = *ball;
     rays->apart      = false;
-    look_for_ball(frame, box, rays, cells, ball);
-    if (rays->seen_count >= FEWEST_SEEN || is_costly(frame->scene, FEWEST_RAYS))
+    look_for_ball(state, box, rays, cells, ball);
+    if (rays->seen_count >= FEWEST_SEEN || is_costly(state->scene, FEWEST_RAYS))
         return;
     rays->apart = true;
     *ball       = outer;
-    look_for_ball(frame, box, rays, cells, ball);
+    look_for_ball(state, box, rays, cells, ball);
 }
 
 /* ---- the camera ---- */
@@ -400,11 +400,11 @@ static DefaultCamera place_camera(const Rays *rays, const Ball *ball, double fov
 
 /* Finds eye and target of the default camera for the values of a frame.  Its direction and field of
    view are fixed.  Without bounded components nothing is changed: then `found` is false. */
-static KrsStatus find_camera(KrsState *frame, DefaultCamera *camera, bool *found)
+static KrsStatus find_camera(KrsState *state, DefaultCamera *camera, bool *found)
 {
     KrsView    view;
-    const Box *boxes = frame_find_boxes(frame);
-    Box        box   = frame_outer_box(frame, boxes);
+    const Box *boxes = state_find_boxes(state);
+    Box        box   = state_outer_box(state, boxes);
     Ball       ball  = ball_around(box);
     *found           = ball.radius > 0 && isfinite(ball.radius);
     if (!*found)
@@ -414,9 +414,9 @@ static KrsStatus find_camera(KrsState *frame, DefaultCamera *camera, bool *found
     KrsStatus status = rays && cells ? KRS_OK : KRS_OUT_OF_MEMORY;
     if (status == KRS_OK) {
         rays->boxes = boxes;
-        rays->most  = frame->ran + MAX_OPERATIONS;
-        find_ball(frame, box, rays, cells, &ball);
-        frame_view(frame, 0, &view);
+        rays->most  = state->ran + MAX_OPERATIONS;
+        find_ball(state, box, rays, cells, &ball);
+        state_view(state, 0, &view);
         *camera = place_camera(rays, &ball, view.camera.fov);
     }
     free(rays);
@@ -424,18 +424,18 @@ static KrsStatus find_camera(KrsState *frame, DefaultCamera *camera, bool *found
     return status;
 }
 
-KrsStatus krs_state_fit_camera(KrsState *frame)
+KrsStatus krs_state_fit_camera(KrsState *state)
 {
     DefaultCamera camera;
     bool          found;
-    if (!frame->scene->framed)
+    if (!state->scene->framed)
         return KRS_OK;
-    frame->exact     = true;
-    KrsStatus status = find_camera(frame, &camera, &found);
-    frame->exact     = false;
+    state->exact     = true;
+    KrsStatus status = find_camera(state, &camera, &found);
+    state->exact     = false;
     if (status == KRS_OK && found) {
-        memcpy(frame->framed_eye, camera.eye, sizeof camera.eye);
-        memcpy(frame->framed_target, camera.target, sizeof camera.target);
+        memcpy(state->framed_eye, camera.eye, sizeof camera.eye);
+        memcpy(state->framed_target, camera.target, sizeof camera.target);
     }
     return status;
 }
@@ -443,18 +443,18 @@ KrsStatus krs_state_fit_camera(KrsState *frame)
 /* With the defaults of parameters. */
 static KrsStatus frame_scene(KrsScene *scene)
 {
-    KrsState     *frame;
+    KrsState     *state;
     DefaultCamera camera;
-    KrsStatus     status = frame_new(scene, &frame);
+    KrsStatus     status = state_new(scene, &state);
     if (status != KRS_OK)
         return status;
-    frame->exact = true;
-    status       = find_camera(frame, &camera, &scene->framed);
+    state->exact = true;
+    status       = find_camera(state, &camera, &scene->framed);
     if (status == KRS_OK && scene->framed) {
         memcpy(scene->framed_eye, camera.eye, sizeof camera.eye);
         memcpy(scene->framed_target, camera.target, sizeof camera.target);
     }
-    frame_free(frame);
+    state_free(state);
     return status;
 }
 
@@ -479,14 +479,14 @@ static void print_camera(const KrsScene *scene, size_t index, const KrsCamera *c
 
 void print_frame(Compilation *c, Text *out)
 {
-    KrsState *frame;
+    KrsState *state;
     KrsView   view;
-    if (frame_new(c->scene, &frame) != KRS_OK) {
+    if (state_new(c->scene, &state) != KRS_OK) {
         text_add(out, "no frame: out of memory\n");
         return;
     }
     for (size_t i = 0; i < c->scene->camera_count; i++)
-        if (frame_view(frame, i, &view) == KRS_OK)
+        if (state_view(state, i, &view) == KRS_OK)
             print_camera(c->scene, i, &view.camera, out);
-    frame_free(frame);
+    state_free(state);
 }

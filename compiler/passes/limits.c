@@ -328,12 +328,12 @@ static void refuse_default(Compilation *c, Node node)
    callers. */
 static KrsStatus check_defaults(Compilation *c)
 {
-    KrsState *frame;
-    KrsStatus status = frame_new(c->scene, &frame);
+    KrsState *state;
+    KrsStatus status = state_new(c->scene, &state);
     if (status != KRS_OK)
         return status;
-    Node node = frame_infinite(frame);
-    frame_free(frame);
+    Node node = state_infinite(state);
+    state_free(state);
     if (node != NODE_NONE)
         refuse_default(c, node);
     return node == NODE_NONE ? KRS_OK : KRS_BAD_SCENE;

@@ -2,7 +2,7 @@
  * changes.c: finds what is different in a scene that was edited.
  *
  * Two scenes have the same shaders if these are made of the same nodes, apart from numbers of the
- * frame, and if all else that decides about their text is equal.  Some constants never get into the
+ * state, and if all else that decides about their text is equal.  Some constants never get into the
  * text, and tables of instance groups and textures do not, but what is derived from them may.  So scenes of
  * which nodes, tables or textures differ are compared by their text as well.
  */
@@ -241,7 +241,7 @@ static bool same_methods(const KrsProgram *a, const KrsProgram *b)
            a->scene_parts == b->scene_parts && a->expensive == b->expensive;
 }
 
-/* Tells whether shaders treat the boxes alike; corners are numbers of the frame. */
+/* Tells whether shaders treat the boxes alike; corners are numbers of the state. */
 static bool same_kinds_of_boxes(const KrsScene *a, const KrsScene *b)
 {
     bool same = true;

@@ -1,5 +1,5 @@
 /*
- * compiled.h: a compiled scene, for the runtime: its program, and the view of a frame.
+ * compiled.h: a compiled scene, for the runtime: its program, and the view of a state.
  */
 #ifndef KRS_COMPILED_H
 #define KRS_COMPILED_H
@@ -7,14 +7,14 @@
 #include "krs/krs.h"
 #include "compiler/print/variant.h"
 
-/* Camera, light and image, which the host evaluates once per frame. */
+/* Camera, light and image, which the host evaluates once per state. */
 typedef struct KrsView {
     KrsCamera       camera;
     KrsSky          sky;
     KrsFog          fog;
     KrsImage        image;
     size_t          light_count;
-    const KrsLight *lights; /* lives as long as the frame, until the next krs_state_view */
+    const KrsLight *lights; /* lives as long as the state, until the next krs_state_view */
 } KrsView;
 
 /* A ball around something that emits light, and about the mean radiance of its disc. */
@@ -35,7 +35,7 @@ typedef struct KrsProgram {
     uint64_t      shaders; /* the same number: the same shaders (krs_scene_update found no other) */
     size_t        glsl_length;     /* bytes of the entry points (krs_entry_points) */
     uint32_t      parameter_slots; /* slots (vec4) of the parameter block */
-    uint32_t      value_slots;     /* further slots, if the host computes values of the frame */
+    uint32_t      value_slots;     /* further slots, if the host computes values of the state */
     double        low[3], high[3]; /* box around all components; infinite where unbounded */
     size_t        operations;      /* in krs_distance */
     double        flops;           /* of krs_distance, weighted by op_cost */
@@ -104,12 +104,12 @@ size_t krs_joined_rank(const KrsScene *scene, size_t component);
 bool krs_structure_is_affordable(const KrsScene *scene);
 /* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
-/* Camera `camera`, lights, sky and image at the frame's parameters and time. */
-KrsStatus krs_state_view(KrsState *frame, size_t camera, KrsView *view);
-/* Balls around what emits light in the frame, within a box.  Returns how many; small ones and few
+/* Camera `camera`, lights, sky and image at the state's parameters and time. */
+KrsStatus krs_state_view(KrsState *state, size_t camera, KrsView *view);
+/* Balls around what emits light in the state, within a box.  Returns how many; small ones and few
    cost least, so that none is divided whose radius is below `min_radius`.  Light that is emitted
    elsewhere is not in them. */
-size_t krs_state_emissive(KrsState *frame, const double low[3], const double high[3],
+size_t krs_state_emissive(KrsState *state, const double low[3], const double high[3],
                           double min_radius, KrsEmissive balls[KRS_MAX_EMISSIVE]);
 /* Tells whether the rounding error of such a coordinate in single precision is visible in pixels of this
    width.  Then points must be relative to an origin near the camera. */
@@ -128,18 +128,18 @@ double krs_seen_reach(double distance, double pixel, double lines);
 bool krs_may_blur_normals(double coordinate, double distance, double pixel, double lines);
 /* Slots of the values that depend on the origin of camera-relative points, computed in double
    precision: camera_relative_slots vec4s. */
-void krs_state_rebase(KrsState *frame, const double rebase_origin[3], float (*block)[4]);
+void krs_state_rebase(KrsState *state, const double rebase_origin[3], float (*block)[4]);
 /* krs_state_tables, where shaders read only so many texels at the beginning of both; others may be left
    as they are.  With an origin (NULL: none) they are those of camera-relative points. */
-void krs_state_tables_in_use(const KrsState *frame, const double *rebase_origin, float (*rows)[4],
+void krs_state_tables_in_use(const KrsState *state, const double *rebase_origin, float (*rows)[4],
                              uint32_t (*cells)[2], size_t *row_count, size_t *cell_count);
-/* What these depend on, as parameter_slots numbers; frames in which these are equal have equal tables. */
-void krs_state_table_inputs(const KrsState *frame, const double *rebase_origin,
+/* What these depend on, as parameter_slots numbers; states in which these are equal have equal tables. */
+void krs_state_table_inputs(const KrsState *state, const double *rebase_origin,
                             double (*inputs)[4]);
 /* The caller's zones (center, radius), for the slots behind the parameter block.  With an origin (NULL:
    none) they are for camera-relative points: how deep the origin is in each takes the place of the radius.
    Returns how many.  In a variant with room for more the others must have a radius far below 0. */
-size_t krs_state_zones(const KrsState *frame, const double *rebase_origin, float (*zones)[4]);
+size_t krs_state_zones(const KrsState *state, const double *rebase_origin, float (*zones)[4]);
 /* A ray of a query, with a unit direction.  It is marched from `start` to `end`: the part of
    [0, farthest] in the box around the scene, which is empty when `end` is less than `start`. */
 typedef struct KrsRay {

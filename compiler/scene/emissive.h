@@ -1,5 +1,5 @@
 /*
- * emissive.h: what emits light, and where it is in a frame.
+ * emissive.h: what emits light, and where it is in a state.
  */
 #ifndef KRS_EMISSIVE_H
 #define KRS_EMISSIVE_H

@@ -11,7 +11,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/graph/lanes/lanes.h"
 
-/* Of one frame. */
+/* Of one state. */
 struct FrameLanes {
     Memory memory;
     Arena  arena;
@@ -32,9 +32,9 @@ static void room_for_scalars(struct FrameLanes *lanes, LaneTape *tape)
 }
 
 /* The distances of all components, and the zones, whose least is output 0. */
-static void make_distance(struct FrameLanes *lanes, KrsState *frame)
+static void make_distance(struct FrameLanes *lanes, KrsState *state)
 {
-    const KrsScene *scene = frame->scene;
+    const KrsScene *scene = state->scene;
     size_t          count = scene->component_count;
     Node            zone  = zone_root(scene);
     Node           *roots = arena_new_array(&lanes->arena, Node, count + 1);
@@ -42,12 +42,12 @@ static void make_distance(struct FrameLanes *lanes, KrsState *frame)
         roots[i] = distance_root(&scene->roots, i);
     roots[count]          = zone;
     size_t cuts           = zone != NODE_NONE;
-    lanes->distance       = lane_tape_new(&frame->tapes.distance, roots, count + cuts, true, cuts,
+    lanes->distance       = lane_tape_new(&state->tapes.distance, roots, count + cuts, true, cuts,
                                           &lanes->arena);
-    lanes->bound          = frame->tapes.distance;
+    lanes->bound          = state->tapes.distance;
     lanes->bound.by_cells = true;
     room_for_scalars(lanes, &lanes->distance);
-    lanes->distance_work = new_work(lanes, &lanes->distance, frame->values);
+    lanes->distance_work = new_work(lanes, &lanes->distance, state->values);
 }
 
 static uint32_t outputs_of(const KrsScene *scene, Node root)
@@ -56,9 +56,9 @@ static uint32_t outputs_of(const KrsScene *scene, Node root)
     return type <= TYPE_VEC4 ? (uint32_t)type : 1;
 }
 
-static void make_surface(struct FrameLanes *lanes, KrsState *frame)
+static void make_surface(struct FrameLanes *lanes, KrsState *state)
 {
-    const KrsScene *scene = frame->scene;
+    const KrsScene *scene = state->scene;
     size_t          count = scene->component_count, outputs = 0;
     Node           *roots  = arena_new_array(&lanes->arena, Node, count * ROOT_COUNT + 1);
     lanes->surface_outputs = arena_new_array(&lanes->arena, size_t, count + 1);
@@ -70,24 +70,24 @@ static void make_surface(struct FrameLanes *lanes, KrsState *frame)
             outputs += outputs_of(scene, of[k]);
         }
     }
-    lanes->surface = lane_tape_new(&frame->tapes.surface, roots, count * ROOT_COUNT, false, 0,
+    lanes->surface = lane_tape_new(&state->tapes.surface, roots, count * ROOT_COUNT, false, 0,
                                    &lanes->arena);
     room_for_scalars(lanes, &lanes->surface);
-    lanes->surface_work = new_work(lanes, &lanes->surface, frame->values);
+    lanes->surface_work = new_work(lanes, &lanes->surface, state->values);
 }
 
-void frame_lanes_refresh(KrsState *frame)
+void state_lanes_refresh(KrsState *state)
 {
-    if (!frame->lanes)
+    if (!state->lanes)
         return;
-    lane_tape_scalars(&frame->lanes->distance, frame->values, frame->lanes->distance.scalars);
-    lane_tape_scalars(&frame->lanes->surface, frame->values, frame->lanes->surface.scalars);
+    lane_tape_scalars(&state->lanes->distance, state->values, state->lanes->distance.scalars);
+    lane_tape_scalars(&state->lanes->surface, state->values, state->lanes->surface.scalars);
 }
 
-bool frame_lanes(KrsState *frame)
+bool state_lanes(KrsState *state)
 {
-    const Memory *from = &frame->scene->memory;
-    if (frame->lanes)
+    const Memory *from = &state->scene->memory;
+    if (state->lanes)
         return true;
     struct FrameLanes *lanes = from->allocate ? from->allocate(from->user, sizeof *lanes)
                                               : malloc(sizeof *lanes);
@@ -96,40 +96,40 @@ bool frame_lanes(KrsState *frame)
     *lanes = (struct FrameLanes){
         .memory = {.allocate = from->allocate, .release = from->release, .user = from->user}};
     lanes->arena = (Arena){.memory = &lanes->memory};
-    frame->lanes = lanes;
+    state->lanes = lanes;
     jmp_buf exhausted;
     lanes->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0) {
-        frame_lanes_free(frame);
+        state_lanes_free(state);
         return false;
     }
-    make_distance(frame->lanes, frame);
-    make_surface(frame->lanes, frame);
-    frame->lanes->memory.exhausted = NULL;
-    frame_lanes_refresh(frame);
+    make_distance(state->lanes, state);
+    make_surface(state->lanes, state);
+    state->lanes->memory.exhausted = NULL;
+    state_lanes_refresh(state);
     return true;
 }
 
-void frame_lanes_free(KrsState *frame)
+void state_lanes_free(KrsState *state)
 {
-    const Memory *from = &frame->scene->memory;
-    if (!frame->lanes)
+    const Memory *from = &state->scene->memory;
+    if (!state->lanes)
         return;
-    arena_free(&frame->lanes->arena);
+    arena_free(&state->lanes->arena);
     if (from->allocate)
-        from->release(from->user, frame->lanes);
+        from->release(from->user, state->lanes);
     else
-        free(frame->lanes);
-    frame->lanes = NULL;
+        free(state->lanes);
+    state->lanes = NULL;
 }
 
 /* ---- zones of the caller ---- */
 
-static double cut_by_zones(const KrsState *frame, const double point[3], double least)
+static double cut_by_zones(const KrsState *state, const double point[3], double least)
 {
     double depth = -INFINITY;
-    for (size_t i = 0; i < frame->zone_count; i++)
-        depth = fmax(depth, frame->zones[i][3] - distance3(point, frame->zones[i]));
+    for (size_t i = 0; i < state->zone_count; i++)
+        depth = fmax(depth, state->zones[i][3] - distance3(point, state->zones[i]));
     return least < depth ? depth : least;
 }
 
@@ -140,7 +140,7 @@ static double cut_by_zones(const KrsState *frame, const double point[3], double 
 
 /* Points that are dealt out; what each part needs to run its own. */
 typedef struct Deal {
-    const KrsState *frame;
+    const KrsState *state;
     const LaneTape *tape;
     const double (*points)[3];
     size_t    count;
@@ -156,19 +156,19 @@ static void deal_part(void *task, size_t part, size_t parts)
     lane_run(deal->tape, &deal->works[part], LANE_DOUBLE,
              (LanePoints){.points = deal->points + begin, .count = end - begin}, 0, 1,
              deal->distances + begin);
-    for (size_t i = begin; i < end && deal->frame->zone_count > 0; i++)
-        deal->distances[i] = cut_by_zones(deal->frame, deal->points[i], deal->distances[i]);
+    for (size_t i = begin; i < end && deal->state->zone_count > 0; i++)
+        deal->distances[i] = cut_by_zones(deal->state, deal->points[i], deal->distances[i]);
 }
 
-/* Rows and, where it reads tables, values of the frame, for each part but the first. */
-static void give_works(struct FrameLanes *lanes, const KrsState *frame, LaneWork *works)
+/* Rows and, where it reads tables, values of the state, for each part but the first. */
+static void give_works(struct FrameLanes *lanes, const KrsState *state, LaneWork *works)
 {
-    size_t parts = parallel_parts(), count = frame->scene->graph->count;
+    size_t parts = parallel_parts(), count = state->scene->graph->count;
     for (size_t i = 1; i < parts; i++) {
         NodeValue *values = NULL;
         if (lanes->distance.reads_tables) {
             values = arena_new_array(&lanes->arena, NodeValue, count);
-            memcpy(values, frame->values, count * sizeof *values);
+            memcpy(values, state->values, count * sizeof *values);
         }
         works[i] = new_work(lanes, &lanes->distance, values);
     }
@@ -186,7 +186,7 @@ static bool deal_out(struct FrameLanes *lanes, Deal *deal)
     jmp_buf         exhausted;
     lanes->memory.exhausted = &exhausted;
     if (setjmp(exhausted) == 0) {
-        give_works(lanes, deal->frame, deal->works);
+        give_works(lanes, deal->state, deal->works);
         run_in_parallel(deal_part, deal);
         done = true;
     }
@@ -197,20 +197,20 @@ static bool deal_out(struct FrameLanes *lanes, Deal *deal)
 
 /* ---- distances and normals ---- */
 
-KrsStatus points_distances(KrsState *frame, const double (*points)[3], size_t count, bool bound,
+KrsStatus points_distances(KrsState *state, const double (*points)[3], size_t count, bool bound,
                            double *distances)
 {
     LaneWork works[MAX_PARTS];
-    if (!frame_lanes(frame))
+    if (!state_lanes(state))
         return KRS_OUT_OF_MEMORY;
-    LaneTape tape = frame->lanes->distance;
+    LaneTape tape = state->lanes->distance;
     if (bound)
-        tape.tape = &frame->lanes->bound;
-    works[0]  = frame->lanes->distance_work;
-    Deal deal = {frame, &tape, points, count, distances, works};
+        tape.tape = &state->lanes->bound;
+    works[0]  = state->lanes->distance_work;
+    Deal deal = {state, &tape, points, count, distances, works};
     if (!worth_threads(&deal))
         deal_part(&deal, 0, 1);
-    else if (!deal_out(frame->lanes, &deal))
+    else if (!deal_out(state->lanes, &deal))
         return KRS_OUT_OF_MEMORY;
     return KRS_OK;
 }
@@ -237,7 +237,7 @@ static void normal_of_differences(const double *beside, double step, double norm
         normal[k] = length > 1e-3 * step ? normal[k] / length : 0;
 }
 
-KrsStatus points_normals(KrsState *frame, const double (*points)[3], size_t count,
+KrsStatus points_normals(KrsState *state, const double (*points)[3], size_t count,
                          double (*normals)[3])
 {
     double    places[AT_ONCE * BESIDE][3], found[AT_ONCE * BESIDE], steps[AT_ONCE];
@@ -246,7 +246,7 @@ KrsStatus points_normals(KrsState *frame, const double (*points)[3], size_t coun
         size_t now = count - begin < AT_ONCE ? count - begin : AT_ONCE;
         for (size_t i = 0; i < now; i++)
             steps[i] = place_beside(points[begin + i], &places[i * BESIDE]);
-        status = points_distances(frame, (const double(*)[3])places, now * BESIDE, false, found);
+        status = points_distances(state, (const double(*)[3])places, now * BESIDE, false, found);
         for (size_t i = 0; i < now && status == KRS_OK; i++)
             normal_of_differences(&found[i * BESIDE], steps[i], normals[begin + i]);
     }
@@ -264,12 +264,12 @@ static double output_of(const LaneTape *tape, const LaneWork *work, size_t outpu
 }
 
 /* As distance_by of query.c: behind output 0 are the distances of the components. */
-static uint32_t nearest_component(const KrsState *frame, size_t lane)
+static uint32_t nearest_component(const KrsState *state, size_t lane)
 {
-    const struct FrameLanes *lanes   = frame->lanes;
+    const struct FrameLanes *lanes   = state->lanes;
     double                   least   = INFINITY;
     uint32_t                 nearest = 0;
-    for (size_t i = 0; i < frame->scene->component_count; i++) {
+    for (size_t i = 0; i < state->scene->component_count; i++) {
         double distance = output_of(&lanes->distance, &lanes->distance_work, 1 + i, lane);
         if (distance < least || i == 0) {
             least   = distance;
@@ -279,27 +279,27 @@ static uint32_t nearest_component(const KrsState *frame, size_t lane)
     return nearest;
 }
 
-void points_look(KrsState *frame, const double (*points)[3], const double (*normals)[3],
+void points_look(KrsState *state, const double (*points)[3], const double (*normals)[3],
                  size_t count, double *distances, uint32_t *nearest)
 {
-    struct FrameLanes *lanes = frame->lanes;
+    struct FrameLanes *lanes = state->lanes;
     LanePoints         all   = {.points = points, .normals = normals, .count = count};
     lane_run(&lanes->distance, &lanes->distance_work, LANE_DOUBLE, all, 0, 1, distances);
     for (size_t i = 0; i < count; i++) {
-        distances[i] = cut_by_zones(frame, points[i], distances[i]);
-        nearest[i]   = nearest_component(frame, i);
+        distances[i] = cut_by_zones(state, points[i], distances[i]);
+        nearest[i]   = nearest_component(state, i);
     }
     lane_run(&lanes->surface, &lanes->surface_work, LANE_DOUBLE, all, 0, 0, NULL);
 }
 
-void points_surface(KrsState *frame, size_t point, uint32_t nearest)
+void points_surface(KrsState *state, size_t point, uint32_t nearest)
 {
-    const KrsScene          *scene  = frame->scene;
-    const struct FrameLanes *lanes  = frame->lanes;
+    const KrsScene          *scene  = state->scene;
+    const struct FrameLanes *lanes  = state->lanes;
     const Node              *roots  = surface_roots(&scene->roots, nearest - 1);
     size_t                   output = lanes->surface_outputs[nearest - 1];
     for (size_t k = 0; k < ROOT_COUNT; k++)
         for (uint32_t c = 0; c < outputs_of(scene, roots[k]); c++)
-            frame->values[roots[k]].v[c] = output_of(&lanes->surface, &lanes->surface_work,
+            state->values[roots[k]].v[c] = output_of(&lanes->surface, &lanes->surface_work,
                                                      output++, point);
 }

@@ -11,24 +11,24 @@
 /* From so many points on lanes cost less. */
 enum { FEWEST_POINTS = 4 };
 
-/* Lane tapes of a frame that is up to date, made when the first questions come; false: memory has run
+/* Lane tapes of a state that is up to date, made when the first questions come; false: memory has run
    out.  A scene without components has none. */
-bool frame_lanes(KrsState *frame);
-void frame_lanes_free(KrsState *frame);
-/* Values of the frame have changed. */
-void frame_lanes_refresh(KrsState *frame);
+bool state_lanes(KrsState *state);
+void state_lanes_free(KrsState *state);
+/* Values of the state have changed. */
+void state_lanes_refresh(KrsState *state);
 
 /* The least distances of all components, cut by the zones; `bound`: only bounds for it. */
-KrsStatus points_distances(KrsState *frame, const double (*points)[3], size_t count, bool bound,
+KrsStatus points_distances(KrsState *state, const double (*points)[3], size_t count, bool bound,
                            double *distances);
 /* The normals by central differences. */
-KrsStatus points_normals(KrsState *frame, const double (*points)[3], size_t count,
+KrsStatus points_normals(KrsState *state, const double (*points)[3], size_t count,
                          double (*normals)[3]);
 
 /* What is known of up to LANES points on a surface: distances, numbers of the nearest components from
-   1, and roots of surfaces, which points_surface puts into frame->values for one of the points. */
-void points_look(KrsState *frame, const double (*points)[3], const double (*normals)[3],
+   1, and roots of surfaces, which points_surface puts into state->values for one of the points. */
+void points_look(KrsState *state, const double (*points)[3], const double (*normals)[3],
                  size_t count, double *distances, uint32_t *nearest);
-void points_surface(KrsState *frame, size_t point, uint32_t nearest);
+void points_surface(KrsState *state, size_t point, uint32_t nearest);
 
 #endif

@@ -161,7 +161,7 @@ void scene_free(KrsScene *scene)
 
 void krs_scene_free(KrsScene *scene) { scene_free(scene); }
 
-/* Drivers keep the values of the frame in registers, and need minutes where there are thousands:
+/* Drivers keep the values of the state in registers, and need minutes where there are thousands:
    bench/measurements.md. */
 enum { MAX_VALUE_SLOTS = 1000 };
 

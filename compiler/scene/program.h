@@ -1,5 +1,5 @@
 /*
- * program.h: a compiled scene: made by the passes, used by program.c, frame.c and query.c.
+ * program.h: a compiled scene: made by the passes, used by program.c, state.c and query.c.
  */
 #ifndef KRS_PROGRAM_H
 #define KRS_PROGRAM_H
@@ -31,8 +31,8 @@ typedef enum RootKind {
     ROOTS_RESEARCH,        /* for each method, for each component: lower_research; or none */
     ROOTS_PLANE,           /* PlaneRoots of the nearest half-space */
     ROOTS_GRADIENT,        /* GradientRoots of each component, then of all zones */
-    ROOTS_SLOPE,           /* each slope that is computed per frame */
-    ROOTS_BOX,             /* numbers by which boxes of a frame are found */
+    ROOTS_SLOPE,           /* each slope that is computed per state */
+    ROOTS_BOX,             /* numbers by which boxes of a state are found */
     ROOTS_ASSEMBLY,        /* what the assembly's items refer to */
     ROOTS_PLACE,           /* for meshes: where each component reads its texture; FLOAT: nowhere */
     ROOTS_CAMERA_RELATIVE, /* surfaces, plane and zones again for camera-relative points, or none */
@@ -119,7 +119,7 @@ static inline GradientRoots *gradient_roots(const Roots *roots, size_t component
     return (GradientRoots *)roots_of(roots, ROOTS_GRADIENT).items + component;
 }
 
-/* A slope that is computed per frame (shape/slope.c). */
+/* A slope that is computed per state (shape/slope.c). */
 typedef struct RetainedSlope {
     uint32_t    slot;
     SlopeTask   task;
@@ -148,9 +148,9 @@ struct KrsScene {
     size_t          *rank;       /* and krs_joined_rank */
     KrsBounds       *bounds;     /* of each component */
     Assembly         assembly;   /* nothing unless the options ask for it */
-    RetainedSlope   *slopes;     /* slopes that are computed per frame */
+    RetainedSlope   *slopes;     /* slopes that are computed per state */
     size_t           slope_count;
-    FrameBoxes       boxes; /* of shown components in a frame, */
+    FrameBoxes       boxes; /* of shown components in a state, */
     FrameFloor       floor; /* and what stands below them */
     Tape             box_numbers;
     EmissivePart    *emissive;
@@ -178,27 +178,27 @@ struct KrsScene {
     Tape surface; /* all roots of all components, and zones */
     Tape places;  /* ROOTS_PLACE; empty if nobody asks for meshes */
     Tape view;    /* cameras, lights and sky */
-    Tape rows;    /* numbers of tables that depend on the frame */
+    Tape rows;    /* numbers of tables that depend on the state */
     Tape frame;   /* of all these, what does not depend on points */
 };
 
-/* Those tapes of the scene that read tables, over the tables of a frame where these are its own. */
+/* Those tapes of the scene that read tables, over the tables of a state where these are its own. */
 typedef struct FrameTapes {
     Tape distance, guarded, ahead, turned, surface, places;
 } FrameTapes;
 
-/* A frame: values of the parameters, and memory for the values of all nodes. */
+/* A state: values of the parameters, and memory for the values of all nodes. */
 struct KrsState {
     const KrsScene *scene;
     NodeValue      *parameters; /* the parameter block: the time in slot 0, parameters, slopes.  The
                                    slopes always belong to the other values */
-    size_t         *lit;        /* parts of the scene that may emit light (frame_emissive.c) */
+    size_t         *lit;        /* parts of the scene that may emit light (state_emissive.c) */
     void           *workspace;  /* memory for the computation of slopes */
     Box            *boxes;      /* memory for those of planned shapes (FrameBoxes) */
     double          framed_eye[3], framed_target[3]; /* if the scene is framed: as there, or placed
-                                                        for this frame */
+                                                        for this state */
     const char     *unbounded; /* location of the slope without a bound in the last refused
-    frame */
+    state */
     NodeValue      *values;    /* of every node */
     KrsLight       *lights;
     float (*sky)[3];              /* of daylight, */
@@ -210,12 +210,12 @@ struct KrsState {
     bool                exact;  /* rays are marched with exact distances of instance groups */
     uint64_t            ran; /* operations that marching rays has taken; one for many points at once
                                    counts as one */
-    bool                fresh; /* the frame values in `values` belong to the parameters */
+    bool                fresh; /* the state values in `values` belong to the parameters */
     double              zones[KRS_MAX_ZONES][4];
     size_t              zone_count; /* zones of the caller */
 };
 
-/* Rays remain unresolved after so many steps each, or when the frame has run so many operations. */
+/* Rays remain unresolved after so many steps each, or when the state has run so many operations. */
 typedef struct RayLimits {
     size_t   steps;
     uint64_t ran;
@@ -223,56 +223,56 @@ typedef struct RayLimits {
 
 /* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after
    the pass `retain`. */
-KrsStatus frame_new(const KrsScene *scene, KrsState **frame);
-void      frame_free(KrsState *frame);
-KrsStatus frame_view(KrsState *frame, size_t camera, KrsView *view);
-KrsStatus frame_raycast(KrsState *frame, const double (*origins)[3], const double (*directions)[3],
+KrsStatus state_new(const KrsScene *scene, KrsState **state);
+void      state_free(KrsState *state);
+KrsStatus state_view(KrsState *state, size_t camera, KrsView *view);
+KrsStatus state_raycast(KrsState *state, const double (*origins)[3], const double (*directions)[3],
                         size_t count, double farthest, double tolerance, RayLimits limits,
                         KrsHit *hits);
 /* As krs_probe; without `normals` those of the answers may be 0, and materials must not depend on them. */
-KrsStatus frame_probe(KrsState *frame, const double (*points)[3], size_t count, bool normals,
+KrsStatus state_probe(KrsState *state, const double (*points)[3], size_t count, bool normals,
                       KrsHit *hits);
 void      scene_free(KrsScene *scene);
-/* A frame of the same scene with the same parameters, time and zones. */
-KrsStatus frame_copy_of(const KrsState *frame, KrsState **copy);
+/* A state of the same scene with the same parameters, time and zones. */
+KrsStatus state_copy_of(const KrsState *state, KrsState **copy);
 
 /* The GLSL of all functions that the scene has in a variant, without comments, so that it says
    nothing of names and lines. */
 char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *arena);
 
 /* Evaluates the nodes that depend on parameters only, unless their values are up to date. */
-void frame_refresh(KrsState *frame);
-/* The same, and the tables of the frame: for values at points. */
-void frame_refresh_points(KrsState *frame);
+void state_refresh(KrsState *state);
+/* The same, and the tables of the state: for values at points. */
+void state_refresh_points(KrsState *state);
 
-/* frame_boxes.c: the boxes of the shown components, but for a floor, at the values of the frame; NULL:
-   they are those of all frames. */
-const Box *frame_find_boxes(KrsState *frame);
+/* state_boxes.c: the boxes of the shown components, but for a floor, at the values of the state; NULL:
+   they are those of all states. */
+const Box *state_find_boxes(KrsState *state);
 /* With these boxes: that of a component, and that around all which have an end, empty if none has. */
-Box frame_box(const KrsState *frame, const Box *boxes, size_t component);
-Box frame_outer_box(const KrsState *frame, const Box *boxes);
+Box state_box(const KrsState *state, const Box *boxes, size_t component);
+Box state_outer_box(const KrsState *state, const Box *boxes);
 /* Puts the height of the floor into its slot, if it depends on another one. */
-void frame_find_floor(KrsState *frame, uint32_t changed);
+void state_find_floor(KrsState *state, uint32_t changed);
 
-/* frame_tables.c: tables where instances of groups move, and tapes over them.  False: memory has run out. */
-bool frame_tables_new(KrsState *frame);
+/* state_tables.c: tables where instances of groups move, and tapes over them.  False: memory has run out. */
+bool state_tables_new(KrsState *state);
 /* Its tapes add what they run to its own count: after it was copied to another place. */
-void frame_count_operations(KrsState *frame);
-void frame_tables_free(KrsState *frame);
-/* Values of the frame have changed; the tables are found when they are needed. */
-void frame_tables_change(KrsState *frame);
-void frame_tables_refresh(const KrsState *frame);
+void state_count_operations(KrsState *state);
+void state_tables_free(KrsState *state);
+/* Values of the state have changed; the tables are found when they are needed. */
+void state_tables_change(KrsState *state);
+void state_tables_refresh(const KrsState *state);
 
-/* The distance of a component, counted from 1, or of all (0), cut by the zones; frame_refresh_points
+/* The distance of a component, counted from 1, or of all (0), cut by the zones; state_refresh_points
    was called before. */
-double frame_component_distance(KrsState *frame, size_t component, const double point[3]);
+double state_component_distance(KrsState *state, size_t component, const double point[3]);
 /* The component that is nearest, counted from 1; 0: there is none. */
-uint32_t frame_nearest_component(KrsState *frame, const double point[3]);
-/* A value of the frame, used by points or the view, that is not finite; NODE_NONE: there is
+uint32_t state_nearest_component(KrsState *state, const double point[3]);
+/* A value of the state, used by points or the view, that is not finite; NODE_NONE: there is
    none. */
-Node frame_infinite(KrsState *frame);
+Node state_infinite(KrsState *state);
 /* Copies the value of a node of type VEC3. */
-void frame_copy(const KrsState *frame, Node node, double to[3]);
+void state_copy(const KrsState *state, Node node, double to[3]);
 /* Scales a vector to length 1, unless it is 0.  It may be so long or short that the square of its
    length would overflow or be 0. */
 void vector_normalize(double v[3]);

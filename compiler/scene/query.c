@@ -25,14 +25,14 @@ static bool are_finite(const double (*vectors)[3], size_t count)
 
 /* ---- points ---- */
 
-/* The largest depth of a point in a zone of the scene, whose value is in frame->values, or of the
+/* The largest depth of a point in a zone of the scene, whose value is in state->values, or of the
    caller; negative outside. */
-static double zone_depth(const KrsState *frame, const double point[3])
+static double zone_depth(const KrsState *state, const double point[3])
 {
-    Node   zone  = zone_root(frame->scene);
-    double depth = zone == NODE_NONE ? -INFINITY : frame->values[zone].v[0];
-    for (size_t i = 0; i < frame->zone_count; i++) {
-        const double *at = frame->zones[i];
+    Node   zone  = zone_root(state->scene);
+    double depth = zone == NODE_NONE ? -INFINITY : state->values[zone].v[0];
+    for (size_t i = 0; i < state->zone_count; i++) {
+        const double *at = state->zones[i];
         depth            = fmax(depth, at[3] - distance3(point, at));
     }
     return depth;
@@ -40,128 +40,128 @@ static double zone_depth(const KrsState *frame, const double point[3])
 
 /* The least distance of all components by a tape of them, cut by the zones.  *nearest is the number
    from 1 of that component, whether or not a zone cuts it. */
-static double distance_by(KrsState *frame, const Tape *tape, const double point[3],
+static double distance_by(KrsState *state, const Tape *tape, const double point[3],
                           uint32_t *nearest)
 {
-    const KrsScene *scene = frame->scene;
+    const KrsScene *scene = state->scene;
     double          least = INFINITY;
-    tape_run_point(tape, point, frame->values);
+    tape_run_point(tape, point, state->values);
     for (size_t i = 0; i < scene->component_count; i++) {
-        double distance = frame->values[distance_root(&scene->roots, i)].v[0];
+        double distance = state->values[distance_root(&scene->roots, i)].v[0];
         if (distance < least || i == 0) {
             least    = distance;
             *nearest = (uint32_t)i + 1;
         }
     }
-    double depth = zone_depth(frame, point);
+    double depth = zone_depth(state, point);
     return least < depth ? depth : least;
 }
 
-static double distance_at(KrsState *frame, const double point[3], uint32_t *nearest)
+static double distance_at(KrsState *state, const double point[3], uint32_t *nearest)
 {
-    return distance_by(frame, &frame->tapes.distance, point, nearest);
+    return distance_by(state, &state->tapes.distance, point, nearest);
 }
 
-double frame_component_distance(KrsState *frame, size_t component, const double point[3])
+double state_component_distance(KrsState *state, size_t component, const double point[3])
 {
     uint32_t nearest  = 0;
-    double   distance = distance_at(frame, point, &nearest);
+    double   distance = distance_at(state, point, &nearest);
     if (component == 0)
         return distance;
-    return fmax(frame->values[distance_root(&frame->scene->roots, component - 1)].v[0],
-                zone_depth(frame, point));
+    return fmax(state->values[distance_root(&state->scene->roots, component - 1)].v[0],
+                zone_depth(state, point));
 }
 
-uint32_t frame_nearest_component(KrsState *frame, const double point[3])
+uint32_t state_nearest_component(KrsState *state, const double point[3])
 {
     uint32_t nearest = 0;
-    distance_at(frame, point, &nearest);
+    distance_at(state, point, &nearest);
     return nearest;
 }
 
 /* Far from surfaces, short steps cost less than exact ones. */
-static Tape march_tape(const KrsState *frame, const Tape *tape)
+static Tape march_tape(const KrsState *state, const Tape *tape)
 {
     Tape march     = *tape;
-    march.by_cells = !frame->exact;
+    march.by_cells = !state->exact;
     return march;
 }
 
 /* In a scene with open surfaces: how far a ray may go from a point.  `step` is the length from the
    previous point to it. */
-static double step_ahead(KrsState *frame, const double point[3], const double direction[3],
+static double step_ahead(KrsState *state, const double point[3], const double direction[3],
                          double step)
 {
-    const KrsScene *scene = frame->scene;
+    const KrsScene *scene = state->scene;
     const Node     *exact = roots_of(&scene->roots, ROOTS_ALONG).items;
-    Tape            ahead = march_tape(frame, &frame->tapes.ahead);
+    Tape            ahead = march_tape(state, &state->tapes.ahead);
     double          least = INFINITY;
-    tape_run_surface(&ahead, point, direction, step, frame->values);
+    tape_run_surface(&ahead, point, direction, step, state->values);
     for (size_t i = 0; i < scene->component_count; i++)
-        least = fmin(least, frame->values[exact[i]].v[0]);
-    return fmax(least, zone_depth(frame, point));
+        least = fmin(least, state->values[exact[i]].v[0]);
+    return fmax(least, zone_depth(state, point));
 }
 
 /* A bound for the distance that costs less: far levels of sequences are skipped (lower_guarded). */
-static double clearance_at(KrsState *frame, const double point[3])
+static double clearance_at(KrsState *state, const double point[3])
 {
-    const KrsScene *scene   = frame->scene;
+    const KrsScene *scene   = state->scene;
     RootRange       roots   = roots_of(&scene->roots, ROOTS_GUARDED);
-    Tape            guarded = march_tape(frame, &frame->tapes.guarded);
+    Tape            guarded = march_tape(state, &state->tapes.guarded);
     double          least   = INFINITY;
-    tape_run_point(&guarded, point, frame->values);
+    tape_run_point(&guarded, point, state->values);
     for (size_t i = 0; i < roots.count; i++)
-        least = fmin(least, frame->values[roots.items[i]].v[0]);
-    return fmax(least, zone_depth(frame, point));
+        least = fmin(least, state->values[roots.items[i]].v[0]);
+    return fmax(least, zone_depth(state, point));
 }
 
 /* Tells whether questions are answered in many points at once. */
-static bool by_lanes(const KrsState *frame, size_t count)
+static bool by_lanes(const KrsState *state, size_t count)
 {
-    return count >= FEWEST_POINTS && frame->scene->component_count > 0;
+    return count >= FEWEST_POINTS && state->scene->component_count > 0;
 }
 
-static KrsStatus find_distances(KrsState *frame, const double (*points)[3], size_t count,
+static KrsStatus find_distances(KrsState *state, const double (*points)[3], size_t count,
                                 bool bound, double *distances)
 {
     uint32_t nearest = 0;
-    Tape     tape    = frame->tapes.distance;
+    Tape     tape    = state->tapes.distance;
     tape.by_cells    = bound;
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
-    frame_refresh_points(frame);
-    if (by_lanes(frame, count))
-        return points_distances(frame, points, count, bound, distances);
+    state_refresh_points(state);
+    if (by_lanes(state, count))
+        return points_distances(state, points, count, bound, distances);
     for (size_t i = 0; i < count; i++)
-        distances[i] = distance_by(frame, &tape, points[i], &nearest);
+        distances[i] = distance_by(state, &tape, points[i], &nearest);
     return KRS_OK;
 }
 
-KrsStatus krs_distance_bound(KrsState *frame, const double (*points)[3], size_t count,
+KrsStatus krs_distance_bound(KrsState *state, const double (*points)[3], size_t count,
                              double *distances)
 {
-    return find_distances(frame, points, count, true, distances);
+    return find_distances(state, points, count, true, distances);
 }
 
-KrsStatus krs_distance(KrsState *frame, const double (*points)[3], size_t count, double *distances)
+KrsStatus krs_distance(KrsState *state, const double (*points)[3], size_t count, double *distances)
 {
-    return find_distances(frame, points, count, false, distances);
+    return find_distances(state, points, count, false, distances);
 }
 
 /* A normal by derivatives, in scenes with open surfaces: differences would mix both sides of an open surface.
    False if there is no derivative. */
-static bool derived_normal(KrsState *frame, const double point[3], double normal[3])
+static bool derived_normal(KrsState *state, const double point[3], double normal[3])
 {
-    const KrsScene *scene   = frame->scene;
+    const KrsScene *scene   = state->scene;
     uint32_t        nearest = 0;
     if (!scene->program.open_surfaces ||
-        distance_at(frame, point, &nearest) <= zone_depth(frame, point))
+        distance_at(state, point, &nearest) <= zone_depth(state, point))
         return false;
     Node gradient = gradient_roots(&scene->roots, nearest - 1)->gradient;
     if (scene->graph->items[gradient].type != TYPE_VEC3)
         return false;
-    tape_run_point(&frame->tapes.turned, point, frame->values);
-    frame_copy(frame, gradient, normal);
+    tape_run_point(&state->tapes.turned, point, state->values);
+    state_copy(state, gradient, normal);
     bool known = largest3(normal) > 0 && largest3(normal) < INFINITY;
     if (known)
         vector_normalize(normal);
@@ -169,61 +169,61 @@ static bool derived_normal(KrsState *frame, const double point[3], double normal
 }
 
 /* A normal by central differences, whose error is negligible in double precision. */
-static void normal_at(KrsState *frame, const double point[3], double normal[3])
+static void normal_at(KrsState *state, const double point[3], double normal[3])
 {
     double   step = 1e-6 * (1 + largest3(point));
     uint32_t nearest;
-    if (derived_normal(frame, point, normal))
+    if (derived_normal(state, point, normal))
         return;
     for (int i = 0; i < 3; i++) {
         double before[3] = {point[0], point[1], point[2]};
         double after[3]  = {point[0], point[1], point[2]};
         before[i] -= step;
         after[i] += step;
-        normal[i] = distance_at(frame, after, &nearest) - distance_at(frame, before, &nearest);
+        normal[i] = distance_at(state, after, &nearest) - distance_at(state, before, &nearest);
     }
     double length = length3(normal);
     for (int i = 0; i < 3; i++)
         normal[i] = length > 1e-3 * step ? normal[i] / length : 0;
 }
 
-KrsStatus krs_normal(KrsState *frame, const double (*points)[3], size_t count, double (*normals)[3])
+KrsStatus krs_normal(KrsState *state, const double (*points)[3], size_t count, double (*normals)[3])
 {
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
-    frame_refresh_points(frame);
-    if (by_lanes(frame, count) && !frame->scene->program.open_surfaces)
-        return points_normals(frame, points, count, normals);
+    state_refresh_points(state);
+    if (by_lanes(state, count) && !state->scene->program.open_surfaces)
+        return points_normals(state, points, count, normals);
     for (size_t i = 0; i < count; i++)
-        normal_at(frame, points[i], normals[i]);
+        normal_at(state, points[i], normals[i]);
     return KRS_OK;
 }
 
 /* Copies a property of the material at a point.  If queries limit it to its range, NaN becomes the
    lower limit. */
-static void copy_property(const KrsState *frame, const Node *roots, ComponentRoot root, double *to)
+static void copy_property(const KrsState *state, const Node *roots, ComponentRoot root, double *to)
 {
     const RootInfo *info = &root_info[root];
     for (int k = 0; k < (info->type == TYPE_VEC3 ? 3 : 1); k++) {
-        double number = frame->values[roots[root]].v[k];
+        double number = state->values[roots[root]].v[k];
         to[k] = !info->limited ? number : number > info->low ? fmin(number, info->high) : info->low;
     }
 }
 
-/* Puts what is known of the surface of a component into an answer: its roots are in frame->values. */
-static void copy_surface(const KrsState *frame, uint32_t nearest, KrsHit *hit)
+/* Puts what is known of the surface of a component into an answer: its roots are in state->values. */
+static void copy_surface(const KrsState *state, uint32_t nearest, KrsHit *hit)
 {
-    const Node *root = surface_roots(&frame->scene->roots, nearest - 1);
+    const Node *root = surface_roots(&state->scene->roots, nearest - 1);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
-    copy_property(frame, root, ROOT_##name, (double *)&hit->name);
+    copy_property(state, root, ROOT_##name, (double *)&hit->name);
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
-    hit->name = (uint32_t)frame->values[root[ROOT_##name]].v[0];
+    hit->name = (uint32_t)state->values[root[ROOT_##name]].v[0];
 #include "krs/surface.def"
     /* Mirrors do not smooth the surface of a zone. */
-    if (hit->distance > frame->values[root[ROOT_DISTANCE]].v[0])
+    if (hit->distance > state->values[root[ROOT_DISTANCE]].v[0])
         memcpy(hit->shading, hit->normal, sizeof hit->shading);
     else
-        frame_copy(frame, root[ROOT_NORMAL], hit->shading);
+        state_copy(state, root[ROOT_NORMAL], hit->shading);
 }
 
 static KrsHit hit_at(const double point[3])
@@ -243,59 +243,59 @@ static void face(const double view[3], double normal[3])
 
 /* `view` is the direction of the ray that sees the point, or NULL.  Materials of open surfaces have the normal
    that faces it. */
-static void probe(KrsState *frame, const double point[3], const double view[3], KrsHit *hit)
+static void probe(KrsState *state, const double point[3], const double view[3], KrsHit *hit)
 {
     uint32_t nearest = 0;
     *hit             = hit_at(point);
-    normal_at(frame, point, hit->normal);
-    if (view && frame->scene->program.open_surfaces)
+    normal_at(state, point, hit->normal);
+    if (view && state->scene->program.open_surfaces)
         face(view, hit->normal);
-    hit->distance = distance_at(frame, point, &nearest);
+    hit->distance = distance_at(state, point, &nearest);
     if (!nearest)
         return;
-    tape_run_seen(&frame->tapes.surface, point, hit->normal, view, frame->values);
-    copy_surface(frame, nearest, hit);
+    tape_run_seen(&state->tapes.surface, point, hit->normal, view, state->values);
+    copy_surface(state, nearest, hit);
 }
 
 /* As many points as lanes. */
-static KrsStatus probe_lanes(KrsState *frame, const double (*points)[3], size_t count,
+static KrsStatus probe_lanes(KrsState *state, const double (*points)[3], size_t count,
                              bool with_normals, KrsHit *hits)
 {
     double    normals[LANES][3] = {{0}}, distances[LANES];
     uint32_t  nearest[LANES];
-    KrsStatus status = with_normals ? krs_normal(frame, points, count, normals) : KRS_OK;
-    if (status != KRS_OK || !frame_lanes(frame))
+    KrsStatus status = with_normals ? krs_normal(state, points, count, normals) : KRS_OK;
+    if (status != KRS_OK || !state_lanes(state))
         return KRS_OUT_OF_MEMORY;
-    points_look(frame, points, (const double(*)[3])normals, count, distances, nearest);
+    points_look(state, points, (const double(*)[3])normals, count, distances, nearest);
     for (size_t i = 0; i < count; i++) {
         hits[i]          = hit_at(points[i]);
         hits[i].distance = distances[i];
         memcpy(hits[i].normal, normals[i], sizeof normals[i]);
-        points_surface(frame, i, nearest[i]);
-        copy_surface(frame, nearest[i], &hits[i]);
+        points_surface(state, i, nearest[i]);
+        copy_surface(state, nearest[i], &hits[i]);
     }
     return KRS_OK;
 }
 
-KrsStatus krs_probe(KrsState *frame, const double (*points)[3], size_t count, KrsHit *hits)
+KrsStatus krs_probe(KrsState *state, const double (*points)[3], size_t count, KrsHit *hits)
 {
-    return frame_probe(frame, points, count, true, hits);
+    return state_probe(state, points, count, true, hits);
 }
 
-KrsStatus frame_probe(KrsState *frame, const double (*points)[3], size_t count, bool normals,
+KrsStatus state_probe(KrsState *state, const double (*points)[3], size_t count, bool normals,
                       KrsHit *hits)
 {
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
-    frame_refresh_points(frame);
+    state_refresh_points(state);
     KrsStatus status = KRS_OK;
     size_t    i      = 0;
-    for (size_t now; by_lanes(frame, count - i) && status == KRS_OK; i += now) {
+    for (size_t now; by_lanes(state, count - i) && status == KRS_OK; i += now) {
         now    = count - i < LANES ? count - i : LANES;
-        status = probe_lanes(frame, points + i, now, normals, hits + i);
+        status = probe_lanes(state, points + i, now, normals, hits + i);
     }
     for (; i < count && status == KRS_OK; i++)
-        probe(frame, points[i], NULL, &hits[i]);
+        probe(state, points[i], NULL, &hits[i]);
     return status;
 }
 
@@ -347,21 +347,21 @@ bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3
     return true;
 }
 
-typedef enum RayState { MARCHING, HIT, MISS } RayState;
+typedef enum RayPhase { MARCHING, HIT, MISS } RayPhase;
 
 enum { TOUCHING = 16 }; /* largest gap between solids that touch, in rounding errors */
 
 /* A ray that is marched.  There is no surface before `t`, nor within `clearance` behind it.  The
    distance is evaluated next at t + step. */
 typedef struct RayMarch {
-    KrsState *frame;
+    KrsState *state;
     KrsRay    ray;
     double    size; /* largest coordinate of the origin, to which rounding errors are relative */
     double    tolerance;
     double    side; /* 1: the ray begins outside; -1: inside of a solid; 0: not yet known */
     double    t, clearance, step;
     double    slope; /* moving average of the change of clearance per length of ray */
-    RayState  state;
+    RayPhase  phase;
 } RayMarch;
 
 static void march_point(const RayMarch *march, double t, double point[3])
@@ -388,12 +388,12 @@ static double march_clearance(RayMarch *march, double t)
 {
     double point[3];
     march_point(march, t, point);
-    bool open_surfaces = march->frame->scene->program.open_surfaces;
+    bool open_surfaces = march->state->scene->program.open_surfaces;
     /* Back to the previous point and a little farther, since rounding may put that point before a
        open surface in one evaluation and behind it in the next. */
     double back     = t > march->t ? t - march->t + 2 * rounding_at(march, t) : 0;
-    double distance = open_surfaces ? step_ahead(march->frame, point, march->ray.direction, back)
-                                    : clearance_at(march->frame, point);
+    double distance = open_surfaces ? step_ahead(march->state, point, march->ray.direction, back)
+                                    : clearance_at(march->state, point);
     return clearance_of(march, t, distance);
 }
 
@@ -432,7 +432,7 @@ static double find_crossing(RayMarch *march, double clearance)
  * the tolerance, the step is shortened to the middle of it.  So steps may be longer than the clearance
  * (automatic relaxation): as long as the balls meet if the clearance goes on changing as before.
  */
-static RayState march_step(RayMarch *march, double clearance)
+static RayPhase march_step(RayMarch *march, double clearance)
 {
     double at    = march->t + march->step;
     double least = rounding_at(march, at), permitted = march->tolerance / 16 + least;
@@ -449,7 +449,7 @@ static RayState march_step(RayMarch *march, double clearance)
         march->clearance = clearance;
         /* With open surfaces, the clearance is known only in the direction of the ray: there is no ball
            that reaches backwards. */
-        double factor = march->frame->scene->program.open_surfaces
+        double factor = march->state->scene->program.open_surfaces
                             ? 1
                             : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));
         march->step   = clearance * factor + permitted;
@@ -461,16 +461,16 @@ static RayState march_step(RayMarch *march, double clearance)
     return MARCHING;
 }
 
-static RayMarch begin_march(KrsState *frame, KrsRay ray, double tolerance)
+static RayMarch begin_march(KrsState *state, KrsRay ray, double tolerance)
 {
-    return (RayMarch){.frame     = frame,
+    return (RayMarch){.state     = state,
                       .ray       = ray,
                       .size      = largest3(ray.origin),
                       .tolerance = tolerance > 0 ? tolerance : 1e-9,
                       .side      = ray.start > 0 ? 1 : 0,
                       .t         = ray.start,
                       .slope     = -1,
-                      .state     = ray.start <= ray.end ? MARCHING : MISS};
+                      .phase     = ray.start <= ray.end ? MARCHING : MISS};
 }
 
 /* Nothing is asked of the place where a ray remains that may run no more. */
@@ -478,78 +478,78 @@ static void end_march(RayMarch *march, RayLimits limits, KrsHit *hit)
 {
     double point[3];
     *hit = (KrsHit){0};
-    if (march->state == MISS && march->side < 0 && march->ray.walls) {
+    if (march->phase == MISS && march->side < 0 && march->ray.walls) {
         march->t     = march->ray.end;
-        march->state = HIT;
+        march->phase = HIT;
     }
-    if (march->state == MISS)
+    if (march->phase == MISS)
         return;
     march_point(march, march->t, point);
-    if (march->state == HIT || march->frame->ran < limits.ran)
-        probe(march->frame, point, march->ray.direction, hit);
+    if (march->phase == HIT || march->state->ran < limits.ran)
+        probe(march->state, point, march->ray.direction, hit);
     hit->t          = march->t;
-    hit->hit        = march->state == HIT;
-    hit->unresolved = march->state == MARCHING;
+    hit->hit        = march->phase == HIT;
+    hit->unresolved = march->phase == MARCHING;
 }
 
 /* Tells whether clearances of rays are distances, which lanes tell.  Open surfaces have other ones, and guards and
    cells of instance groups make them shorter. */
-static bool march_by_lanes(const KrsState *frame)
+static bool march_by_lanes(const KrsState *state)
 {
-    const KrsScene *scene   = frame->scene;
+    const KrsScene *scene   = state->scene;
     const Node     *guarded = roots_of(&scene->roots, ROOTS_GUARDED).items;
-    bool lanes = !scene->program.open_surfaces && frame->tapes.distance.function_count == 0;
+    bool lanes = !scene->program.open_surfaces && state->tapes.distance.function_count == 0;
     for (size_t i = 0; i < scene->component_count && lanes; i++)
         lanes = guarded[i] == distance_root(&scene->roots, i);
     return lanes;
 }
 
 /* The next step of each of some rays that are not at their end. */
-static KrsStatus step_fused(KrsState *frame, RayMarch *const *marches, size_t count)
+static KrsStatus step_fused(KrsState *state, RayMarch *const *marches, size_t count)
 {
     double points[LANES][3], distances[LANES];
     for (size_t i = 0; i < count; i++)
         march_point(marches[i], marches[i]->t + marches[i]->step, points[i]);
-    KrsStatus status = points_distances(frame, (const double(*)[3])points, count, false, distances);
-    frame->ran += frame->tapes.distance.count - frame->tapes.distance.frame_count;
+    KrsStatus status = points_distances(state, (const double(*)[3])points, count, false, distances);
+    state->ran += state->tapes.distance.count - state->tapes.distance.frame_count;
     for (size_t i = 0; i < count && status == KRS_OK; i++)
-        marches[i]->state = march_step(
+        marches[i]->phase = march_step(
             marches[i], clearance_of(marches[i], marches[i]->t + marches[i]->step, distances[i]));
     return status;
 }
 
 /* Marches up to LANES rays side by side: their answers are those of each by itself. */
-static KrsStatus march_fused(KrsState *frame, RayMarch *rays, size_t count, RayLimits limits)
+static KrsStatus march_fused(KrsState *state, RayMarch *rays, size_t count, RayLimits limits)
 {
     RayMarch *marches[LANES];
     KrsStatus status = KRS_OK;
-    for (size_t step = 0; step < limits.steps && frame->ran < limits.ran && status == KRS_OK;
+    for (size_t step = 0; step < limits.steps && state->ran < limits.ran && status == KRS_OK;
          step++) {
         size_t left = 0;
         for (size_t i = 0; i < count; i++)
-            if (rays[i].state == MARCHING)
+            if (rays[i].phase == MARCHING)
                 marches[left++] = &rays[i];
         if (left == 0)
             break;
-        status = step_fused(frame, marches, left);
+        status = step_fused(state, marches, left);
     }
     return status;
 }
 
 static void march_alone(RayMarch *ray, RayLimits limits)
 {
-    for (size_t step = 0; step < limits.steps && ray->frame->ran < limits.ran; step++) {
-        if (ray->state != MARCHING)
+    for (size_t step = 0; step < limits.steps && ray->state->ran < limits.ran; step++) {
+        if (ray->phase != MARCHING)
             break;
-        ray->state = march_step(ray, march_clearance(ray, ray->t + ray->step));
+        ray->phase = march_step(ray, march_clearance(ray, ray->t + ray->step));
     }
 }
 
 /* Up to LANES rays. */
-static KrsStatus raycast(KrsState *frame, RayMarch *rays, size_t count, bool together,
+static KrsStatus raycast(KrsState *state, RayMarch *rays, size_t count, bool together,
                          RayLimits limits, KrsHit *hits)
 {
-    KrsStatus status = together ? march_fused(frame, rays, count, limits) : KRS_OK;
+    KrsStatus status = together ? march_fused(state, rays, count, limits) : KRS_OK;
     for (size_t i = 0; i < count && status == KRS_OK; i++) {
         if (!together)
             march_alone(&rays[i], limits);
@@ -558,30 +558,30 @@ static KrsStatus raycast(KrsState *frame, RayMarch *rays, size_t count, bool tog
     return status;
 }
 
-KrsStatus frame_raycast(KrsState *frame, const double (*origins)[3], const double (*directions)[3],
+KrsStatus state_raycast(KrsState *state, const double (*origins)[3], const double (*directions)[3],
                         size_t count, double farthest, double tolerance, RayLimits limits,
                         KrsHit *hits)
 {
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance))
         return KRS_BAD_ARGUMENT;
-    frame_refresh_points(frame);
-    const bool lanes  = march_by_lanes(frame);
+    state_refresh_points(state);
+    const bool lanes  = march_by_lanes(state);
     KrsStatus  status = KRS_OK;
     for (size_t begin = 0, now; begin < count && status == KRS_OK; begin += now) {
         RayMarch rays[LANES];
         now = count - begin < LANES ? count - begin : LANES;
         for (size_t i = 0; i < now; i++)
             rays[i] = begin_march(
-                frame, krs_ray(frame->scene, origins[begin + i], directions[begin + i], farthest),
+                state, krs_ray(state->scene, origins[begin + i], directions[begin + i], farthest),
                 tolerance);
-        status = raycast(frame, rays, now, lanes && by_lanes(frame, now), limits, hits + begin);
+        status = raycast(state, rays, now, lanes && by_lanes(state, now), limits, hits + begin);
     }
     return status;
 }
 
-KrsStatus krs_raycast(KrsState *frame, const double (*origins)[3], const double (*directions)[3],
+KrsStatus krs_raycast(KrsState *state, const double (*origins)[3], const double (*directions)[3],
                       size_t count, double farthest, double tolerance, KrsHit *hits)
 {
-    return frame_raycast(frame, origins, directions, count, farthest, tolerance,
+    return state_raycast(state, origins, directions, count, farthest, tolerance,
                          (RayLimits){KRS_MAX_STEPS, UINT64_MAX}, hits);
 }

@@ -38,7 +38,7 @@ static Place place_table(const InstanceTable *table, TableSizes *next)
     return place_parts(table, cells, table->cells.first[cells], next);
 }
 
-/* Leaves room for the grids of all frames. */
+/* Leaves room for the grids of all states. */
 static void leave_room(const InstanceTable *table, TableSizes *next)
 {
     GridLimits most = grid_limits_of_frame(table->rows);
@@ -163,7 +163,7 @@ static void put_grid(const Grid *grid, Texel *records, Texel *lists)
         lists[entries / 2][1] = 0;
 }
 
-/* As other values of the frame are: what single precision does not have is the largest number that it
+/* As other values of the state are: what single precision does not have is the largest number that it
    has. */
 static float to_single(double number)
 {

@@ -39,12 +39,12 @@ typedef struct TableSizes {
     size_t rows, cells;
 } TableSizes;
 
-/* Room for those of all frames.  0 when there are neither tables nor textures; both may be NULL. */
+/* Room for those of all states.  0 when there are neither tables nor textures; both may be NULL. */
 TableSizes tables_measure(const Instances *instances, const Textures *textures);
 /* Which texels of the cells the header of a texture and its finest level begin at. */
 void tables_place_texture(const Instances *instances, const Textures *textures, size_t index,
                           size_t *header, size_t *first);
-/* Fills arrays of these sizes; `values` of nodes has the numbers of the frame, and may be NULL where
+/* Fills arrays of these sizes; `values` of nodes has the numbers of the state, and may be NULL where
    there are none.  `relocated`: tables with an origin are relative to it, for camera-relative points.  Returns how many texels at the beginning are in use: all, unless instances move. */
 TableSizes tables_pack(const Instances *instances, const Textures *textures,
                        const NodeValue *values, bool relocated, float (*rows)[4],

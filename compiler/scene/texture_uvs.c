@@ -14,49 +14,49 @@ static bool reads_normals(const Graph *graph, const Tape *tape)
     return false;
 }
 
-static size_t nearest_component(KrsState *frame, const double point[3])
+static size_t nearest_component(KrsState *state, const double point[3])
 {
-    const KrsScene *scene   = frame->scene;
+    const KrsScene *scene   = state->scene;
     size_t          nearest = 0;
     if (scene->component_count == 1)
         return 0;
-    tape_run_point(&frame->tapes.distance, point, frame->values);
+    tape_run_point(&state->tapes.distance, point, state->values);
     for (size_t i = 1; i < scene->component_count; i++)
-        if (frame->values[distance_root(&scene->roots, i)].v[0] <
-            frame->values[distance_root(&scene->roots, nearest)].v[0])
+        if (state->values[distance_root(&scene->roots, i)].v[0] <
+            state->values[distance_root(&scene->roots, nearest)].v[0])
             nearest = i;
     return nearest;
 }
 
 /* False: nothing there reads a texture. */
-static bool place_at(KrsState *frame, const double point[3], bool normals, double place[2])
+static bool place_at(KrsState *state, const double point[3], bool normals, double place[2])
 {
-    const KrsScene *scene     = frame->scene;
+    const KrsScene *scene     = state->scene;
     const Node     *roots     = roots_of(&scene->roots, ROOTS_PLACE).items;
-    Node            root      = roots[nearest_component(frame, point)];
+    Node            root      = roots[nearest_component(state, point)];
     double          normal[3] = {0, 0, 0};
     if (scene->graph->items[root].type != TYPE_VEC2)
         return false;
-    if (normals && krs_normal(frame, (const double(*)[3])point, 1, &normal) != KRS_OK)
+    if (normals && krs_normal(state, (const double(*)[3])point, 1, &normal) != KRS_OK)
         return false;
-    tape_run_surface(&frame->tapes.places, point, normal, 0, frame->values);
-    memcpy(place, frame->values[root].v, 2 * sizeof *place);
+    tape_run_surface(&state->tapes.places, point, normal, 0, state->values);
+    memcpy(place, state->values[root].v, 2 * sizeof *place);
     return true;
 }
 
-KrsStatus krs_texture_uvs(KrsState *frame, const double (*points)[3], size_t count,
+KrsStatus krs_texture_uvs(KrsState *state, const double (*points)[3], size_t count,
                           double (*places)[2])
 {
-    const KrsScene *scene   = frame->scene;
+    const KrsScene *scene   = state->scene;
     bool            any     = roots_of(&scene->roots, ROOTS_PLACE).count > 0;
     bool            normals = reads_normals(scene->graph, &scene->places);
     for (size_t i = 0; i < count; i++)
         if (!points || !isfinite(points[i][0]) || !isfinite(points[i][1]) ||
             !isfinite(points[i][2]))
             return KRS_BAD_ARGUMENT;
-    frame_refresh_points(frame);
+    state_refresh_points(state);
     for (size_t i = 0; i < count; i++)
-        if (!any || !place_at(frame, points[i], normals, places[i]))
+        if (!any || !place_at(state, points[i], normals, places[i]))
             places[i][0] = places[i][1] = NAN;
     return KRS_OK;
 }

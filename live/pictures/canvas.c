@@ -20,7 +20,7 @@ typedef struct Film {
 struct Canvas {
     KrsRenderer  *renderer;
     KrsRendering *rendering;
-    KrsState     *frame;
+    KrsState     *state;
     Version      *version;
     Needs         made;        /* whose shaders there are; the most of each kind */
     bool          previews;    /* such shaders there are */
@@ -86,7 +86,7 @@ void canvas_free(Canvas *canvas)
     free_films(canvas);
     krs_rendering_free(canvas->rendering);
     krs_renderer_free(canvas->renderer);
-    krs_state_free(canvas->frame);
+    krs_state_free(canvas->state);
     version_release(canvas->version);
     free(canvas);
 }
@@ -163,7 +163,7 @@ static unsigned lens_of_scene(const Canvas *canvas)
     unsigned        most  = 0;
     for (size_t i = 0; i < krs_camera_count(scene); i++) {
         KrsCamera      camera;
-        const unsigned lens = krs_state_camera(canvas->frame, i, &camera) == KRS_OK
+        const unsigned lens = krs_state_camera(canvas->state, i, &camera) == KRS_OK
                                   ? lens_of(&camera)
                                   : 0;
         most                = lens > most ? lens : most;
@@ -189,21 +189,21 @@ static void note_made(Canvas *canvas, const Needs *needs)
 /* Makes frame and rendering; what there was stays if that fails. */
 static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool paths)
 {
-    KrsState     *frame     = NULL;
+    KrsState     *state     = NULL;
     KrsRendering *rendering = NULL;
-    KrsStatus     status    = krs_state_new(scene, &frame);
+    KrsStatus     status    = krs_state_new(scene, &state);
     if (status == KRS_OK)
         status = krs_rendering_new(canvas->renderer, scene,
                                    paths ? KRS_FOR_PATHS : KRS_FOR_PICTURES, &rendering);
     if (status != KRS_OK) {
-        krs_state_free(frame);
+        krs_state_free(state);
         return status;
     }
     free_films(canvas);
     krs_rendering_free(canvas->rendering);
-    krs_state_free(canvas->frame);
+    krs_state_free(canvas->state);
     canvas->rendering   = rendering;
-    canvas->frame       = frame;
+    canvas->state       = state;
     canvas->paths_first = paths;
     return KRS_OK;
 }
@@ -211,16 +211,16 @@ static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool path
 /* Frame and rendering are of the same scene, whatever fails. */
 static KrsStatus update(Canvas *canvas, const KrsScene *scene)
 {
-    KrsState *frame  = NULL;
-    KrsStatus status = krs_state_new(scene, &frame);
+    KrsState *state  = NULL;
+    KrsStatus status = krs_state_new(scene, &state);
     if (status == KRS_OK)
         status = krs_rendering_update(canvas->rendering, scene);
     if (status != KRS_OK) {
-        krs_state_free(frame);
+        krs_state_free(state);
         return status;
     }
-    krs_state_free(canvas->frame);
-    canvas->frame = frame;
+    krs_state_free(canvas->state);
+    canvas->state = state;
     return KRS_OK;
 }
 
@@ -260,7 +260,7 @@ static KrsStatus try_out(Canvas *canvas, const View *view)
         return status;
     const float point[1][3] = {{0, 0, 0}};
     float       distance;
-    return krs_device_distance(canvas->rendering, canvas->frame, point, 1, &distance);
+    return krs_device_distance(canvas->rendering, canvas->state, point, 1, &distance);
 }
 
 KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsProgressCallback *compiling,
@@ -285,19 +285,19 @@ KrsStatus canvas_set(Canvas *canvas, const View *view)
     for (size_t i = 0; i < krs_parameter_count(scene); i++) {
         KrsParameter parameter;
         krs_parameter(scene, i, &parameter);
-        if (krs_state_set(canvas->frame, parameter.name, view->values[i], parameter.components) !=
+        if (krs_state_set(canvas->state, parameter.name, view->values[i], parameter.components) !=
             KRS_OK)
             status = KRS_BAD_ARGUMENT;
     }
-    if (krs_state_set_time(canvas->frame, view->time) != KRS_OK ||
-        krs_state_set_zones(canvas->frame, view->zones, view->zone_count) != KRS_OK)
+    if (krs_state_set_time(canvas->state, view->time) != KRS_OK ||
+        krs_state_set_zones(canvas->state, view->zones, view->zone_count) != KRS_OK)
         status = KRS_BAD_ARGUMENT;
     return status;
 }
 
 KrsStatus canvas_camera(Canvas *canvas, size_t index, KrsCamera *camera)
 {
-    return krs_state_camera(canvas->frame, index, camera);
+    return krs_state_camera(canvas->state, index, camera);
 }
 
 static bool report_progress(void *user, double done)
@@ -339,7 +339,7 @@ KrsStatus canvas_add(Canvas *canvas, FilmKind kind, const View *view, uint32_t w
         krs_film_clear(film->film);
     canvas->progress = progress;
     canvas->user     = user;
-    return krs_film_add(film->film, canvas->frame, &view->camera, samples);
+    return krs_film_add(film->film, canvas->state, &view->camera, samples);
 }
 
 uint32_t canvas_samples(const Canvas *canvas, FilmKind kind)
@@ -383,7 +383,7 @@ float *canvas_slopes(Canvas *canvas, const KrsPicture *picture)
     bool   good      = points && steps && slopes && distances;
     if (good) {
         const size_t used = place_points(picture, points, steps);
-        good = krs_device_distance(canvas->rendering, canvas->frame, (const float(*)[3])points,
+        good = krs_device_distance(canvas->rendering, canvas->state, (const float(*)[3])points,
                                    2 * used, distances) == KRS_OK;
         for (size_t i = 0, at = 0; good && i < count; i++)
             if (picture->component[i] != 0) {

@@ -284,5 +284,5 @@ bool flat_pieces(MeshField *field, Box box, double size, FlatRounds *rounds, Fla
     find_forms(&f);
     Form root    = form_of_operand(&f, f.tape->outputs[0]);
     pieces->root = cut(&f, flat_solid(&f, &root));
-    return !f.failed && field->frame->zone_count == 0;
+    return !f.failed && field->state->zone_count == 0;
 }

@@ -62,7 +62,7 @@ typedef struct Seen {
 
 /* Heights are along the normal, and as much as `aslant` says besides; NULL: that alone.  False: it is so thin that rounding
    matters. */
-static bool frame_new(const NearMesh *mesh, const double corners[3][3], double error,
+static bool state_new(const NearMesh *mesh, const double corners[3][3], double error,
                       const double *aslant, Frame *frame)
 {
     static const double least = 1e-9, most = 1e-5;
@@ -326,7 +326,7 @@ static Verdict face_along(const NearMesh *mesh, const double corners[3][3], doub
 {
     Frame frame;
     forget_faced(look);
-    if (!frame_new(mesh, corners, error, aslant, &frame))
+    if (!state_new(mesh, corners, error, aslant, &frame))
         return IS_UNDECIDED;
     for (size_t i = 0; i < start_count && look->faced_count == 0; i++)
         if (is_faced(mesh, &frame, starts[i]))

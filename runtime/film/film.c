@@ -301,7 +301,7 @@ static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
 
 /* What is added to a film by one call, or one moment of it. */
 typedef struct Addition {
-    KrsState        *frame;
+    KrsState        *state;
     const KrsCamera *camera; /* NULL: that of the options, or rays */
     const KrsRays   *rays;
     uint32_t         samples;
@@ -320,7 +320,7 @@ static KrsStatus add_moment(KrsFilm *film, const Addition *a)
                .part_begun     = a->part_begun,
                .part           = a->part,
                .stats          = &film->sums->stats};
-    if (!job_read_frame(&job, a->frame, a->camera))
+    if (!job_read_frame(&job, a->state, a->camera))
         return job.gpu->status;
     film->rendering->catches = plate_catches(film);
     Plan plan                = {.gpu = job.gpu};
@@ -341,7 +341,7 @@ static bool find_shutter(const KrsFilm *film, const Addition *a, double seconds[
     KrsCamera camera = {0};
     if (a->camera)
         camera = *a->camera;
-    else if (a->rays || krs_state_camera(a->frame, film->options.camera, &camera) != KRS_OK)
+    else if (a->rays || krs_state_camera(a->state, film->options.camera, &camera) != KRS_OK)
         return false;
     for (int i = 0; i < 2; i++)
         seconds[i] = camera.shutter[i] * film->options.frame_seconds;
@@ -352,7 +352,7 @@ static bool find_shutter(const KrsFilm *film, const Addition *a, double seconds[
    golden ratio, modulo 1, which fill it evenly; the first, whose AOVs are kept, is the middle. */
 static KrsStatus add_moments(KrsFilm *film, const Addition *a, const double shutter[2])
 {
-    const double golden = 0.61803398874989485, begin = krs_state_time(a->frame);
+    const double golden = 0.61803398874989485, begin = krs_state_time(a->state);
     KrsStatus    status = KRS_OK;
     for (uint32_t i = 0; i < a->samples && status == KRS_OK; i++) {
         double   part   = 0.5 + golden * film->samples;
@@ -361,7 +361,7 @@ static KrsStatus add_moments(KrsFilm *film, const Addition *a, const double shut
         moment.samples    = 1;
         moment.part       = 1.0 / a->samples;
         moment.part_begun = moment.part * i;
-        status            = krs_state_set_time(a->frame,
+        status            = krs_state_set_time(a->state,
                                                begin + shutter[0] + part * (shutter[1] - shutter[0]));
         if (status == KRS_OK)
             status = add_moment(film, &moment);
@@ -369,7 +369,7 @@ static KrsStatus add_moments(KrsFilm *film, const Addition *a, const double shut
             gpu_refuse(&film->rendering->renderer->gpu, status,
                        "the scene is not finite while the shutter is open");
     }
-    krs_state_set_time(a->frame, begin);
+    krs_state_set_time(a->state, begin);
     return status;
 }
 
@@ -387,14 +387,14 @@ static KrsStatus add(KrsFilm *film, const Addition *a)
     return find_shutter(film, a, shutter) ? add_moments(film, a, shutter) : add_moment(film, a);
 }
 
-KrsStatus krs_film_add(KrsFilm *film, KrsState *frame, const KrsCamera *camera, uint32_t samples)
+KrsStatus krs_film_add(KrsFilm *film, KrsState *state, const KrsCamera *camera, uint32_t samples)
 {
-    return add(film, &(Addition){frame, camera, NULL, samples, 0, 1});
+    return add(film, &(Addition){state, camera, NULL, samples, 0, 1});
 }
 
-KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *frame, const KrsRays *rays)
+KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsRays *rays)
 {
-    return add(film, &(Addition){frame, NULL, rays, 1, 0, 1});
+    return add(film, &(Addition){state, NULL, rays, 1, 0, 1});
 }
 
 /* ---- reading ---- */
@@ -474,14 +474,14 @@ KrsStatus krs_film_read(KrsFilm *film, uint32_t aovs, KrsPicture **picture)
 }
 
 /* Renders by a film that is read once, so its sums become the picture without a copy. */
-KrsStatus krs_render(KrsRendering *rendering, KrsState *frame, const KrsRenderOptions *options,
+KrsStatus krs_render(KrsRendering *rendering, KrsState *state, const KrsRenderOptions *options,
                      KrsPicture **picture)
 {
     KrsFilm  *film   = NULL;
     KrsStatus status = krs_film_new(rendering, options, &film);
     *picture         = NULL;
     if (status == KRS_OK)
-        status = krs_film_add(film, frame, NULL, film->options.samples);
+        status = krs_film_add(film, state, NULL, film->options.samples);
     if (status == KRS_OK && !(store_all(film) && finish(film, film->sums)))
         status = rendering->renderer->gpu.status;
     if (status == KRS_OK) {

@@ -1,7 +1,7 @@
 /*
  * emissive.glsl: paths go on towards what emits light.
  *
- * Around what emits light there are balls (compiler/scene/frame_emissive.c).  A path that is scattered goes on in
+ * Around what emits light there are balls (compiler/scene/state_emissive.c).  A path that is scattered goes on in
  * a direction of the surface's own choice, or into the cone in which one of these balls is seen.  The
  * probability density is that of both together (Veach 1997, the balance heuristic with one sample).
  * So light is the same whatever is in a ball, also where it is hidden or emits nothing; only noise

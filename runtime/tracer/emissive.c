@@ -34,14 +34,14 @@ static void find_region(const KrsProgram *program, const KrsCamera *camera, doub
     }
 }
 
-uint32_t emissive_find(const KrsProgram *program, const KrsCamera *camera, KrsState *frame,
+uint32_t emissive_find(const KrsProgram *program, const KrsCamera *camera, KrsState *state,
                        const double rebase_origin[3], EmissiveBlock balls[MAX_EMISSIVE])
 {
     KrsEmissive  found[KRS_MAX_EMISSIVE];
     double       low[3], high[3];
     const double least = MIN_RADIUS * find_scale(camera);
     find_region(program, camera, low, high);
-    const size_t count = krs_state_emissive(frame, low, high, least, found);
+    const size_t count = krs_state_emissive(state, low, high, least, found);
     for (size_t i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++)
             balls[i].middle[k] = (float)(found[i].middle[k] - rebase_origin[k]);

@@ -61,7 +61,7 @@ static bool is_camera_relative(const Job *job)
 /* Tells whether all rays begin outside of all solids.  A ray from inside of a solid hits the inner wall
    of the union, which no march group or scene part knows by itself.  Rays of a list may begin
    anywhere, and are not tested one by one. */
-static bool begins_outside(const Job *job, KrsState *frame)
+static bool begins_outside(const Job *job, KrsState *state)
 {
     const KrsProgram *program   = job->rendering->program;
     const KrsCamera  *camera    = &job->view.camera;
@@ -69,7 +69,7 @@ static bool begins_outside(const Job *job, KrsState *frame)
     if (job->rays)
         return false;
     if (camera->projection != KRS_ORTHOGRAPHIC)
-        return krs_distance(frame, (const double(*)[3]) & camera->eye, 1, &clearance) == KRS_OK &&
+        return krs_distance(state, (const double(*)[3]) & camera->eye, 1, &clearance) == KRS_OK &&
                clearance > reach;
     for (int corner = 0; corner < 8; corner++) {
         double ahead = 0;
@@ -132,9 +132,9 @@ static bool choose_light(Job *job)
     return light == KRS_NO_LIGHT || light <= job->view.light_count;
 }
 
-bool job_read_frame(Job *job, KrsState *frame, const KrsCamera *camera)
+bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera)
 {
-    if (krs_state_view(frame, camera || job->rays ? 0 : job->options.camera, &job->view) != KRS_OK)
+    if (krs_state_view(state, camera || job->rays ? 0 : job->options.camera, &job->view) != KRS_OK)
         return job_refuse(job, "the scene has no such camera");
     if (!choose_light(job))
         return job_refuse(job, "the scene has no such light");
@@ -145,18 +145,18 @@ bool job_read_frame(Job *job, KrsState *frame, const KrsCamera *camera)
                                    &job->view.camera))
         return job_refuse(job, "rays have finite origins, directions that are not 0, and a width "
                                "or a spread above 0");
-    origin_choose(job->rendering, frame,
+    origin_choose(job->rendering, state,
                   &(Viewer){&job->view.camera, job->rays, job->options.width, job->options.height},
                   job->rebase_origin);
-    job->begins_outside = begins_outside(job, frame);
+    job->begins_outside = begins_outside(job, state);
     if (!sky_table_upload(job->rendering, job->view.sky.map) || !prepare_frame_block(job))
         return false;
     if (job->rendering->program->emits && job->options.integrator != KRS_INTEGRATOR_PREVIEW)
-        job->frame.emissive_count = emissive_find(job->rendering->program, &job->view.camera, frame,
+        job->frame.emissive_count = emissive_find(job->rendering->program, &job->view.camera, state,
                                                   job->rebase_origin, job->emissive);
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
     const double *rebase_origin = is_camera_relative(job) ? job->rebase_origin : NULL;
-    return rendering_set_parameters(job->rendering, frame, rebase_origin) &&
+    return rendering_set_parameters(job->rendering, state, rebase_origin) &&
            rendering_set_rays(job->rendering, kind_of_rays(job)) &&
-           (!rebase_origin || rendering_rebase(job->rendering, frame, rebase_origin));
+           (!rebase_origin || rendering_rebase(job->rendering, state, rebase_origin));
 }

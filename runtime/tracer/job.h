@@ -70,7 +70,7 @@ typedef struct Job {
 bool job_refuse(Job *job, const char *words);
 /* Reads a frame: lights, parameters, and the camera or the rays of a list.  `camera` may be NULL
    for that of the options, which must be complete (settings.h). */
-bool job_read_frame(Job *job, KrsState *frame, const KrsCamera *camera);
+bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera);
 /* The width at a distance: of a pixel in the middle of the picture, or of a ray of the list. */
 double job_pixel(const Job *job, double distance);
 /* The shader without a scene for the rays of this frame. */

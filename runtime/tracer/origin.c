@@ -38,7 +38,7 @@ static double pixel_at(const Viewer *viewer, double distance)
     return view_width(viewer->camera, viewer->rays, viewer->height, distance);
 }
 
-static void look(const Viewer *viewer, KrsState *frame, Sight *sight)
+static void look(const Viewer *viewer, KrsState *state, Sight *sight)
 {
     double origins[RAYS][3], directions[RAYS][3];
     for (int i = 0; i < RAYS; i++) {
@@ -48,7 +48,7 @@ static void look(const Viewer *viewer, KrsState *frame, Sight *sight)
                                       origins[i], directions[i]))
             return;
     }
-    if (krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions, RAYS,
+    if (krs_raycast(state, (const double(*)[3])origins, (const double(*)[3])directions, RAYS,
                     HUGE_VAL, PART_OF_PIXEL * sight->pixel, sight->hits) != KRS_OK)
         return;
     for (int i = 0; i < RAYS; i++)
@@ -88,7 +88,7 @@ static const double *nearest_point(const Sight *sight, const double eye[3])
     return nearest ? nearest->point : eye;
 }
 
-void origin_choose(const KrsRendering *rendering, KrsState *frame, const Viewer *viewer,
+void origin_choose(const KrsRendering *rendering, KrsState *state, const Viewer *viewer,
                    double origin[3])
 {
     const double(*eye)[3] = (const double(*)[3]) & viewer->camera->eye;
@@ -96,7 +96,7 @@ void origin_choose(const KrsRendering *rendering, KrsState *frame, const Viewer 
     memset(origin, 0, 3 * sizeof *origin);
     if (!rendering_rebases(rendering))
         return;
-    if (krs_distance(frame, eye, 1, &sight.nearest) != KRS_OK)
+    if (krs_distance(state, eye, 1, &sight.nearest) != KRS_OK)
         sight.nearest = 0;
     sight.nearest = fabs(sight.nearest);
     sight.pixel   = pixel_at(viewer, sight.nearest);
@@ -105,7 +105,7 @@ void origin_choose(const KrsRendering *rendering, KrsState *frame, const Viewer 
     if (!moves &&
         !(differs && krs_may_blur_normals(sight.eye, sight.nearest, sight.pixel, viewer->height)))
         return;
-    look(viewer, frame, &sight);
+    look(viewer, state, &sight);
     if (moves || (differs && blurs_normals(viewer, &sight)))
         memcpy(origin, nearest_point(&sight, *eye), 3 * sizeof *origin);
 }

@@ -15,7 +15,7 @@ typedef struct Viewer {
 } Viewer;
 
 /* Sets the origin: a point near the eye, where rounding to single precision would be visible; else 0. */
-void origin_choose(const KrsRendering *rendering, KrsState *frame, const Viewer *viewer,
+void origin_choose(const KrsRendering *rendering, KrsState *state, const Viewer *viewer,
                    double origin[3]);
 
 #endif

@@ -67,7 +67,7 @@ bool point_query_run(KrsRendering *rendering, uint32_t count, double step)
     return gpu_finish(gpu, &ms);
 }
 
-KrsStatus point_query_sample(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
+KrsStatus point_query_sample(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                              size_t count, float *distances, SurfacePoint *surfaces)
 {
     renderer_clear(rendering->renderer);
@@ -75,7 +75,7 @@ KrsStatus point_query_sample(KrsRendering *rendering, KrsState *frame, const flo
         gpu_refuse(&rendering->renderer->gpu, KRS_BAD_ARGUMENT, "there are no points");
         return KRS_BAD_ARGUMENT;
     }
-    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))
+    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, state, NULL))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE) {
         size_t      left  = count - first;
@@ -95,8 +95,8 @@ KrsStatus point_query_sample(KrsRendering *rendering, KrsState *frame, const flo
     return KRS_OK;
 }
 
-KrsStatus krs_device_distance(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
+KrsStatus krs_device_distance(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                               size_t count, float *distances)
 {
-    return point_query_sample(rendering, frame, points, count, distances, NULL);
+    return point_query_sample(rendering, state, points, count, distances, NULL);
 }

@@ -68,7 +68,7 @@ static const double PART_OF_SCENE = 0.1;
 /* Who asks, and the base that points on the device are relative to. */
 typedef struct Asker {
     KrsRendering *rendering;
-    KrsState     *frame;
+    KrsState     *state;
     double        base[3];
     double        step; /* the least one to a tap for a normal */
 } Asker;
@@ -76,8 +76,8 @@ typedef struct Asker {
 static bool move_base(Asker *asker, const double base[3])
 {
     memcpy(asker->base, base, sizeof asker->base);
-    return rendering_set_parameters(asker->rendering, asker->frame, base) &&
-           rendering_rebase(asker->rendering, asker->frame, base);
+    return rendering_set_parameters(asker->rendering, asker->state, base) &&
+           rendering_rebase(asker->rendering, asker->state, base);
 }
 
 /* Finds the base that answers want, if the present one is too far away, and the least step to a tap: a
@@ -136,14 +136,14 @@ static uint32_t batch_of(size_t left)
     return left < POINTS_AT_ONCE ? (uint32_t)left : POINTS_AT_ONCE;
 }
 
-KrsStatus krs_device_probe(KrsRendering *rendering, KrsState *frame, const double (*points)[3],
+KrsStatus krs_device_probe(KrsRendering *rendering, KrsState *state, const double (*points)[3],
                            size_t count, KrsHit *hits)
 {
-    Asker asker = {rendering, frame, {0}, POINT_QUERY_STEP};
+    Asker asker = {rendering, state, {0}, POINT_QUERY_STEP};
     renderer_clear(rendering->renderer);
     if (!is_in_reach(points, count))
         return refuse(rendering, "a coordinate is not a number below 1e18");
-    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))
+    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, state, NULL))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE)
         if (!probe_batch(&asker, points + first, batch_of(count - first), hits + first))
@@ -259,12 +259,12 @@ static void take_ray_hit(const KrsRay *ray, const RayHitBlock *ray_hit, const An
 
 /* Single precision cannot tell on which side of a surface a ray begins that is as near to it as
    rounding: on the wrong one it would go through the solid, or past its end.  The host can. */
-static bool took_wrong_side(KrsState *frame, const RayHitBlock *ray_hit, const double (*origin)[3])
+static bool took_wrong_side(KrsState *state, const RayHitBlock *ray_hit, const double (*origin)[3])
 {
     bool   inside = ray_hit->steps & QUERY_BEGINS_INSIDE;
     double distance;
     return (ray_hit->steps & QUERY_SIDE_UNKNOWN) &&
-           krs_distance(frame, origin, 1, &distance) == KRS_OK && (distance < 0) != inside;
+           krs_distance(state, origin, 1, &distance) == KRS_OK && (distance < 0) != inside;
 }
 
 /* Rays that are asked about. */
@@ -297,8 +297,8 @@ static bool answer_rays(Asker *asker, const Question *ask, uint32_t count, KrsHi
     for (uint32_t i = 0; i < count; i++) {
         KrsRay ray = krs_ray(scene, ask->origins[i], ask->directions[i], ask->farthest);
         take_ray_hit(&ray, &ray_hits[i], rendering->answers.bytes, &hits[i]);
-        if (took_wrong_side(asker->frame, &ray_hits[i], ask->origins + i))
-            krs_raycast(asker->frame, ask->origins + i, ask->directions + i, 1, ask->farthest,
+        if (took_wrong_side(asker->state, &ray_hits[i], ask->origins + i))
+            krs_raycast(asker->state, ask->origins + i, ask->directions + i, 1, ask->farthest,
                         ask->tolerance, hits + i);
     }
     return true;
@@ -313,7 +313,7 @@ static bool look(Asker *asker, const Question *ask, uint32_t count)
     double         base[3];
     for (uint32_t i = 0; i < looks; i++) {
         const size_t ray = (size_t)i * count / looks;
-        if (krs_raycast(asker->frame, ask->origins + ray, ask->directions + ray, 1, ask->farthest,
+        if (krs_raycast(asker->state, ask->origins + ray, ask->directions + ray, 1, ask->farthest,
                         ask->tolerance, hits + i) != KRS_OK)
             hits[i].hit = false;
     }
@@ -330,17 +330,17 @@ static bool raycast_batch(Asker *asker, const Question *ask, uint32_t count, Krs
             (move_base(asker, base) && answer_rays(asker, ask, count, hits)));
 }
 
-KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *frame, const double (*origins)[3],
+KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *state, const double (*origins)[3],
                              const double (*directions)[3], size_t count, double farthest,
                              double tolerance, KrsHit *hits)
 {
-    Asker asker = {rendering, frame, {0}, POINT_QUERY_STEP};
+    Asker asker = {rendering, state, {0}, POINT_QUERY_STEP};
     renderer_clear(rendering->renderer);
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance) ||
         !is_in_reach(origins, count) || tolerance > KRS_MAX_COORDINATE)
         return refuse(rendering, "rays have finite origins below 1e18, directions that are not 0, "
                                  "and neither end nor tolerance below 0");
-    if (!prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))
+    if (!prepare(rendering) || !rendering_set_parameters(rendering, state, NULL))
         return rendering->renderer->gpu.status;
     set_frame(rendering, tolerance);
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE) {

@@ -22,7 +22,7 @@ typedef struct SurfacePoint {
 } SurfacePoint;
 /* As krs_device_distance, and what is at the points; either may be NULL.  Where the distance is constant around a point
    the normal by differences is 0, and what is there is that of some part. */
-KrsStatus point_query_sample(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
+KrsStatus point_query_sample(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                              size_t count, float *distances, SurfacePoint *surfaces);
 /* Tells how large what is asked about is: the longest side of the box around all but planes; 1 where that has
    no end. */

@@ -286,10 +286,10 @@ static bool choose_zones(KrsRendering *rendering, size_t count)
     return shaders_create(rendering, rendering->purpose);
 }
 
-bool rendering_set_parameters(KrsRendering *rendering, const KrsState *frame,
+bool rendering_set_parameters(KrsRendering *rendering, const KrsState *state,
                               const double *rebase_origin)
 {
-    if (!scene_tables_upload(rendering, frame, rebase_origin))
+    if (!scene_tables_upload(rendering, state, rebase_origin))
         return false;
     /* Written to host memory first: the compiler's functions may read back what they write. */
     Gpu   *gpu         = &rendering->renderer->gpu;
@@ -299,10 +299,10 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsState *frame,
                                  "set the scene's parameters");
     if (!block)
         return false;
-    krs_state_parameters(frame, block);
+    krs_state_parameters(state, block);
     if (values > 0)
-        krs_state_values(frame, block + first_value);
-    size_t zones = krs_state_zones(frame, rebase_origin, block + slots);
+        krs_state_values(state, block + first_value);
+    size_t zones = krs_state_zones(state, rebase_origin, block + slots);
     for (size_t i = zones; i < KRS_MAX_ZONES; i++)
         block[slots + i][3] = NO_ZONE;
     memcpy(rendering->parameters.bytes, block, (slots + KRS_MAX_ZONES) * sizeof *block);
@@ -311,7 +311,7 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsState *frame,
     return choose_zones(rendering, zones);
 }
 
-bool rendering_rebase(KrsRendering *rendering, KrsState *frame, const double rebase_origin[3])
+bool rendering_rebase(KrsRendering *rendering, KrsState *state, const double rebase_origin[3])
 {
     Gpu   *gpu   = &rendering->renderer->gpu;
     size_t first = rendering->program->parameter_slots + rendering->program->value_slots +
@@ -321,7 +321,7 @@ bool rendering_rebase(KrsRendering *rendering, KrsState *frame, const double reb
                                  "move the scene's origin to the camera");
     if (!block)
         return false;
-    krs_state_rebase(frame, rebase_origin, block);
+    krs_state_rebase(state, rebase_origin, block);
     memcpy((char *)rendering->parameters.bytes + first * sizeof *block, block,
            slots * sizeof *block);
     gpu_release(gpu, block);

@@ -8,14 +8,14 @@
 
 /* Copies the frame's parameters and zones to the device.  Chooses the shaders for these zones, and
    for the scene's own cameras. */
-bool rendering_set_parameters(KrsRendering *rendering, const KrsState *frame,
+bool rendering_set_parameters(KrsRendering *rendering, const KrsState *state,
                               const double *rebase_origin);
 /* Chooses the shaders for rays of another kind; call it after rendering_set_parameters.  Shaders of
    a scene with a panorama or a lens serve all of its cameras. */
 bool rendering_set_rays(KrsRendering *rendering, RayKind kind);
 /* Makes points relative to this origin, and chooses the shaders for that; call it after
    rendering_set_parameters. */
-bool rendering_rebase(KrsRendering *rendering, KrsState *frame, const double rebase_origin[3]);
+bool rendering_rebase(KrsRendering *rendering, KrsState *state, const double rebase_origin[3]);
 /* Copies the lights of a frame to the device, relative to an origin, and makes room for `rays`
    listed rays behind them.  `light` is as in KrsRenderOptions: others are black. */
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,

@@ -67,7 +67,7 @@ static bool copy(Gpu *gpu, const Buffer *from, const Buffer *to, VkDeviceSize by
     return gpu_finish(gpu, &ms);
 }
 
-static bool upload(KrsRendering *rendering, const KrsState *frame, const double *rebase_origin)
+static bool upload(KrsRendering *rendering, const KrsState *state, const double *rebase_origin)
 {
     Gpu   *gpu  = &rendering->renderer->gpu;
     Buffer rows = {0}, cells = {0};
@@ -75,7 +75,7 @@ static bool upload(KrsRendering *rendering, const KrsState *frame, const double 
     bool   done = false;
     if (buffer_create(gpu, &rows, rendering->table_rows.size, SHARED, TABLES) &&
         buffer_create(gpu, &cells, rendering->table_cells.size, SHARED, TABLES)) {
-        krs_state_tables_in_use(frame, rebase_origin, rows.bytes, cells.bytes, &row_count,
+        krs_state_tables_in_use(state, rebase_origin, rows.bytes, cells.bytes, &row_count,
                                 &cell_count);
         done = copy(gpu, &rows, &rendering->table_rows, row_count * ROW_BYTES) &&
                copy(gpu, &cells, &rendering->table_cells, cell_count * CELL_BYTES);
@@ -86,7 +86,7 @@ static bool upload(KrsRendering *rendering, const KrsState *frame, const double 
 }
 
 /* The tables are those of the frame, unless they are so already. */
-static bool renew(KrsRendering *rendering, const KrsState *frame, const double *rebase_origin)
+static bool renew(KrsRendering *rendering, const KrsState *state, const double *rebase_origin)
 {
     Gpu   *gpu         = &rendering->renderer->gpu;
     size_t slots       = rendering->program->parameter_slots;
@@ -94,17 +94,17 @@ static bool renew(KrsRendering *rendering, const KrsState *frame, const double *
     double(*before)[4] = rendering->table_inputs;
     if (!inputs)
         return false;
-    krs_state_table_inputs(frame, rebase_origin, inputs);
+    krs_state_table_inputs(state, rebase_origin, inputs);
     bool same = before && memcmp(before, inputs, slots * sizeof *inputs) == 0;
-    bool done = same || upload(rendering, frame, rebase_origin);
+    bool done = same || upload(rendering, state, rebase_origin);
     gpu_release(gpu, done ? before : inputs);
     if (done)
         rendering->table_inputs = inputs;
     return done;
 }
 
-bool scene_tables_upload(KrsRendering *rendering, const KrsState *frame,
+bool scene_tables_upload(KrsRendering *rendering, const KrsState *state,
                          const double *rebase_origin)
 {
-    return rendering->program->table_cells == 0 || renew(rendering, frame, rebase_origin);
+    return rendering->program->table_cells == 0 || renew(rendering, state, rebase_origin);
 }

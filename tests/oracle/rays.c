@@ -41,7 +41,7 @@ static Steps steps_new(Product product, Method method)
                                            : research_roots(&scene->roots, RESEARCH_ROOT_FREE);
     Steps       steps = {product, method, root[0], {0}};
     steps.tape        = tape_new(scene->graph, &steps.root, 1, &scene->arena);
-    frame_refresh(product.frame);
+    state_refresh(product.frame);
     tape_run_frame(&steps.tape, product.frame->parameters, product.frame->values);
     return steps;
 }

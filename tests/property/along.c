@@ -124,7 +124,7 @@ static void steps_stay_before_the_surface(void **state)
     assert_true(krs_scene_program(scene)->along);
     Node root = roots_of(&scene->roots, ROOTS_ALONG).items[0];
     Tape tape = tape_new(scene->graph, &root, 1, &scene->arena);
-    frame_refresh(frame);
+    state_refresh(frame);
     tape_run_frame(&tape, frame->parameters, frame->values);
     int evaluations = 0, hits = 0;
     for (int ray = 0; ray < 250; ray++) {

@@ -122,7 +122,7 @@ static KrsScene *open_scene(Subject *s, const char *name, const char *text)
         fail_msg("%s does not compile", name);
     assert_true(scene->program.table_count > 0);
     assert_int_equal(krs_state_new(scene, &s->frame), KRS_OK);
-    frame_refresh(s->frame);
+    state_refresh(s->frame);
     return scene;
 }
 

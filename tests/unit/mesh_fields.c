@@ -43,8 +43,8 @@ static Opened *open_field(const char *text)
     o->arena.memory = &o->memory;
     o->solid.roots  = malloc(solid_root_bytes(o->scene));
     solid_of_components(o->scene, NULL, &o->solid);
-    o->field = (MeshField){.frame = frame, .solid = &o->solid};
-    frame_refresh(o->field.frame);
+    o->field = (MeshField){.state = frame, .solid = &o->solid};
+    state_refresh(o->field.state);
     field_open(&o->field, &o->arena);
     return o;
 }
@@ -53,7 +53,7 @@ static void close_field(Opened *o)
 {
     arena_free(&o->arena);
     free(o->solid.roots);
-    krs_state_free(o->field.frame);
+    krs_state_free(o->field.state);
     krs_scene_free(o->scene);
     free(o);
 }

@@ -89,8 +89,8 @@ static Mesher *open_mesher(const char *text, double error, KrsMeshOptions *optio
     }
     for (size_t i = 0; i < parallel_parts(); i++) {
         m->fields[i] = (MeshField){.solid = solid};
-        assert_int_equal(frame_copy_of(frame, &m->fields[i].frame), KRS_OK);
-        frame_refresh_points(m->fields[i].frame);
+        assert_int_equal(state_copy_of(frame, &m->fields[i].state), KRS_OK);
+        state_refresh_points(m->fields[i].state);
         field_open(&m->fields[i], &m->arena);
     }
     krs_state_free(frame);
@@ -100,7 +100,7 @@ static Mesher *open_mesher(const char *text, double error, KrsMeshOptions *optio
 static void close_mesher(Mesher *m, MeshSolid *solid, KrsScene *scene)
 {
     for (size_t i = 0; i < parallel_parts(); i++)
-        frame_free(m->fields[i].frame);
+        state_free(m->fields[i].state);
     arena_free(&m->arena);
     free(m);
     free(solid->roots);

@@ -96,8 +96,8 @@ static void open_trial(Trial *t, const Subject *subject, const double focus[3], 
     solid_of_components(t->scene, NULL, &t->solid);
     for (size_t i = 0; i < parallel_parts(); i++) {
         t->fields[i] = (MeshField){.solid = &t->solid};
-        assert_int_equal(frame_copy_of(t->frame, &t->fields[i].frame), KRS_OK);
-        frame_refresh(t->fields[i].frame);
+        assert_int_equal(state_copy_of(t->frame, &t->fields[i].state), KRS_OK);
+        state_refresh(t->fields[i].state);
         field_open(&t->fields[i], &t->arena);
     }
     for (int k = 0; k < 3; k++)
@@ -123,7 +123,7 @@ static void open_trial(Trial *t, const Subject *subject, const double focus[3], 
 static void close_trial(Trial *t)
 {
     for (size_t i = 0; i < parallel_parts(); i++)
-        frame_free(t->fields[i].frame);
+        state_free(t->fields[i].state);
     arena_free(&t->arena);
     free(t->roots);
     krs_state_free(t->frame);

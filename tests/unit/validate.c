@@ -291,7 +291,7 @@ static void rounding_of_a_device_passes(void **state)
 static double measured(KrsStatus expected)
 {
     static Validation v;
-    v = (Validation){.random = 1, .frame = (KrsState *)&something, .scene = (KrsScene *)&something};
+    v = (Validation){.random = 1, .state = (KrsState *)&something, .scene = (KrsScene *)&something};
     choose_box(&v);
     choose_points(&v);
     assert_int_equal(try_balls(&v), expected);

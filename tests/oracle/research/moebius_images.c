@@ -19,7 +19,7 @@ static Asked asked_new(Product product, ResearchMethod method)
     KrsScene *scene = product.scene;
     Asked     asked = {product, research_roots(&scene->roots, method)[0], {0}};
     asked.tape      = tape_new(scene->graph, &asked.root, 1, &scene->arena);
-    frame_refresh(product.frame);
+    state_refresh(product.frame);
     tape_run_frame(&asked.tape, product.frame->parameters, product.frame->values);
     return asked;
 }

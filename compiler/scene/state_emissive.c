@@ -1,5 +1,5 @@
 /*
- * frame_emissive.c: balls around what emits light in a frame, by which paths find it.
+ * state_emissive.c: balls around what emits light in a state, by which paths find it.
  *
  * Boxes of parts hold for all values of the parameters.  They are cut as long as balls are left, the
  * largest first.  A distance changes no faster than the point moves.  So where it is larger, in the
@@ -42,9 +42,9 @@ typedef struct Cell {
 } Cell;
 
 typedef struct Cells {
-    KrsState *frame;
+    KrsState *state;
     Box       region;
-    Box       tight[MAX_TIGHT]; /* around the first parts, in this frame */
+    Box       tight[MAX_TIGHT]; /* around the first parts, in this state */
     size_t    tight_count;
     Cell      items[KRS_MAX_EMISSIVE];
     size_t    count;
@@ -52,7 +52,7 @@ typedef struct Cells {
 
 static const EmissivePart *part_of(const Cells *cells, size_t number)
 {
-    return &cells->frame->scene->emissive[cells->frame->lit[number]];
+    return &cells->state->scene->emissive[cells->state->lit[number]];
 }
 
 static Box box_of(const Cells *cells, size_t number)
@@ -73,21 +73,21 @@ static Box hull_of(const Cells *cells, size_t first, size_t count)
 
 static double find_distance(const Cells *cells, const EmissivePart *part, const double point[3])
 {
-    NodeValue *values = cells->frame->values;
+    NodeValue *values = cells->state->values;
     tape_run_point(part->tape, point, values);
     return values[part->distance].v[0];
 }
 
 static bool differs_by_place(const Cells *cells, const EmissivePart *part)
 {
-    return cells->frame->scene->graph->items[part->emission].time == TIME_POINT;
+    return cells->state->scene->graph->items[part->emission].time == TIME_POINT;
 }
 
 /* The light that is emitted at a point. */
 static double find_light(const Cells *cells, const EmissivePart *part, const double point[3])
 {
     static const double up[3]  = {0, 1, 0};
-    NodeValue          *values = cells->frame->values;
+    NodeValue          *values = cells->state->values;
     if (differs_by_place(cells, part))
         tape_run_surface(part->tape, point, up, 0, values);
     const double *light = values[part->emission].v;
@@ -95,15 +95,15 @@ static double find_light(const Cells *cells, const EmissivePart *part, const dou
     return found > 0 && isfinite(found) ? found : 0;
 }
 
-/* Lists the parts that may emit light in this frame.  Returns how many. */
+/* Lists the parts that may emit light in this state.  Returns how many. */
 static size_t list_lit(const Cells *cells)
 {
     const double nowhere[3] = {0};
     size_t       count      = 0;
-    for (size_t i = 0; i < cells->frame->scene->emissive_count; i++) {
-        const EmissivePart *part = &cells->frame->scene->emissive[i];
+    for (size_t i = 0; i < cells->state->scene->emissive_count; i++) {
+        const EmissivePart *part = &cells->state->scene->emissive[i];
         if (differs_by_place(cells, part) || find_light(cells, part, nowhere) > 0)
-            cells->frame->lit[count++] = i;
+            cells->state->lit[count++] = i;
     }
     return count;
 }
@@ -215,7 +215,7 @@ static void refine(Cells *cells)
 /* The box around what many cuts leave of a part. */
 static Box find_tight(const Cells *cells, size_t number, size_t cuts)
 {
-    Cells own  = {.frame = cells->frame, .region = cells->region};
+    Cells own  = {.state = cells->state, .region = cells->region};
     Box   hull = box_empty;
     add_cell(&own, box_common(part_of(cells, number)->box, cells->region), number, 1);
     cut_cells(&own, 0, cuts);
@@ -251,12 +251,12 @@ static void shrink(const Cells *cells, Cell *cell)
    glass is a ball around it. */
 static double find_magnified(const Cells *cells, const double middle[3])
 {
-    const KrsScene  *scene  = cells->frame->scene;
-    const NodeValue *values = cells->frame->values;
+    const KrsScene  *scene  = cells->state->scene;
+    const NodeValue *values = cells->state->values;
     double           most   = 1;
     if (!scene->module.is_medium)
         return 1;
-    tape_run_point(&cells->frame->tapes.distance, middle, cells->frame->values);
+    tape_run_point(&cells->state->tapes.distance, middle, cells->state->values);
     for (size_t i = 0; i < scene->component_count; i++) {
         const Node ior = surface_roots(&scene->roots, i)[ROOT_ior];
         if (!scene->module.is_medium[i] || values[distance_root(&scene->roots, i)].v[0] >= 0)
@@ -312,13 +312,13 @@ static void light_up(KrsEmissive *balls, size_t count)
             balls[i].radiance = lit > 0 ? SENT_BY_DARK * lit / dark : 1;
 }
 
-size_t krs_state_emissive(KrsState *frame, const double low[3], const double high[3],
+size_t krs_state_emissive(KrsState *state, const double low[3], const double high[3],
                           double min_radius, KrsEmissive balls[KRS_MAX_EMISSIVE])
 {
-    Cells cells = {.frame = frame};
+    Cells cells = {.state = state};
     for (int k = 0; k < 3; k++)
         cells.region.axis[k] = (Range){low[k], high[k]};
-    frame_refresh_points(frame);
+    state_refresh_points(state);
     const size_t count = list_lit(&cells);
     for (size_t i = 0; i < count && count <= MAX_TIGHT; i++) {
         cells.tight[i]    = find_tight(&cells, i, CUTS_FOR_TIGHT / count);

@@ -1,5 +1,5 @@
 /*
- * frame_tables.c: the tables of instance groups in a frame.  Where instances move, a frame has tables and a graph of
+ * state_tables.c: the tables of instance groups in a state.  Where instances move, a state has tables and a graph of
  * its own, which its tapes read; nodes are those of the scene.
  */
 #include <stdlib.h>
@@ -12,15 +12,15 @@
 struct FrameTables {
     Memory     memory;
     Arena      arena;          /* of all but grids */
-    Arena      grids, scratch; /* freed for each frame */
-    Graph      graph;          /* that of the scene with tables of the frame */
+    Arena      grids, scratch; /* freed for each state */
+    Graph      graph;          /* that of the scene with tables of the state */
     Instances *instances;
     bool       found; /* they are those of the values */
 };
 
 /* ---- tapes ---- */
 
-/* A tape of the scene over the tables of the frame; so are those of functions that it calls. */
+/* A tape of the scene over the tables of the state; so are those of functions that it calls. */
 static Tape tape_of_frame(const Tape *tape, struct FrameTables *tables)
 {
     Tape  copy      = *tape;
@@ -35,18 +35,18 @@ static Tape tape_of_frame(const Tape *tape, struct FrameTables *tables)
     return copy;
 }
 
-void frame_count_operations(KrsState *frame)
+void state_count_operations(KrsState *state)
 {
-    FrameTapes *tapes   = &frame->tapes;
-    tapes->distance.ran = tapes->guarded.ran = tapes->ahead.ran = &frame->ran;
-    tapes->turned.ran = tapes->surface.ran = tapes->places.ran = &frame->ran;
+    FrameTapes *tapes   = &state->tapes;
+    tapes->distance.ran = tapes->guarded.ran = tapes->ahead.ran = &state->ran;
+    tapes->turned.ran = tapes->surface.ran = tapes->places.ran = &state->ran;
 }
 
-static void make_tables(KrsState *frame, struct FrameTables *tables)
+static void make_tables(KrsState *state, struct FrameTables *tables)
 {
-    const KrsScene *scene    = frame->scene;
-    Tape           *copies[] = {&frame->tapes.distance, &frame->tapes.guarded, &frame->tapes.ahead,
-                                &frame->tapes.turned,   &frame->tapes.surface, &frame->tapes.places};
+    const KrsScene *scene    = state->scene;
+    Tape           *copies[] = {&state->tapes.distance, &state->tapes.guarded, &state->tapes.ahead,
+                                &state->tapes.turned,   &state->tapes.surface, &state->tapes.places};
     const Tape     *tapes[]  = {&scene->distance, &scene->guarded, &scene->ahead,
                                 &scene->turned,   &scene->surface, &scene->places};
     tables->graph            = *scene->graph;
@@ -69,12 +69,12 @@ static void release(const Memory *memory, void *block)
         free(block);
 }
 
-bool frame_tables_new(KrsState *frame)
+bool state_tables_new(KrsState *state)
 {
-    const KrsScene *scene = frame->scene;
-    frame->tapes          = (FrameTapes){scene->distance, scene->guarded, scene->ahead,
+    const KrsScene *scene = state->scene;
+    state->tapes          = (FrameTapes){scene->distance, scene->guarded, scene->ahead,
                                          scene->turned,   scene->surface, scene->places};
-    frame_count_operations(frame);
+    state_count_operations(state);
     if (!instances_move(scene->graph->instances))
         return true;
     struct FrameTables *tables = allocate(&scene->memory, sizeof *tables);
@@ -84,38 +84,38 @@ bool frame_tables_new(KrsState *frame)
                                                     .release  = scene->memory.release,
                                                     .user     = scene->memory.user}};
     tables->arena = tables->grids = tables->scratch = (Arena){.memory = &tables->memory};
-    frame->tables                                   = tables;
+    state->tables                                   = tables;
     jmp_buf exhausted;
     tables->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0)
         return false;
-    make_tables(frame, tables);
-    frame_count_operations(frame);
+    make_tables(state, tables);
+    state_count_operations(state);
     tables->memory.exhausted = NULL;
     return true;
 }
 
-void frame_tables_free(KrsState *frame)
+void state_tables_free(KrsState *state)
 {
-    struct FrameTables *tables = frame->tables;
+    struct FrameTables *tables = state->tables;
     if (!tables)
         return;
     arena_free(&tables->arena);
     arena_free(&tables->grids);
     arena_free(&tables->scratch);
-    release(&frame->scene->memory, tables);
-    frame->tables = NULL;
+    release(&state->scene->memory, tables);
+    state->tables = NULL;
 }
 
 /* ---- grids ---- */
 
-void frame_tables_change(KrsState *frame)
+void state_tables_change(KrsState *state)
 {
-    if (frame->tables)
-        frame->tables->found = false;
+    if (state->tables)
+        state->tables->found = false;
 }
 
-/* Where memory runs out the grids are those for all frames, which are right in each. */
+/* Where memory runs out the grids are those for all states, which are right in each. */
 static void find_grids(struct FrameTables *tables, const Instances *of_scene,
                        const NodeValue *values)
 {
@@ -131,15 +131,15 @@ static void find_grids(struct FrameTables *tables, const Instances *of_scene,
     arena_clear(&tables->scratch);
 }
 
-void frame_tables_refresh(const KrsState *frame)
+void state_tables_refresh(const KrsState *state)
 {
-    struct FrameTables *tables = frame->tables;
-    const KrsScene     *scene  = frame->scene;
+    struct FrameTables *tables = state->tables;
+    const KrsScene     *scene  = state->scene;
     if (!tables || tables->found)
         return;
-    if (!frame->fresh)
-        tape_run_frame(&scene->rows, frame->parameters, frame->values);
-    find_grids(tables, scene->graph->instances, frame->values);
+    if (!state->fresh)
+        tape_run_frame(&scene->rows, state->parameters, state->values);
+    find_grids(tables, scene->graph->instances, state->values);
     tables->found = true;
 }
 
@@ -151,38 +151,38 @@ static bool is_origin(const KrsScene *scene, uint32_t slot)
     return scene->program.camera_relative && slot == scene->program.parameter_slots - 1;
 }
 
-void krs_state_tables_in_use(const KrsState *frame, const double *rebase_origin, float (*rows)[4],
+void krs_state_tables_in_use(const KrsState *state, const double *rebase_origin, float (*rows)[4],
                              uint32_t (*cells)[2], size_t *row_count, size_t *cell_count)
 {
-    const KrsScene  *scene     = frame->scene;
-    const Instances *instances = frame->tables ? frame->tables->instances : scene->graph->instances;
+    const KrsScene  *scene     = state->scene;
+    const Instances *instances = state->tables ? state->tables->instances : scene->graph->instances;
     if (rebase_origin)
-        memcpy(frame->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
+        memcpy(state->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
                3 * sizeof *rebase_origin);
-    if (!frame->fresh || rebase_origin)
-        tape_run_frame(&scene->rows, frame->parameters, frame->values);
-    frame_tables_refresh(frame);
-    TableSizes used = tables_pack(instances, scene->graph->textures, frame->values,
+    if (!state->fresh || rebase_origin)
+        tape_run_frame(&scene->rows, state->parameters, state->values);
+    state_tables_refresh(state);
+    TableSizes used = tables_pack(instances, scene->graph->textures, state->values,
                                   rebase_origin != NULL, rows, cells);
     *row_count      = used.rows;
     *cell_count     = used.cells;
 }
 
-void krs_state_tables(const KrsState *frame, float (*rows)[4], uint32_t (*cells)[2])
+void krs_state_tables(const KrsState *state, float (*rows)[4], uint32_t (*cells)[2])
 {
-    const KrsProgram *program = &frame->scene->program;
+    const KrsProgram *program = &state->scene->program;
     size_t            row_count, cell_count;
     if (program->table_cells == 0)
         return;
-    if (frame->tables)
+    if (state->tables)
         memset(cells, 0, program->table_cells * sizeof *cells);
-    krs_state_tables_in_use(frame, NULL, rows, cells, &row_count, &cell_count);
+    krs_state_tables_in_use(state, NULL, rows, cells, &row_count, &cell_count);
     memset(rows + row_count, 0, (program->table_rows - row_count) * sizeof *rows);
 }
 
-void krs_state_table_inputs(const KrsState *frame, const double *rebase_origin, double (*inputs)[4])
+void krs_state_table_inputs(const KrsState *state, const double *rebase_origin, double (*inputs)[4])
 {
-    const KrsScene *scene = frame->scene;
+    const KrsScene *scene = state->scene;
     const Tape     *rows  = &scene->rows;
     memset(inputs, 0, scene->program.parameter_slots * sizeof *inputs);
     for (size_t i = 0; i < rows->frame_count; i++) {
@@ -190,7 +190,7 @@ void krs_state_table_inputs(const KrsState *frame, const double *rebase_origin, 
         if (e->op != OP_PARAMETER)
             continue;
         if (!is_origin(scene, e->index))
-            memcpy(inputs[e->index], frame->parameters[e->index].v, sizeof *inputs);
+            memcpy(inputs[e->index], state->parameters[e->index].v, sizeof *inputs);
         else if (rebase_origin)
             memcpy(inputs[e->index], rebase_origin, 3 * sizeof *rebase_origin);
     }
