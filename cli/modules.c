@@ -51,8 +51,10 @@ static KrsStatus compile_shader(const Options *options, const KrsScene *scene, c
         say("%s", gpu.message);
         return gpu.status;
     }
+    const char *slash  = strrchr(file, '/'); /* of a room of shaders */
+    const char *name   = slash ? slash + 1 : file;
     SpirvModule module = {.file  = file,
-                          .entry = arena_copy_text(options->arena, file, strlen(file) - 5)};
+                          .entry = arena_copy_text(options->arena, name, strlen(name) - 5)};
     KrsStatus   status = spirv_compile(text, file, &module.words, &module.word_count, &log);
     if (status == KRS_OK)
         array_push(options->arena, modules, module);
