@@ -260,12 +260,12 @@ typedef struct Boundless {
 
 static bool is_boundless(Boundless *b, uint32_t operand);
 
-/* By what its row says: its own derivatives have no bound or, if it may be one of its operands somewhere, those
+/* By what its row says: its own derivatives have no bound or, if it may be one of its operands somewhere or is linear, those
    of an operand that counts. */
 static bool step_is_boundless(Boundless *b, const LaneStep *step, Range result)
 {
     const NumberRow *row = lane_row(step);
-    Range            o[MAX_OPERANDS], by[MAX_OPERANDS];
+    Range            o[MAX_OPERANDS], by[MAX_OPERANDS] = {ZERO};
     lane_operands(b->run.tape, b->run.ranges, step, o);
     unsigned chosen = row->chooses ? row->chooses(o) : 0;
     if (!chosen && row->arity)
@@ -273,7 +273,8 @@ static bool step_is_boundless(Boundless *b, const LaneStep *step, Range result)
     for (uint32_t k = 0; k < row->arity; k++) {
         if (range_is_single(o[k]) || (chosen ? !(chosen >> k & 1) : range_is_zero(by[k])))
             continue;
-        if ((!chosen && !is_finite(by[k])) || (row->chooses && is_boundless(b, step->operands[k])))
+        if (!is_finite(by[k]) ||
+            ((row->chooses || range_is_single(by[k])) && is_boundless(b, step->operands[k])))
             return true;
     }
     return false;
