@@ -272,7 +272,7 @@ static Lowered lower_segment(Lowering *l, const Shape *shape, LowerContext conte
     Node   cut    = cut_distance(g, result.distance, width, steep, &cost);
     Node   weight = least(g, lengths, one), slope = add(g, cost, one);
     result.distance = over(g, mul(g, cut, weight), slope);
-    return with_region(l, result, inverse.offset);
+    return with_region(l, result, inverse.offset, NODE_NONE);
 }
 
 Lowered lower_bend(Lowering *l, const Shape *shape, LowerContext context)

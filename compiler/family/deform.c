@@ -164,13 +164,14 @@ Lowered lower_undone(Lowering *l, const Shape *shape, LowerContext context,
     return result;
 }
 
-Lowered with_region(Lowering *l, Lowered result, Node offset)
+Lowered with_region(Lowering *l, Lowered result, Node offset, Node is_inside)
 {
-    Graph *g        = l->graph;
-    Node   zero     = graph_number(g, 0);
-    Node   outside  = length_of(g, offset, most(g, result.distance, zero));
-    Node   inside   = least(g, result.distance, zero);
-    result.distance = add(g, outside, inside);
+    Graph *g       = l->graph;
+    Node   zero    = graph_number(g, 0);
+    Node   outside = length_of(g, offset, most(g, result.distance, zero));
+    if (is_inside == NODE_NONE)
+        is_inside = graph_op2(g, OP_less_equal, offset, zero);
+    result.distance = graph_op3(g, OP_select, is_inside, result.distance, outside);
     return result;
 }
 

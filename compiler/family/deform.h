@@ -54,7 +54,7 @@ typedef struct InverseDeformation {
 Lowered lower_undone(Lowering *l, const Shape *shape, LowerContext context,
                      const InverseDeformation *inverse);
 /* With g as the distance in C: the distance outside of C as well. */
-Lowered with_region(Lowering *l, Lowered result, Node offset);
+Lowered with_region(Lowering *l, Lowered result, Node offset, Node is_inside);
 /* As much of a distance as a weight needs whose slope is `steep`: a fraction of the width of the solid
    where that is less.  *cost is what the weight adds to the slope. */
 Node cut_distance(Graph *g, Node distance, double width, Node steep, Node *cost);

@@ -180,5 +180,5 @@ Lowered lower_displace(Lowering *l, const Shape *shape, LowerContext context)
     if (!child->exact)
         result.distance = cut_to_sides(g, result.distance, point, &sides);
     Node offset = graph_op1(g, OP_length, sub(g, context.point, point));
-    return with_region(l, result, offset);
+    return with_region(l, result, offset, NODE_NONE);
 }

@@ -9,19 +9,37 @@
 
 /* ---- how it is made ---- */
 
+/* The part of the smallest factor that is left at the ends of the region, which is longer than the shape. */
+static const double LEFT_AT_ENDS = 0.5;
+
+/* The factor so far beyond the end that has one, in heights. */
+static Node factor_beyond(Graph *g, Node here, Node there, double beyond)
+{
+    Node change = sub(g, here, there);
+    return add(g, here, mul(g, change, graph_number(g, beyond)));
+}
+
 static const Shape *taper_upright(ShapeBuilder *builder, const Shape *shape,
                                   const DeformArguments *asked)
 {
-    Shape *tapered     = deformed_shape(builder, SHAPE_TAPER, "taper", shape, asked);
-    tapered->values[0] = asked->numbers[0];
-    tapered->values[1] = asked->numbers[1];
-    Range scale        = range_hull(node_range(builder, asked->numbers[0], 0),
-                                    node_range(builder, asked->numbers[1], 0));
+    Graph       *g       = builder->graph;
+    Range        side    = shape->box.axis[1];
+    Range        scale   = range_hull(node_range(builder, asked->numbers[0], 0),
+                                      node_range(builder, asked->numbers[1], 0));
+    double       height  = fmax(side.high - side.low, 1e-9);
+    double       rise    = (scale.high - scale.low) / height;
+    const Shape *child   = in_region(builder, shape, LEFT_AT_ENDS * fmax(scale.low, 0) / rise);
+    double       room    = child->box.axis[1].high - side.high;
+    Shape       *tapered = deformed_shape(builder, SHAPE_TAPER, "taper", child, asked);
+    for (int i = 0; i < 2; i++)
+        tapered->values[i] = factor_beyond(g, asked->numbers[i], asked->numbers[1 - i],
+                                           room / height);
+    tapered->box = shape->box;
     for (int i = 0; i < 3; i += 2)
         tapered->box.axis[i] = range_mul(shape->box.axis[i], scale);
-    double height    = shape->box.axis[1].high - shape->box.axis[1].low;
-    double shear     = shear_slope((scale.high - scale.low) / height * box_radius(shape->box));
-    tapered->divided = (shear + COST_OF_WEIGHT) / fmin(fmax(scale.low, 0), 1);
+    double shear     = shear_slope(rise * box_radius(child->box));
+    double least     = scale.low - rise * room;
+    tapered->divided = (shear + COST_OF_WEIGHT) / fmin(fmax(least, 0), 1);
     note_slope(tapered, shear);
     return tapered;
 }
@@ -45,33 +63,28 @@ typedef struct Frustum {
     double height;
 } Frustum;
 
-/* (radius, y) of the nearest point of the frustum to one at (r, y): itself, or the nearer of the
-   nearest of the slanted side and the nearest of the end that is on its side. */
-static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y)
+/* (radius, y) of the nearest point of the frustum to one at (r, y): of the slanted side, or of the disc at its height or the nearest
+   end, where it is itself if it is inside. */
+static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y, Node *is_inside)
 {
-    Node zero = graph_number(g, 0), one = graph_number(g, 1), middle = graph_number(g, 0.5);
+    Node zero = graph_number(g, 0), one = graph_number(g, 1);
     Node position = graph_op2(g, OP_vec2, r, y), foot = graph_op2(g, OP_vec2, f->low, f->bottom);
     Node tip = graph_op2(g, OP_vec2, f->high, f->top), side = sub(g, tip, foot);
     Node along    = graph_op2(g, OP_dot, sub(g, position, foot), side);
     Node fraction = over(g, along, graph_op2(g, OP_dot, side, side));
     fraction      = graph_op3(g, OP_clamp, fraction, zero, one);
     Node slant    = add(g, foot, graph_op2(g, OP_scale, side, fraction));
-    Node level    = sub(g, y, f->bottom);
-    level         = over(g, level, graph_number(g, f->height));
-    Node upper    = graph_op2(g, OP_less, middle, level);
-    Node ring     = graph_op3(g, OP_select, upper, f->high, f->low);
-    Node edge     = graph_op3(g, OP_select, upper, f->top, f->bottom);
-    Node end      = graph_op2(g, OP_vec2, least(g, r, ring), edge);
-    Node to_slant = graph_op1(g, OP_length, sub(g, position, slant));
-    Node to_end   = graph_op1(g, OP_length, sub(g, position, end));
-    Node nearer   = graph_op2(g, OP_less, to_end, to_slant);
-    Node outside  = graph_op3(g, OP_select, nearer, end, slant);
-    Node above    = graph_op2(g, OP_less_equal, zero, level);
-    Node below    = graph_op2(g, OP_less_equal, level, one);
-    Node inside   = graph_op2(g, OP_and, above, below);
+    Node height   = graph_op3(g, OP_clamp, y, f->bottom, f->top);
+    Node level    = over(g, sub(g, height, f->bottom), graph_number(g, f->height));
     Node reach    = graph_op3(g, OP_mix, f->low, f->high, level);
-    inside        = graph_op2(g, OP_and, inside, graph_op2(g, OP_less_equal, r, reach));
-    return graph_op3(g, OP_select, inside, position, outside);
+    Node disc     = graph_op2(g, OP_vec2, least(g, r, reach), height);
+    Node to_slant = graph_op1(g, OP_length, sub(g, position, slant));
+    Node to_disc  = graph_op1(g, OP_length, sub(g, position, disc));
+    Node nearer   = graph_op2(g, OP_less, to_disc, to_slant);
+    Node within   = graph_op2(g, OP_and, graph_op2(g, OP_less_equal, f->bottom, y),
+                              graph_op2(g, OP_less_equal, y, f->top));
+    *is_inside    = graph_op2(g, OP_and, within, graph_op2(g, OP_less_equal, r, reach));
+    return graph_op3(g, OP_select, nearer, disc, slant);
 }
 
 /* (x, y, z) -> (x / s, y, z / s) with s = scale(y), whose slope is `rise`. */
@@ -108,13 +121,15 @@ Lowered lower_taper(Lowering *l, const Shape *shape, LowerContext context)
     f.high      = mul(g, wide, shape->values[1]);
     f.height    = fmax(side.high - side.low, 1e-9);
     Node y = graph_component(g, context.point, 1), r = radius_of(g, context.point);
-    Node nearest = frustum_nearest(g, &f, r, y), offset = graph_op2(g, OP_vec2, r, y);
+    Node is_inside, offset                           = graph_op2(g, OP_vec2, r, y);
+    Node nearest = frustum_nearest(g, &f, r, y, &is_inside);
     Node inner_r = graph_component(g, nearest, 0), inner_y = graph_component(g, nearest, 1);
     Node inside                = over(g, inner_r, most(g, r, tiny));
-    Node height                = graph_number(g, f.height);
-    Node level                 = over(g, sub(g, inner_y, f.bottom), height);
-    Node scale                 = graph_op3(g, OP_mix, shape->values[0], shape->values[1], level);
-    Node rise                  = over(g, sub(g, shape->values[1], shape->values[0]), height);
+    inside                     = graph_op3(g, OP_select, is_inside, one, inside);
+    Node               height  = graph_number(g, f.height);
+    Node               level   = over(g, sub(g, inner_y, f.bottom), height);
+    Node               scale   = graph_op3(g, OP_mix, shape->values[0], shape->values[1], level);
+    Node               rise    = over(g, sub(g, shape->values[1], shape->values[0]), height);
     InverseDeformation inverse = {.offset = graph_op1(g, OP_length, sub(g, offset, nearest))};
     undo_taper(l, across_scaled(g, context.point, inner_y, inside), scale, rise, &inverse);
     Lowered result = lower_undone(l, shape, context, &inverse);
@@ -124,5 +139,5 @@ Lowered lower_taper(Lowering *l, const Shape *shape, LowerContext context)
     Node cut    = cut_distance(g, result.distance, radius, steep, &cost);
     Node weight = least(g, scale, one), slope = add(g, shear_norm(g, shear), cost);
     result.distance = over(g, mul(g, cut, weight), slope);
-    return with_region(l, result, inverse.offset);
+    return with_region(l, result, inverse.offset, is_inside);
 }

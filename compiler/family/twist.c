@@ -94,5 +94,5 @@ Lowered lower_twist(Lowering *l, const Shape *shape, LowerContext context)
         return result;
     Node shear      = mul(g, graph_op1(g, OP_abs, rate), radius);
     result.distance = over(g, result.distance, shear_norm(g, shear));
-    return with_region(l, result, inverse.offset);
+    return with_region(l, result, inverse.offset, NODE_NONE);
 }

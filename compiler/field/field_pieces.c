@@ -306,6 +306,15 @@ static uint32_t scaled_operand(const Finding *f, const LaneStep *step, double *f
     return NODE_NONE;
 }
 
+/* The one that a choice takes all over the box; NODE_NONE: either may be. */
+static uint32_t chosen_operand(const Finding *f, const LaneStep *step)
+{
+    Range condition = range_of_operand(f, step->operands[0]);
+    return condition.low > 0     ? step->operands[1]
+           : condition.high <= 0 ? step->operands[2]
+                                 : NODE_NONE;
+}
+
 /* A term that is a sum, or a number times a scalar. */
 static bool add_linear(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
 {
@@ -322,33 +331,34 @@ static bool add_linear(Finding *f, const Sum *sum, uint32_t k, const LaneStep *s
         scaled = step->operands[0];
     else if (step->op == OP_mul || step->op == OP_div)
         scaled = scaled_operand(f, step, &factor);
+    else if (step->op == OP_select)
+        scaled = chosen_operand(f, step);
     else
         return false;
     return scaled != NODE_NONE && replace_term(f, sum, k, scaled, factor, &parts) &&
            find_pieces(f, &parts);
 }
 
-/* A product or quotient with what is above 0, or a sign times what is nowhere below: a maximum of 0 and anything is a
-   number, at least, whether that is sure or not. */
-static bool add_signed(Finding *f, const LaneStep *step, double sign)
+/* The operand that has the sign of a step, or NODE_NONE: of a product or quotient with what is above 0, of a sign times what is
+   nowhere below, since a maximum of 0 and anything is a number, at least, whether that is sure or not; and of what is clamped
+   between numbers below and above 0. */
+static uint32_t operand_of_sign(const Finding *f, const LaneStep *step)
 {
-    for (int k = 0; k < (step->op == OP_div ? 1 : 2); k++) {
+    if (step->op == OP_clamp)
+        return range_of_operand(f, step->operands[1]).high < 0 &&
+                       range_of_operand(f, step->operands[2]).low > 0
+                   ? step->operands[0]
+                   : NODE_NONE;
+    for (int k = 0; k < (step->op == OP_mul ? 2 : step->op == OP_div ? 1 : 0); k++) {
         uint32_t        other  = step->operands[1 - k];
         const LaneStep *factor = lane_step_of(f->tape, step->operands[k]);
         double          least  = range_of_operand(f, other).low;
         if (factor && factor->op == OP_sign && least >= 0)
-            return find_signs(f, factor->operands[0], sign);
+            return factor->operands[0];
         if (least > 0 && ((other & LANE_SCALAR) || f->field->ranges.sure[other]))
-            return find_signs(f, step->operands[k], sign);
+            return step->operands[k];
     }
-    return false;
-}
-
-/* Between numbers below and above 0. */
-static bool add_clamped(Finding *f, const LaneStep *step, double sign)
-{
-    return range_of_operand(f, step->operands[1]).high < 0 &&
-           range_of_operand(f, step->operands[2]).low > 0 && find_signs(f, step->operands[0], sign);
+    return NODE_NONE;
 }
 
 /* 1 if a choice is nowhere above 0 where its condition holds and nowhere below 0 elsewhere, -1 if it is the other way round;
@@ -436,11 +446,10 @@ static bool add_alone(Finding *f, const LaneStep *step, double factor, double of
         return add_box(f, &faces, factor, offset);
     if (offset != 0)
         return false;
-    if (step->op == OP_mul || step->op == OP_div)
-        return add_signed(f, step, factor);
-    if (step->op == OP_clamp)
-        return add_clamped(f, step, factor);
-    return step->op == OP_select && add_chosen(f, step, factor);
+    if (step->op == OP_select)
+        return add_chosen(f, step, factor);
+    uint32_t same = operand_of_sign(f, step);
+    return same != NODE_NONE && find_signs(f, same, factor);
 }
 
 /* A sum whose term has no second derivatives. */
@@ -508,6 +517,8 @@ static bool count_pieces(Finding *f, uint32_t operand, double sign, double offse
     uint32_t scaled = step && (step->op == OP_mul || step->op == OP_div)
                           ? scaled_operand(f, step, &sign)
                           : NODE_NONE;
+    if (scaled == NODE_NONE && step && offset == 0)
+        scaled = operand_of_sign(f, step);
     if (scaled != NODE_NONE)
         return count_pieces(f, scaled, sign, offset);
     size_t i = 0;

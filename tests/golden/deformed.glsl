@@ -111,17 +111,17 @@ float krs_distance_1(vec3 p)
     // tests/golden/deformed.krs:2
     float t1 = min(max(p.y, (-1.0)), 1.0);
     float t2 = 0.42426407 / max(t0, 0.42426407);
-    vec3 v3 = vec3((p.x * t2), t1, (p.z * t2));
-    float t4 = krs_cos(t1);
-    float t5 = krs_sin(t1);
-    vec3 v6 = vec3(dot(vec3(t4, 0.0, (-t5)), v3), dot(vec3(0.0, 1.0, 0.0), v3), dot(vec3(t5, 0.0, t4), v3));
+    float t3 = length(vec2(max((t0 - 0.42426407), 0.0), (p.y - t1)));
+    vec3 v4 = vec3((p.x * t2), t1, (p.z * t2));
+    float t5 = krs_cos(t1);
+    float t6 = krs_sin(t1);
+    vec3 v7 = vec3(dot(vec3(t5, 0.0, (-t6)), v4), dot(vec3(0.0, 1.0, 0.0), v4), dot(vec3(t6, 0.0, t5), v4));
     // library:solids.krs
-    vec3 v7 = abs(v6) - vec3(0.3, 1.0, 0.3);
-    float t8 = max(v7.y, v7.z);
+    vec3 v8 = abs(v7) - vec3(0.3, 1.0, 0.3);
+    float t9 = max(v8.y, v8.z);
     // tests/golden/deformed.krs:2
-    float t9 = (length(max(v7, vec3(0.0))) + min(max(v7.x, t8), 0.0)) * 0.8101204;
-    vec2 v10 = vec2(length(vec2(max((t0 - 0.42426407), 0.0), (p.y - t1))), max(t9, 0.0));
-    float t11 = length(v10) + min(t9, 0.0);
+    float t10 = (length(max(v8, vec3(0.0))) + min(max(v8.x, t9), 0.0)) * 0.8101204;
+    float t11 = mix(length(vec2(t3, max(t10, 0.0))), t10, t3 <= 0.0);
     return t11;
 }
 
@@ -131,19 +131,20 @@ float krs_distance_2(vec3 p)
     vec3 v0 = p - vec3(0.0, 2.0, 0.0);
     vec3 v1 = vec3(dot(vec3(0.0, 0.0, 1.0), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3((-1.0), 0.0, 0.0), v0));
     vec3 v2 = min(max(v1, vec3((-0.15), (-0.22478913), (-1.0))), vec3(0.15, 0.22478913, 1.0028112));
-    float t3 = v2.y * 0.5;
-    float t4 = 1.0 - (v2.z * 0.5);
-    float t5 = length(vec2(t3, t4));
-    vec3 v6 = vec3(v2.x, (krs_atan((t3 / t4)) * 2.0), (((v2.z * (t4 + 1.0)) - (v2.y * t3)) / (t5 + 1.0)));
-    vec3 v7 = vec3(dot(vec3(0.0, 0.0, (-1.0)), v6), dot(vec3(0.0, 1.0, 0.0), v6), dot(vec3(1.0, 0.0, 0.0), v6));
+    float t3 = length((v1 - v2));
+    float t4 = v2.y * 0.5;
+    float t5 = 1.0 - (v2.z * 0.5);
+    float t6 = length(vec2(t4, t5));
+    vec3 v7 = vec3(v2.x, (krs_atan((t4 / t5)) * 2.0), (((v2.z * (t5 + 1.0)) - (v2.y * t4)) / (t6 + 1.0)));
+    vec3 v8 = vec3(dot(vec3(0.0, 0.0, (-1.0)), v7), dot(vec3(0.0, 1.0, 0.0), v7), dot(vec3(1.0, 0.0, 0.0), v7));
     // library:solids.krs
-    vec3 v8 = abs(v7) - vec3(1.0, 0.15, 0.15);
-    float t9 = max(v8.y, v8.z);
+    vec3 v9 = abs(v8) - vec3(1.0, 0.15, 0.15);
+    float t10 = max(v9.y, v9.z);
     // tests/golden/deformed.krs:3
-    float t10 = min(max((length(max(v8, vec3(0.0))) + min(max(v8.x, t9), 0.0)), (-0.5)), 0.5);
-    float t11 = (t10 * min(t5, 1.0)) * 0.8;
-    float t12 = length(vec2(length((v1 - v2)), max(t11, 0.0))) + min(t11, 0.0);
-    return t12;
+    float t11 = min(max((length(max(v9, vec3(0.0))) + min(max(v9.x, t10), 0.0)), (-0.5)), 0.5);
+    float t12 = (t11 * min(t6, 1.0)) * 0.8;
+    float t13 = mix(length(vec2(t3, max(t12, 0.0))), t12, t3 <= 0.0);
+    return t13;
 }
 
 float krs_distance_3(vec3 p)

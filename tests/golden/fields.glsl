@@ -171,8 +171,9 @@ float krs_distance_3(vec3 p)
     vec3 v0 = p - vec3(3.0, 0.0, 0.0);
     vec3 v1 = min(max(v0, vec3((-1.01))), vec3(1.01));
     float t2 = ((length(v1) - 1.0) - (krs_noise3((v1 * vec3(3.0))) * 0.01)) * 0.90155065;
-    float t3 = length(vec2(length((v0 - v1)), max(t2, 0.0))) + min(t2, 0.0);
-    return t3;
+    float t3 = length((v0 - v1));
+    float t4 = mix(length(vec2(t3, max(t2, 0.0))), t2, t3 <= 0.0);
+    return t4;
 }
 
 float krs_distance_lod_1(vec3 p, float footprint)

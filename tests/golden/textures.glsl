@@ -186,9 +186,10 @@ float krs_shared_1(vec3 p, out vec3 s0)
     vec3 v0 = min(max(p, vec3((-1.0960784))), vec3(1.0960784));
     float t1 = (length(v0) - 1.0) - (krs_texture_sharp(vec2(v0.x, v0.y), krs_texture1).x * 0.1);
     float t2 = t1 * 0.5733904;
-    float t3 = length(vec2(length((p - v0)), max(t2, 0.0))) + min(t2, 0.0);
+    float t3 = length((p - v0));
+    float t4 = mix(length(vec2(t3, max(t2, 0.0))), t2, t3 <= 0.0);
     s0 = v0;
-    return t3;
+    return t4;
 }
 
 float krs_distance_1(vec3 p)

@@ -213,12 +213,12 @@ static void touching_faces_are_no_surface(void **context)
     (void)context;
     assert_true(
         try_touching("show box([2, 1, 2]).move([0, 0.5, 0]) | box([2, 1, 2]).move([0, -0.5, 0]);",
-                     -1) > 20);
+                     -1) > 10);
     assert_true(
         try_touching(
             "show (box([2, 1, 2]).move([0.3, 0.6, 0]) | cylinder(0.9, 1).move([0.3, -0.4, 0]))"
             ".rotate([1, 2, 3], 40deg);",
-            -1) > 20);
+            -1) > 10);
     assert_true(
         try_touching("show box([2, 1, 2]).move([0, 0.5, 0]) - box([1.4, 2, 1.4]).move([0, 1, 0]);",
                      1) > 10);
@@ -263,7 +263,7 @@ static void boxes_that_are_left_out_are_empty(void **context)
             if (inside)
                 field_leave(&o->field);
         }
-        assert_true(entered > BOXES / 20);
+        assert_true(entered > BOXES / 40);
         close_field(o);
     }
 }
