@@ -94,7 +94,7 @@ bool form_has_round(const Finding *f, const Form *form) { return has_round_withi
 static double steepness_within(const Finding *f, const Form *form, int depth)
 {
     enum { DEEPEST = 6 };
-    double slope = length3(form->by);
+    double slope = form_slope(f, form);
     for (int i = 0; i < form->kink_count && depth < DEEPEST; i++) {
         const LaneStep *step = lane_step_of(f->tape, form->kinks[i]);
         for (uint32_t k = 0; step && step->op != LANE_CALL && k < step->operand_count; k++) {

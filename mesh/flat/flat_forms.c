@@ -3,6 +3,8 @@
  */
 #include "mesh/flat/flat_forms.h"
 
+#include <string.h>
+
 #include "compiler/base/vec.h"
 
 /* ---- forms ---- */
@@ -15,10 +17,14 @@ Form form_of_operand(const Finding *f, uint32_t operand)
                                  : f->forms[operand];
 }
 
+static bool is_level(const Form *form)
+{
+    return form->by[0] == 0 && form->by[1] == 0 && form->by[2] == 0;
+}
+
 bool form_is_constant(const Form *form)
 {
-    return form->known && form->kink_count == 0 && form->by[0] == 0 && form->by[1] == 0 &&
-           form->by[2] == 0;
+    return form->known && !form->divided && form->kink_count == 0 && is_level(form);
 }
 
 void form_drop_kink(Form *form, int i)
@@ -53,10 +59,34 @@ static void add_kink(Form *form, uint32_t kink, double factor)
     form->factors[i] = factor;
 }
 
+/* The same number, whose linear part is a constant, over a divisor. */
+static Form level_over(const Divisor *divisor, Form form)
+{
+    for (int k = 0; k < 3; k++)
+        form.by[k] = form.at * divisor->by[k];
+    form.at *= divisor->at;
+    form.divided = true;
+    form.divisor = *divisor;
+    return form;
+}
+
+static bool same_divisor(const Form *a, const Form *b)
+{
+    return a->divided == b->divided && a->divisor.at == b->divisor.at &&
+           memcmp(a->divisor.by, b->divisor.by, sizeof a->divisor.by) == 0;
+}
+
 /* a + factor b */
 Form form_sum(Form a, double factor, const Form *b)
 {
-    a.known = a.known && b->known && isfinite(factor);
+    Form other;
+    if (b->divided && !a.divided && is_level(&a))
+        a = level_over(&b->divisor, a);
+    else if (a.divided && !b->divided && is_level(b)) {
+        other = level_over(&a.divisor, *b);
+        b     = &other;
+    }
+    a.known = a.known && b->known && isfinite(factor) && same_divisor(&a, b);
     for (int k = 0; k < 3; k++)
         a.by[k] += factor * b->by[k];
     a.at += factor * b->at;
@@ -70,15 +100,43 @@ Form form_scaled(double factor, const Form *form)
     return form_sum(form_constant(0), factor, form);
 }
 
+static Range linear_range(const Finding *f, const double by[3], double at)
+{
+    Range range = range_of(at);
+    for (int k = 0; k < 3; k++) {
+        double a = by[k] * f->box.axis[k].low, b = by[k] * f->box.axis[k].high;
+        range.low += min2(a, b);
+        range.high += max2(a, b);
+    }
+    return range;
+}
+
+Range form_divisor(const Finding *f, const Form *form)
+{
+    return form->divided ? linear_range(f, form->divisor.by, form->divisor.at) : range_of(1);
+}
+
+static Range range_of_linear(const Finding *f, const Form *form)
+{
+    Range linear = linear_range(f, form->by, form->at), divisor = form_divisor(f, form);
+    return (Range){linear.low / (linear.low < 0 ? divisor.low : divisor.high),
+                   linear.high / (linear.high > 0 ? divisor.low : divisor.high)};
+}
+
+double form_slope(const Finding *f, const Form *form)
+{
+    double slope = length3(form->by);
+    if (!form->divided)
+        return slope;
+    double size = range_largest(range_of_linear(f, form));
+    return (slope + size * length3(form->divisor.by)) / form_divisor(f, form).low;
+}
+
 /* The values of a form in the box, by the ranges of its kinks. */
 Range form_range(const Finding *f, const Form *form)
 {
-    double low = form->at, high = form->at;
-    for (int k = 0; k < 3; k++) {
-        double a = form->by[k] * f->box.axis[k].low, b = form->by[k] * f->box.axis[k].high;
-        low += min2(a, b);
-        high += max2(a, b);
-    }
+    Range  linear = range_of_linear(f, form);
+    double low = linear.low, high = linear.high;
     for (int i = 0; i < form->kink_count; i++) {
         Range  kink = f->field->ranges.ranges[form->kinks[i]];
         double a = form->factors[i] * kink.low, b = form->factors[i] * kink.high;
@@ -89,6 +147,12 @@ Range form_range(const Finding *f, const Form *form)
 }
 
 /* ---- steps ---- */
+
+static Range range_of_operand(const Finding *f, uint32_t operand)
+{
+    return operand & LANE_SCALAR ? range_of(f->tape->scalars[operand & ~LANE_SCALAR])
+                                 : f->field->ranges.ranges[operand];
+}
 
 static Form kink_form(uint32_t operand)
 {
@@ -135,12 +199,47 @@ static Form clamped_form(const Finding *f, const LaneStep *step, uint32_t value)
     return number;
 }
 
+/* A form over a linear number that is above 0 in the box. */
+static Form quotient_of(const Finding *f, const Form *a, const Form *b)
+{
+    if (!a->known || !b->known || a->divided || b->divided || a->kink_count + b->kink_count > 0 ||
+        !(form_range(f, b).low > 0))
+        return (Form){.known = false};
+    Form form    = *a;
+    form.divided = true;
+    memcpy(form.divisor.by, b->by, sizeof form.divisor.by);
+    form.divisor.at = b->at;
+    return form;
+}
+
+/* Whether it is a number over a divisor. */
+static bool is_reciprocal(const Form *form)
+{
+    return form->divided && form->kink_count == 0 && is_level(form);
+}
+
 static Form product_of(const Form *a, const Form *b)
 {
     if (form_is_constant(a))
         return form_scaled(a->at, b);
     if (form_is_constant(b))
         return form_scaled(b->at, a);
+    if (is_reciprocal(a) == is_reciprocal(b) || (a->divided && b->divided) ||
+        a->kink_count + b->kink_count > 0)
+        return (Form){.known = false};
+    const Form *number = is_reciprocal(a) ? b : a, *over = is_reciprocal(a) ? a : b;
+    Form        product = form_scaled(over->at, number);
+    product.divided     = true;
+    product.divisor     = over->divisor;
+    return product;
+}
+
+/* One of two numbers, by a condition that holds all over the box, or nowhere in it. */
+static Form select_form(const Finding *f, const LaneStep *step)
+{
+    Range condition = range_of_operand(f, step->operands[0]);
+    if (condition.low > 0 || condition.high <= 0)
+        return form_of_operand(f, step->operands[condition.low > 0 ? 1 : 2]);
     return (Form){.known = false};
 }
 
@@ -199,14 +298,17 @@ static Form form_of_step(const Finding *f, size_t i)
         form = form_sum(a, -1, &b);
     else if (step->op == OP_mul)
         form = product_of(&a, &b);
-    else if (step->op == OP_div && form_is_constant(&b) && b.at != 0)
-        form = form_scaled(1 / b.at, &a);
+    else if (step->op == OP_div)
+        form = form_is_constant(&b) && b.at != 0 ? form_scaled(1 / b.at, &a)
+                                                 : quotient_of(f, &a, &b);
     else if (step->op == OP_abs)
         form = size_form(f, &a, value);
     else if (is_greater(step) || is_lesser(step))
         form = chosen(f, &a, &b, is_greater(step), value);
     else if (step->op == OP_clamp)
         form = clamped_form(f, step, value);
+    else if (step->op == OP_select)
+        form = select_form(f, step);
     else if (step->op == OP_length)
         form = length_form(f, step, value);
     return form.known ? form : kink_form(value);
@@ -223,7 +325,4 @@ void find_forms(Finding *f)
 }
 
 /* Whether a form is a kink and what is added to it. */
-bool form_is_kink_alone(const Form *form)
-{
-    return form->kink_count == 1 && form->by[0] == 0 && form->by[1] == 0 && form->by[2] == 0;
-}
+bool form_is_kink_alone(const Form *form) { return form->kink_count == 1 && is_level(form); }

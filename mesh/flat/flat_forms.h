@@ -2,7 +2,7 @@
  * flat_forms.h: linear numbers in a box, as sums of coordinates and of kinks.
  *
  * Each linear step of a lane tape is a form: a sum of coordinates, and of kinks, which are minima, maxima, absolute values and lengths of
- * forms.
+ * forms.  A taper divides coordinates by a linear number: the sign of such a form is that of its numerator.
  */
 #ifndef KRS_MESH_FLAT_FORMS_H
 #define KRS_MESH_FLAT_FORMS_H
@@ -13,10 +13,16 @@
 
 enum { MAX_KINKS = 6 };
 
-/* by . p + at, and kinks: results of steps, by their numbers as operands, the last ones first. */
+/* A linear number, which is above 0 in the box. */
+typedef struct Divisor {
+    double by[3], at;
+} Divisor;
+
+/* by . p + at, which may be divided, and kinks: results of steps, by their numbers as operands, the last ones first. */
 typedef struct Form {
-    bool     known;
+    bool     known, divided;
     double   by[3], at;
+    Divisor  divisor;
     uint32_t kinks[MAX_KINKS];
     double   factors[MAX_KINKS];
     int      kink_count;
@@ -53,6 +59,10 @@ Form form_scaled(double factor, const Form *form);
 void form_drop_kink(Form *form, int i);
 /* Whether it is a kink and a number that is added to it. */
 bool form_is_kink_alone(const Form *form);
+/* The values of what it is divided by. */
+Range form_divisor(const Finding *f, const Form *form);
+/* How steep its linear part is, at most. */
+double form_slope(const Finding *f, const Form *form);
 /* The values of a form in the box, by the ranges of its kinks. */
 Range form_range(const Finding *f, const Form *form);
 

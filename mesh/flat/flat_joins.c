@@ -130,6 +130,7 @@ int flat_half_space(Finding *f, const Form *form)
         plane.normal[k] = form->by[k] / length;
     plane.offset = form->at / length;
     int number   = find_half_space(f, &plane, &sign);
+    length /= form_divisor(f, form).high;
     add_slack(f, number, sign > 0 ? f->slack.below : f->slack.above,
               sign > 0 ? f->slack.above : f->slack.below, length);
     f->pieces->chooses[number] |= f->chooses;

@@ -143,7 +143,9 @@ static bool find_sign(Finding *f, uint32_t operand, int *solid)
                 *solid = flat_complement(f, *solid);
             return true;
         }
-    return false;
+    Form form = form_of_operand(f, operand);
+    *solid    = flat_solid(f, &form);
+    return !f->failed;
 }
 
 static int solid_of_pair(Finding *f, const Form *rest, double factor, const Form pair[2],

@@ -44,6 +44,12 @@ static void solids_have_no_more_triangles_than_their_faces_need(void **state)
         {"show dodecahedron(1);", 36, 1, 0, 2.785163863122},
         {"show icosahedron(1);", 20, 1, 0, 2.536150710129},
         {"show pyramid(2, 1);", 6, 1, 0, 4. / 3},
+        /* A taper divides by a number that is linear: flat faces stay so. */
+        {"show box([2, 1, 1]).taper([0, 1, 0], 1, 0.3);", 12, 1, 0, 2 * (1 + 0.3 + 0.09) / 3},
+        {"show prism(6, 1, 2).taper([0, 1, 0], 1, 0.5).rotate([1, 2, 3], 40deg);", 20, 1, 0,
+         5.196152422706632 * (1 + 0.5 + 0.25) / 3},
+        {"show box([1, 2, 1]).taper([0, 1, 0], 0.5, 1.5) - box([0.3, 4, 0.3]);", 32, 1, 1,
+         2 * (0.25 + 0.75 + 2.25) / 3 - 0.18},
         {"show box([2, 2, 2]) - box([1, 1, 3]);", 32, 1, 1, 6},
         {"show box([3, 3, 3]) - box([1, 1, 1]);", 24, 2, 0, 26},
         {"show box([2, 2, 2]) | box([1, 1, 1]).move([3, 0, 0]);", 24, 2, 0, 9},
@@ -307,5 +313,6 @@ int main(void)
         cmocka_unit_test(other_meshes_stay_even),
         cmocka_unit_test(random_solids_are_what_their_parts_say),
     };
+    product_wants_outlines();
     return cmocka_run_group_tests_name("flat_meshes", tests, NULL, NULL);
 }

@@ -41,15 +41,17 @@ static KrsStatus compile(const char *text, const KrsOptions *options, KrsScene *
     return status;
 }
 
-static bool wants_research;
+static bool wants_research, wants_outlines;
 
 void product_wants_research(void) { wants_research = true; }
+void product_wants_outlines(void) { wants_outlines = true; }
 
 Product product_compile(const char *text)
 {
     Product    product = {0};
-    KrsOptions options = {.diagnostic = print_diagnostic, .research = wants_research};
-    KrsStatus  status  = compile(text, &options, &product.scene);
+    KrsOptions options = {
+        .diagnostic = print_diagnostic, .research = wants_research, .outlines = wants_outlines};
+    KrsStatus status = compile(text, &options, &product.scene);
     if (status != KRS_OK)
         fail_msg("status %d for the scene:\n%s", (int)status, text);
     assert_int_equal(krs_state_new(product.scene, &product.frame), KRS_OK);

@@ -29,7 +29,9 @@ void scene_write(SceneText *text, const char *format, ...) __attribute__((format
 /* Compiles a text; a refusal prints text and diagnostics and fails the test. */
 Product product_compile(const char *text);
 /* The scenes that are compiled from now on have what methods of research need. */
-void    product_wants_research(void);
+void product_wants_research(void);
+/* They are for meshes, as those that the command meshes. */
+void    product_wants_outlines(void);
 Product product_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void    product_free(Product *product);
 

@@ -72,6 +72,14 @@ static void solids_have_few_triangles(void **state)
          0,
          8 - 0.28125 * PI,
          30},
+        {"show cylinder(1, 2).taper([0, 1, 0], 1, 0.5);",
+         0.01,
+         4,
+         {1},
+         1.5,
+         0,
+         3.5 / 3 * PI,
+         4.3423 * PI},
         {"show capped_cone(1, 0.5, 1);", 0.01, 4, {1}, 1.5, 0, 1.75 / 3 * PI, 3 * PI},
         {"show sphere(1);", 0.01, 1, {1, 1}, 3, 0, 4 * PI / 3, 4 * PI},
         {"show sphere(1);", 0.001, 1, {1, 1}, 3, 0, 4 * PI / 3, 4 * PI},
@@ -469,5 +477,6 @@ int main(int argc, char **argv)
     };
     if (argc > 1)
         wanted = (uint64_t)atoi(argv[1]);
+    product_wants_outlines();
     return cmocka_run_group_tests_name("round_meshes", tests, NULL, NULL);
 }
