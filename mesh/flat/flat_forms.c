@@ -76,16 +76,23 @@ static bool same_divisor(const Form *a, const Form *b)
            memcmp(a->divisor.by, b->divisor.by, sizeof a->divisor.by) == 0;
 }
 
+/* Divides the plain one by what the other is divided by, where it has no slope but what the rounding of a rotation leaves. */
+static void divide_alike(Form *plain, const Form *divided, double factor)
+{
+    static const double NEGLIGIBLE = 1e-14;
+    if (length3(plain->by) <= NEGLIGIBLE * factor * length3(divided->by))
+        *plain = level_over(&divided->divisor, *plain);
+}
+
 /* a + factor b */
 Form form_sum(Form a, double factor, const Form *b)
 {
-    Form other;
-    if (b->divided && !a.divided && is_level(&a))
-        a = level_over(&b->divisor, a);
-    else if (a.divided && !b->divided && is_level(b)) {
-        other = level_over(&a.divisor, *b);
-        b     = &other;
-    }
+    Form other = *b;
+    if (b->divided && !a.divided)
+        divide_alike(&a, b, fabs(factor));
+    if (a.divided && !b->divided)
+        divide_alike(&other, &a, factor != 0 ? 1 / fabs(factor) : INFINITY);
+    b       = &other;
     a.known = a.known && b->known && isfinite(factor) && same_divisor(&a, b);
     for (int k = 0; k < 3; k++)
         a.by[k] += factor * b->by[k];
