@@ -97,6 +97,8 @@ typedef struct FieldPieces {
 
 /* In the box that was entered last; false: it is not made like that. */
 bool field_pieces(MeshField *field, Box box, FieldPieces *pieces);
+/* -1 or 1 where pieces tell that all of a box of the region is inside or outside; 0: they do not. */
+int field_side(MeshField *field, Box box);
 /* Their values at up to MAX_FIELD_POINTS points in that box: values[i * count] and so on are those of point i. */
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,
                         const double (*points)[3], size_t point_count, double *values);

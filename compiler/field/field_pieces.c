@@ -560,30 +560,49 @@ static bool keep_values(MeshField *field, const Finding *f)
     return field_keep(field, outputs, count);
 }
 
-bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
+static bool find_all(MeshField *field, Box box, Finding *f)
 {
-    LaneSlope   slope;
-    LaneHessian hessian;
-    Finding     f = {.field = field, .pieces = pieces};
+    FieldPieces *pieces = f->pieces;
+    LaneSlope    slope;
+    LaneHessian  hessian;
     if (field->region_count == 0 || field_is_cut(field, box))
         return false;
-    f.tape = &field->regions[field->region_count - 1].tape;
-    lane_ranges_run(f.tape, &field->ranges, box);
-    if (!may_be_few(&f))
+    f->field = field;
+    f->tape  = &field->regions[field->region_count - 1].tape;
+    lane_ranges_run(f->tape, &field->ranges, box);
+    if (!may_be_few(f))
         return false;
-    lane_slopes_run(f.tape, &field->ranges, field->slopes, &slope);
-    lane_hessians_run(f.tape, &field->ranges, field->slopes, field->hessians, &hessian);
+    lane_slopes_run(f->tape, &field->ranges, field->slopes, &slope);
+    lane_hessians_run(f->tape, &field->ranges, field->slopes, field->hessians, &hessian);
     pieces->side  = 0;
     pieces->count = pieces->step_count = 0;
-    Sum whole                          = sum_of(f.tape->outputs[0], 1, 0);
-    if ((whole.operands[0] & LANE_SCALAR) || !find_pieces(&f, &whole))
+    Sum whole                          = sum_of(f->tape->outputs[0], 1, 0);
+    if ((whole.operands[0] & LANE_SCALAR) || !find_pieces(f, &whole))
         return false;
     if (pieces->count > 1)
-        field_drop_touching(f.tape, &field->ranges, pieces, f.operands);
+        field_drop_touching(f->tape, &field->ranges, pieces, f->operands);
+    return true;
+}
+
+bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
+{
+    Finding f = {.pieces = pieces};
+    if (!find_all(field, box, &f))
+        return false;
     bool one = pieces->count == 1 && pieces->values[0] == 1 &&
                pieces->signs[0] * pieces->weights[0][0] == 1 && pieces->offsets[0] == 0;
     pieces->origin = one ? origin_of(f.tape, f.operands[0][0]) : 0;
     return pieces->side != 0 || keep_values(field, &f);
+}
+
+int field_side(MeshField *field, Box box)
+{
+    FieldPieces pieces;
+    Finding     f     = {.pieces = &pieces};
+    Range       range = field_range(field, box);
+    if (range.low > 0 || range.high < 0)
+        return range.low > 0 ? 1 : -1;
+    return find_all(field, box, &f) ? pieces.side : 0;
 }
 
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,

@@ -3,6 +3,9 @@
  *
  * min(max(a, b), c) is max(min(a, c), min(b, c)).  If b + c is nowhere above 0, min(b, c) is not, so b can be left out where one asks
  * for the sign alone.  The same holds of maxima, with all signs reversed.
+ *
+ * min(max(a, b), max(c, d)) is below 0 where both a and d are, if b + c is nowhere above 0: where solids overlap by less than cells are
+ * large, neither b nor c tells that.  So max(a, d) is joined.
  */
 #include "compiler/field/field_touching.h"
 
@@ -48,11 +51,31 @@ typedef struct Forms {
     const LaneRanges *ranges;
 } Forms;
 
+static Range range_of_operand(const Forms *forms, uint32_t operand)
+{
+    return operand & LANE_SCALAR ? range_of(forms->tape->scalars[operand & ~LANE_SCALAR])
+                                 : forms->ranges->ranges[operand];
+}
+
+/* The one that is the lesser or the greater all over the box; NODE_NONE: either may be, or the step is no choice. */
+static uint32_t chosen_operand(const Forms *forms, const LaneStep *step)
+{
+    if (!field_is_lesser(step) && !field_is_greater(step))
+        return NODE_NONE;
+    Range a = range_of_operand(forms, step->operands[0]),
+          b = range_of_operand(forms, step->operands[1]);
+    if (a.high <= b.low || b.high <= a.low)
+        return step->operands[(a.high <= b.low) != field_is_lesser(step)];
+    return NODE_NONE;
+}
+
 /* The operand that a step is times the factor, all over the box; NODE_NONE: it is none. */
 static uint32_t scaled_operand(const Forms *forms, const LaneStep *step, double *factor)
 {
     uint32_t whole = lane_sum_of_cuts(forms->tape, forms->ranges, step);
-    *factor        = 1;
+    if (whole == NODE_NONE)
+        whole = chosen_operand(forms, step);
+    *factor = 1;
     if (whole != NODE_NONE)
         return whole;
     if (step->op == OP_neg)
@@ -140,6 +163,9 @@ typedef struct Tree {
     int                children[MAX_PIECE_STEPS][2]; /* of steps that choose */
     int                sides
         [MAX_PIECE_STEPS]; /* of pieces that are left out: -1, as if below all others, or 1, above them; else 0 */
+    int pairs
+        [MAX_PIECE_STEPS]
+        [2]; /* of steps that choose: a piece of each child, opposite to each other; -1: none */
     int root;
 } Tree;
 
@@ -190,6 +216,12 @@ static void drop_opposite(Tree *tree, int at)
             if (all)
                 tree->sides[own] = (int)-sign;
         }
+    for (int i = 0; i < counts[0]; i++)
+        for (int j = 0; j < counts[1]; j++)
+            if (steps_are_opposite(tree, leaves[0][i], leaves[1][j], sign)) {
+                tree->pairs[at][0] = leaves[0][i];
+                tree->pairs[at][1] = leaves[1][j];
+            }
 }
 
 /* ---- what is left ---- */
@@ -209,7 +241,16 @@ typedef struct Left {
     FieldPieces pieces;
     uint32_t    operands[MAX_PIECES][PIECE_VALUES];
     int         numbers[MAX_PIECES]; /* of the pieces before; -1: not yet */
+    bool joins, full; /* whether what is beside pairs is joined; there was no room for that */
 } Left;
+
+static void leave_step(Left *left, int step)
+{
+    FieldPieces *to = &left->pieces;
+    left->full      = left->full || to->step_count == MAX_PIECE_STEPS;
+    if (!left->full)
+        to->steps[to->step_count++] = step;
+}
 
 static void leave_piece(Left *left, int piece, const uint32_t operands[PIECE_VALUES])
 {
@@ -226,7 +267,33 @@ static void leave_piece(Left *left, int piece, const uint32_t operands[PIECE_VAL
         memcpy(to->weights[i], from->weights[piece], sizeof to->weights[i]);
         memcpy(left->operands[i], operands, sizeof left->operands[i]);
     }
-    to->steps[to->step_count++] = left->numbers[piece];
+    leave_step(left, left->numbers[piece]);
+}
+
+static void leave(Left *left, int at, uint32_t operands[MAX_PIECES][PIECE_VALUES]);
+
+/* Joins what is beside a pair to a choice. */
+static void join_beside(Left *left, int at, uint32_t operands[MAX_PIECES][PIECE_VALUES])
+{
+    const Tree *tree = left->tree;
+    const int  *pair = tree->pairs[at];
+    int choice = tree->pieces->steps[at], other = choice == PIECE_MIN ? PIECE_MAX : PIECE_MIN;
+    int joined = 0;
+    if (pair[0] < 0 || tree->sides[pair[0]] != 0 || tree->sides[pair[1]] != 0)
+        return;
+    for (int k = 0; k < 2; k++) {
+        int leaves[MAX_PIECE_STEPS], count = 0;
+        find_leaves(tree, tree->children[at][k], other, leaves, &count);
+        for (int i = 0; i < count; i++) {
+            if (leaves[i] == pair[k] || tree->sides[leaves[i]] != 0)
+                continue;
+            leave(left, leaves[i], operands);
+            if (joined++ > 0)
+                leave_step(left, other);
+        }
+    }
+    if (joined > 0)
+        leave_step(left, choice);
 }
 
 static void leave(Left *left, int at, uint32_t operands[MAX_PIECES][PIECE_VALUES])
@@ -243,8 +310,28 @@ static void leave(Left *left, int at, uint32_t operands[MAX_PIECES][PIECE_VALUES
             kept++;
         }
     }
-    if (kept == 2)
-        left->pieces.steps[left->pieces.step_count++] = step;
+    if (kept == 2) {
+        leave_step(left, step);
+        if (left->joins)
+            join_beside(left, at, operands);
+    }
+}
+
+/* All that is left, with what is beside pairs where there is room. */
+static Left find_left(const Tree *tree, uint32_t operands[MAX_PIECES][PIECE_VALUES])
+{
+    Left left;
+    for (int joins = 1; joins >= 0; joins--) {
+        left = (Left){.tree = tree, .joins = joins == 1};
+        for (size_t i = 0; i < MAX_PIECES; i++)
+            left.numbers[i] = -1;
+        left.pieces.side = tree->sides[tree->root];
+        if (left.pieces.side == 0)
+            leave(&left, tree->root, operands);
+        if (!left.full)
+            break;
+    }
+    return left;
 }
 
 void field_drop_touching(const LaneTape *tape, const LaneRanges *ranges, FieldPieces *pieces,
@@ -252,12 +339,11 @@ void field_drop_touching(const LaneTape *tape, const LaneRanges *ranges, FieldPi
 {
     const Forms forms = {tape, ranges};
     Tree        tree  = {.pieces = pieces};
-    Left        left  = {.tree = &tree};
     bool        any   = false;
-    for (size_t i = 0; i < pieces->count; i++) {
-        tree.forms[i]   = form_of(&forms, pieces, operands[i], i);
-        left.numbers[i] = -1;
-    }
+    for (size_t i = 0; i < pieces->count; i++)
+        tree.forms[i] = form_of(&forms, pieces, operands[i], i);
+    for (size_t i = 0; i < pieces->step_count; i++)
+        tree.pairs[i][0] = -1;
     find_children(&tree);
     for (int i = 0; i < (int)pieces->step_count; i++) {
         if (pieces->steps[i] < 0)
@@ -266,13 +352,11 @@ void field_drop_touching(const LaneTape *tape, const LaneRanges *ranges, FieldPi
     for (int i = 0; i < (int)pieces->step_count; i++) {
         if (pieces->steps[i] < 0)
             tree.sides[i] = side_of(&tree, i);
-        any = any || tree.sides[i] != 0;
+        any = any || tree.sides[i] != 0 || tree.pairs[i][0] >= 0;
     }
     if (!any)
         return;
-    left.pieces.side = tree.sides[tree.root];
-    if (left.pieces.side == 0)
-        leave(&left, tree.root, operands);
-    *pieces = left.pieces;
+    Left left = find_left(&tree, operands);
+    *pieces   = left.pieces;
     memcpy(operands, left.operands, sizeof left.operands);
 }

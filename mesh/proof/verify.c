@@ -238,6 +238,14 @@ static bool is_flat(Verifier *verifier, const Cell *cell, CellView *view)
                             &view->has_gradient);
 }
 
+/* Whether there is no surface, since solids overlap there by less than cells are large, or gaps do. */
+static bool is_on_one_side(const Verifier *verifier, const Cell *cell, const CellView *view)
+{
+    static const double SMALL = 0.5; /* errors */
+    return view->radius < SMALL * verifier->error &&
+           field_side(verifier->field, corners_box((const double(*)[3])cell->corners, 4, 0)) != 0;
+}
+
 /* False: the mesh is refuted. */
 static bool cell_is_near_mesh(Verifier *verifier, Cells *cells, const Cell *cell, CellView *view)
 {
@@ -253,6 +261,8 @@ static bool cell_is_near_mesh(Verifier *verifier, Cells *cells, const Cell *cell
             return true;
         lens = (view->has_gradient ? LESS_FLAT : LESS_STEEP) * view->radius;
     }
+    if (is_on_one_side(verifier, cell, view))
+        return true;
     if (view->radius < TINY_CELL * error || cell->halvings == MAX_HALVINGS)
         return leave_unresolved(verifier, view->center, view->distance);
     if (cells->count + 2 > MAX_CELLS)

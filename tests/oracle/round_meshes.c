@@ -198,6 +198,9 @@ static void nothing_is_reported_at_seams(void **state)
         {"show arc(1.3, 120deg, 0.5).extrude(0.6);", 0.02, 200, 2},
         {"show circle(2).extrude(0.4) - arc(1.3, 120deg, 0.5).extrude(0.6);", 0.01, 400, 0},
         {"show circle(2).extrude(0.4) - arc(1.3, 120deg, 0.5).extrude(0.6);", 0.002, 800, 0},
+        /* Parts of a sweep overlap by little, at the plane of a mitre. */
+        {"show sweep(rectangle([0.2, 0.2]), [[0, 0, 0], [2, 0, 0], [2, 1, 0]], taper: 0.8);", 0.012,
+         SIZE_MAX, 2},
     };
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
