@@ -19,10 +19,11 @@ typedef struct Verifier {
     Tet     *tet;
     Sure     sure; /* where in it the surface is near without cells */
     double   center[3];
-    double   budget;     /* cells that the proof may still look at */
-    uint32_t last;       /* the triangle that was found to be near to a place */
-    uint32_t unresolved; /* places of the tetrahedron where it has not been decided, */
-    double   place[3];   /* and one of them; else its centre */
+    double   budget;        /* cells that the proof may still look at */
+    uint32_t last;          /* the triangle that was found to be near to a place */
+    uint32_t unresolved;    /* places of the tetrahedron where it has not been decided, */
+    double   place[3];      /* and one of them; else its centre */
+    uint32_t asked_in_vain; /* cells of it whose pieces did not tell on which side they are */
 } Verifier;
 
 #endif
