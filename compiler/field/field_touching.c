@@ -58,7 +58,7 @@ static Range range_of_operand(const Forms *forms, uint32_t operand)
 }
 
 /* The one that is the lesser or the greater all over the box; NODE_NONE: either may be, or the step is no choice. */
-static uint32_t chosen_operand(const Forms *forms, const LaneStep *step)
+static uint32_t decided_operand(const Forms *forms, const LaneStep *step)
 {
     if (!field_is_lesser(step) && !field_is_greater(step))
         return NODE_NONE;
@@ -74,7 +74,7 @@ static uint32_t scaled_operand(const Forms *forms, const LaneStep *step, double 
 {
     uint32_t whole = lane_sum_of_cuts(forms->tape, forms->ranges, step);
     if (whole == NODE_NONE)
-        whole = chosen_operand(forms, step);
+        whole = decided_operand(forms, step);
     *factor = 1;
     if (whole != NODE_NONE)
         return whole;
@@ -163,9 +163,8 @@ typedef struct Tree {
     int                children[MAX_PIECE_STEPS][2]; /* of steps that choose */
     int                sides
         [MAX_PIECE_STEPS]; /* of pieces that are left out: -1, as if below all others, or 1, above them; else 0 */
-    int pairs
-        [MAX_PIECE_STEPS]
-        [2]; /* of steps that choose: a piece of each child, opposite to each other; -1: none */
+    /* Of steps that choose: a piece of each child, which are opposite to each other; -1: none. */
+    int pairs[MAX_PIECE_STEPS][2];
     int root;
 } Tree;
 
