@@ -78,6 +78,7 @@ ended 74 "--exit-map leaves other statuses alone"
 
 # Signals.  `env` undoes what a shell may have done to background processes.
 long_render() {
+    : >err # what an earlier one said
     env --default-signal=INT "$krs" render ball.krs --size 4000x4000 --samples 4096 -o kept.exr \
         >out 2>err &
     process=$!

@@ -32,6 +32,7 @@ for words in "check ball.krs" "render ball.krs -o a.png" "mesh ball.krs -o a.stl
     status=$?
     said 1 "gave up compiling the scene" "SIGUSR1 changes nothing in \`krs ${words%% *}\`"
 done
+: >err
 "$krs" watch ball.krs -o watched.png --size 8x8 >out 2>err </dev/null &
 process=$! tries=0
 until grep -q wrote err || [ $tries -ge 600 ]; do
@@ -121,6 +122,7 @@ finish() {
     status=$?
 }
 cp ball.krs watched.krs
+: >err
 "$krs" watch watched.krs -o watched.png --size 8x8 --limit time=20 >out 2>err </dev/null &
 process=$!
 wait_for wrote 1
@@ -142,6 +144,7 @@ wait_for wrote 3
 result $? "and a file there is rendered"
 finish
 ended 0 "until it is ended"
+: >err
 KRS_TEST_CRASH=compile:hang "$krs" watch watched.krs -o watched.png --size 8x8 --deadline 1 >out 2>err </dev/null &
 process=$!
 wait_for "gave up compiling the scene after 1 seconds" 1

@@ -40,6 +40,7 @@ said 2 "did you mean \`side\`?" "an option that no edit will mend"
 pictures=0
 echo 'let far = 5;' >far.krs
 scene 1 >scene.krs
+: >err
 "$krs" watch scene.krs --size 24x16 -o a.png >out 2>err &
 watcher=$!
 how=numbers shows "the first picture"
@@ -90,6 +91,7 @@ status=$?
 ended 0 "to be asked to end is how it ends"
 # More pictures follow a small one, so it has the kernels of large ones: beams before roots have their own.
 echo 'show algebraic(x^4 + y^4 + z^4 == 1);' >scene.krs
+: >out
 "$krs" watch scene.krs --size 24x16 --stats json -o a.png >out 2>err &
 watcher=$!
 for _ in $(seq 600); do
@@ -102,6 +104,7 @@ kill -TERM "$watcher"
 wait "$watcher"
 # Both together: options go where they belong.
 scene 0.7 >scene.krs
+: >err
 "$krs" watch scene.krs --size 24x16 --error 0.02 -o a.png -o a.obj >out 2>err &
 watcher=$!
 pictures=0

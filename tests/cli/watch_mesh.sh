@@ -21,6 +21,7 @@ heard() { # words, times
 }
 watch() { # options
     written=0 kept=0
+    : >err
     "$krs" watch scene.krs "$@" >out 2>err &
     watcher=$!
 }
