@@ -48,8 +48,8 @@ float find_snapped_height(HitPoint hit, float evenness)
 float find_height(HitPoint hit, float evenness, float distance)
 {
     float pixels = mix(START, START_OF_EVEN, smoothstep(0.9, 0.99, evenness));
-    return frame.snaps != 0u ? find_snapped_height(hit, evenness)
-                               : pixels * hit.near + 4.0 * hit.rounding;
+    return snaps() ? find_snapped_height(hit, evenness)
+                   : pixels * hit.near + 4.0 * hit.rounding;
 }
 #endif
 

@@ -134,11 +134,19 @@ void load_frame()
 #endif
 }
 
-// Tells how wide a pixel counts that is so wide at t.
-float width_at(float t, float width)
+// Tells whether hits are snapped as near to the surface as rounding permits (march_step.glsl).  Marches
+// know it when they are compiled, since lavapipe runs both sides of a branch.
+bool snaps()
 {
-    return frame.snaps != 0u ? min(width, MAX_WIDTH * t) : width;
+#ifdef SNAPS
+    return SNAPS != 0;
+#else
+    return frame.snaps != 0u;
+#endif
 }
+
+// Tells how wide a pixel counts that is so wide at t.
+float width_at(float t, float width) { return snaps() ? min(width, MAX_WIDTH * t) : width; }
 
 // The workgroup whose items this one takes.  The stride spreads neighbours, which cost the same, over
 // a device that assigns workgroups in contiguous halves.

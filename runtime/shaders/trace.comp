@@ -186,9 +186,6 @@ vec2 find_width(float side)
     return vec2(half_diagonal * pixel_base, spread / max(stretch - 0.5 * spread, 0.1));
 }
 
-// Tells whether hits are snapped as near to the surface as rounding permits (march_step.glsl).
-bool snaps() { return frame.snaps != 0u; }
-
 // Whether a ray begins just above a surface and knows its normal.  If rounding puts it behind the surface,
 // that is no hit for a while: for LEAVING roundings, or a part of a pixel.  What may stay unverified, also
 // behind an expected surface (OVERSHOOT), are parts of its length.  So a ray that creeps along a surface

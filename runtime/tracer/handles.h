@@ -119,6 +119,7 @@ struct KrsRendering {
     KrsPurpose purpose;
     RayKind    scene_rays; /* the kind for the scene's own cameras */
     RayKind    rays;       /* the kind for this frame */
+    bool       snaps;      /* this frame's hits are snapped, as those of paths */
     bool       catches;    /* this frame's plate catches shadows */
     double     spirv_ms, pipeline_ms;
 

@@ -106,7 +106,7 @@ static bool prepare_frame_block(Job *job)
     job->frame.error        = (float)job->options.error;
     job->frame.max_steps    = job->options.methods.max_steps;
     job->frame.normal_reach = normal_reach(&job->options);
-    job->frame.snaps        = job->options.integrator != KRS_INTEGRATOR_PREVIEW;
+    job->frame.snaps        = job->rendering->snaps;
     return true;
 }
 
@@ -134,6 +134,7 @@ static bool choose_light(Job *job)
 
 bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera)
 {
+    job->rendering->snaps = job->options.integrator != KRS_INTEGRATOR_PREVIEW;
     if (krs_state_view(state, camera || job->rays ? 0 : job->options.camera, &job->view) != KRS_OK)
         return job_refuse(job, "the scene has no such camera");
     if (!choose_light(job))

@@ -160,6 +160,7 @@ KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPur
         return renderer->gpu.status;
     rendering->renderer    = renderer;
     rendering->purpose     = purpose;
+    rendering->snaps       = purpose == KRS_FOR_PATHS;
     rendering->spirv_ms    = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
     set_scene(rendering, scene);

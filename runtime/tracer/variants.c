@@ -198,7 +198,7 @@ ShaderVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
 {
     ShaderVariant to    = begin_variant(rendering, trace, schedule);
     const bool    saves = group != MARCH_PACKED && rendering_saves_rays(rendering, schedule);
-    define(&to, "#define SAVES %d\n", saves);
+    define(&to, "#define SAVES %d\n#define SNAPS %d\n", saves, rendering->snaps);
     want_rays(&to, rendering);
     want_paths(&to, rendering, group == 0 || group == MARCH_WITHOUT_PLANES);
     if (group > 0 && rendering_knows_planes(rendering)) {
