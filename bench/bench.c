@@ -166,7 +166,7 @@ static void run_contests(Bench *bench, Results *results)
             continue;
         Contest *contest = &results->contests[results->contest_count++];
         contest_run(bench, row, contest);
-        contest_judge(bench, contest, &results->complaints);
+        contest_judge(bench, contest, &results->faults);
         peak_measure(bench, &results->peak);
     }
 }
@@ -181,13 +181,13 @@ static void run_all(Bench *bench, Results *results)
         growth_run(bench, &results->growth);
     if (is_wanted(bench, PART_KRS)) {
         sequences_run(bench, &results->sequences);
-        sequences_judge(&results->sequences, &results->complaints);
+        sequences_judge(&results->sequences, &results->faults);
     }
     if (is_wanted(bench, PART_TRIANGLES))
         triangles_run(bench, &results->triangles);
     if (is_wanted(bench, PART_QUESTIONS)) {
         questions_run(bench, &results->questions);
-        questions_judge(&results->questions, &results->complaints);
+        questions_judge(&results->questions, &results->faults);
     }
     if (is_wanted(bench, PART_FIRST_PICTURE))
         latency_run(bench, &results->latency);
@@ -225,11 +225,11 @@ int main(int argc, char **argv)
 
     char date[16];
     date_today(date, sizeof date);
-    Results results = {.date = date, .complaints = {.arena = &arena}};
+    Results results = {.date = date, .faults = {.arena = &arena}};
     run_all(&bench, &results);
     write_results(&bench, &results);
     close_device(&bench);
-    bool right = results.complaints.length == 0;
+    bool right = results.faults.length == 0;
     arena_free(&arena);
     return right ? 0 : 1;
 }

@@ -46,35 +46,35 @@ double coverage_error(const Contest *contest, double coverage)
     return coverage / contest->reference_coverage - 1;
 }
 
-static void complain(Text *complaints, const Contest *contest, const char *who, const char *what,
-                     double found, double permitted)
+static void add_fault(Text *faults, const Contest *contest, const char *who, const char *what,
+                      double found, double permitted)
 {
-    text_format(complaints, "%s, %s: %s is %.3g, and may be %.3g\n", contest->row->name, who, what,
+    text_format(faults, "%s, %s: %s is %.3g, and may be %.3g\n", contest->row->name, who, what,
                 found, permitted);
 }
 
-void contest_judge(const Bench *bench, const Contest *contest, Text *complaints)
+void contest_judge(const Bench *bench, const Contest *contest, Text *faults)
 {
     const double tolerance = bench->quick ? QUICK_TOLERANCE : METHOD_TOLERANCE;
     for (size_t i = 0; i < contest->methods; i++) {
         const Entry *entry = &contest->entries[i];
         double       off   = fabs(coverage_error(contest, entry->coverage));
         if (!(off <= tolerance))
-            complain(complaints, contest, entry->name, "error of coverage", off, tolerance);
+            add_fault(faults, contest, entry->name, "error of coverage", off, tolerance);
         if (!(entry->agreement.inside_differs <= INSIDE_TOLERANCE))
-            complain(complaints, contest, entry->name, "share of wrong pixels away from edges",
-                     entry->agreement.inside_differs, INSIDE_TOLERANCE);
+            add_fault(faults, contest, entry->name, "share of wrong pixels away from edges",
+                      entry->agreement.inside_differs, INSIDE_TOLERANCE);
         if (entry->unresolved > 0)
-            complain(complaints, contest, entry->name, "number of unresolved rays",
-                     entry->unresolved, 0);
+            add_fault(faults, contest, entry->name, "number of unresolved rays", entry->unresolved,
+                      0);
     }
     const Agreement *geometry = &contest->geometry;
     if (!(geometry->depth_error <= DEPTH_TOLERANCE))
-        complain(complaints, contest, "by hand", "error of depth", geometry->depth_error,
-                 DEPTH_TOLERANCE);
+        add_fault(faults, contest, "by hand", "error of depth", geometry->depth_error,
+                  DEPTH_TOLERANCE);
     if (!(geometry->inside_differs <= INSIDE_TOLERANCE))
-        complain(complaints, contest, "by hand", "share of wrong pixels away from edges",
-                 geometry->inside_differs, INSIDE_TOLERANCE);
+        add_fault(faults, contest, "by hand", "share of wrong pixels away from edges",
+                  geometry->inside_differs, INSIDE_TOLERANCE);
 }
 
 /* ---- Who takes part ---- */

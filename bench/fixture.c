@@ -14,7 +14,7 @@ void give_up(const char *what, const char *why)
     exit(1);
 }
 
-static void complain(void *user, const KrsDiagnostic *diagnostic)
+static void hear_message(void *user, const KrsDiagnostic *diagnostic)
 {
     (void)user;
     fprintf(stderr, "%s\n", diagnostic->text);
@@ -32,10 +32,10 @@ KrsRenderer *device_open(void)
 Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text, bool gradients)
 {
     Fixture    fixture = {.name = name, .renderer = renderer};
-    KrsOptions options = {.diagnostic = complain, .gradients = gradients, .research = true};
+    KrsOptions options = {.diagnostic = hear_message, .gradients = gradients, .research = true};
     KrsStatus  status  = text ? krs_compile_text(text, strlen(text), name, &options, &fixture.scene)
                               : krs_compile_file(name, &options, &fixture.scene);
-    if (status != KRS_OK || krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
+    if (status != KRS_OK || krs_state_new(fixture.scene, &fixture.state) != KRS_OK)
         give_up(name, "it does not compile");
     if (krs_rendering_new(renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering) != KRS_OK)
         give_up(name, krs_renderer_message(renderer));
@@ -45,14 +45,14 @@ Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text, 
 void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
 }
 
 KrsPicture *fixture_render(const Fixture *fixture, const KrsRenderOptions *options)
 {
     KrsPicture *picture;
-    if (krs_render(fixture->rendering, fixture->frame, options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->state, options, &picture) != KRS_OK)
         give_up(fixture->name, krs_renderer_message(fixture->renderer));
     return picture;
 }

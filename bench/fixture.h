@@ -12,7 +12,7 @@ typedef struct Fixture {
     const char   *name;
     KrsRenderer  *renderer;
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
 } Fixture;
 

@@ -14,7 +14,7 @@
 
 static const uint32_t all_sizes[] = {4, 8, 12, 16, 20, 24, 28}, quick_sizes[] = {4, 12, 20};
 
-/* Of distance.comp. */
+/* The numbers of distance.comp. */
 enum { GROUPS = 1024, LANES = 64, EVALUATIONS = 128 };
 
 typedef struct Tree {

@@ -265,7 +265,7 @@ void results_json(const Bench *bench, const Results *results, Text *json)
     add_number(json, "cold_ms", results->latency.cold_ms);
     add_number(json, "warm_ms", results->latency.warm_ms);
     end(json, "}");
-    add_text(json, "complaints", results->complaints.length > 0 ? results->complaints.bytes : "");
+    add_text(json, "faults", results->faults.length > 0 ? results->faults.bytes : "");
     end(json, "}");
     json->bytes[json->length -= 2] = '\0';
     text_add(json, "\n");

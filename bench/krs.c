@@ -202,26 +202,26 @@ void sequences_run(Bench *bench, Sequences *sequences)
 }
 
 static void compare_coverage(const Sequences *sequences, Stand one, Stand other, double most,
-                             Text *complaints)
+                             Text *faults)
 {
     for (size_t i = 0; i < sequences->count; i++) {
         double off = fabs(sequences->coverage[one][i] / sequences->coverage[other][i] - 1);
         if (!isnan(sequences->ms[one][i] + sequences->ms[other][i]) && !(off <= most))
-            text_format(complaints, "%s, %.0f levels: coverage is off by %.3g, and may be %g\n",
+            text_format(faults, "%s, %.0f levels: coverage is off by %.3g, and may be %g\n",
                         stand_rows[one].name, sequences->levels[i], off, most);
     }
 }
 
-void sequences_judge(const Sequences *sequences, Text *complaints)
+void sequences_judge(const Sequences *sequences, Text *faults)
 {
-    compare_coverage(sequences, STAND_COMPOUND, STAND_COMPOUND_TOGETHER, 1e-3, complaints);
-    compare_coverage(sequences, STAND_COMPOUND_PACKED, STAND_COMPOUND_TOGETHER, 1e-3, complaints);
-    compare_coverage(sequences, STAND_THICKET, STAND_THICKET_TOGETHER, 1e-3, complaints);
-    compare_coverage(sequences, STAND_THICKET_PACKED, STAND_THICKET_TOGETHER, 1e-3, complaints);
-    compare_coverage(sequences, STAND_TREE_BEAMS, STAND_TREE_STRAIGHTFORWARD, 0.01, complaints);
-    compare_coverage(sequences, STAND_TREE, STAND_TREE_STRAIGHTFORWARD, 0.01, complaints);
-    compare_coverage(sequences, STAND_BENT, STAND_BENT_PLAIN, 0.01, complaints);
+    compare_coverage(sequences, STAND_COMPOUND, STAND_COMPOUND_TOGETHER, 1e-3, faults);
+    compare_coverage(sequences, STAND_COMPOUND_PACKED, STAND_COMPOUND_TOGETHER, 1e-3, faults);
+    compare_coverage(sequences, STAND_THICKET, STAND_THICKET_TOGETHER, 1e-3, faults);
+    compare_coverage(sequences, STAND_THICKET_PACKED, STAND_THICKET_TOGETHER, 1e-3, faults);
+    compare_coverage(sequences, STAND_TREE_BEAMS, STAND_TREE_STRAIGHTFORWARD, 0.01, faults);
+    compare_coverage(sequences, STAND_TREE, STAND_TREE_STRAIGHTFORWARD, 0.01, faults);
+    compare_coverage(sequences, STAND_BENT, STAND_BENT_PLAIN, 0.01, faults);
     if (sequences->unresolved > 0)
-        text_format(complaints, "sequences and compounds: %.0f rays are unresolved\n",
+        text_format(faults, "sequences and compounds: %.0f rays are unresolved\n",
                     sequences->unresolved);
 }

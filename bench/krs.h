@@ -56,7 +56,7 @@ typedef struct Sequences {
 
 void sequences_run(Bench *bench, Sequences *sequences);
 /* Compounds cover what they should, however they are marched, and so do Moebius sequences. */
-void sequences_judge(const Sequences *sequences, Text *complaints);
+void sequences_judge(const Sequences *sequences, Text *faults);
 
 /* Beams, primary rays and normals. */
 double march_ms(const Times *times);

@@ -15,7 +15,7 @@ const char *const answerer_names[ANSWERER_COUNT] = {"host", "device"};
 
 typedef struct Inquiry {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     size_t        count; /* of questions that there are */
     double (*points)[3], (*aims)[3];
@@ -27,7 +27,7 @@ static void inquiry_open(Bench *bench, Inquiry *in, size_t count)
     const char *path = "bench/scenes/tree28.krs";
     *in              = (Inquiry){.count = count};
     if (krs_compile_file(path, NULL, &in->scene) != KRS_OK ||
-        krs_state_new(in->scene, &in->frame) != KRS_OK)
+        krs_state_new(in->scene, &in->state) != KRS_OK)
         fail("cannot compile %s", path);
     if (krs_rendering_new(bench->renderer, in->scene, KRS_FOR_QUESTIONS, &in->rendering) != KRS_OK)
         fail("%s", krs_renderer_message(bench->renderer));
@@ -40,7 +40,7 @@ static void inquiry_open(Bench *bench, Inquiry *in, size_t count)
 static void inquiry_close(Inquiry *in)
 {
     krs_rendering_free(in->rendering);
-    krs_state_free(in->frame);
+    krs_state_free(in->state);
     krs_scene_free(in->scene);
 }
 
@@ -74,12 +74,12 @@ static double ask(Bench *bench, Inquiry *in, int answerer, bool rays, size_t cou
     double    start          = clock_ms();
     KrsStatus status;
     if (answerer == ANSWERER_HOST)
-        status = rays ? krs_raycast(in->frame, points, aims, count, INFINITY, 0, hits)
-                      : krs_probe(in->frame, points, count, hits);
+        status = rays ? krs_raycast(in->state, points, aims, count, INFINITY, 0, hits)
+                      : krs_probe(in->state, points, count, hits);
     else
-        status = rays ? krs_device_raycast(in->rendering, in->frame, points, aims, count, INFINITY,
+        status = rays ? krs_device_raycast(in->rendering, in->state, points, aims, count, INFINITY,
                                            0, hits)
-                      : krs_device_probe(in->rendering, in->frame, points, count, hits);
+                      : krs_device_probe(in->rendering, in->state, points, count, hits);
     if (status != KRS_OK)
         fail("questions are not answered: %s", krs_renderer_message(bench->renderer));
     return clock_ms() - start;
@@ -123,10 +123,10 @@ void questions_run(Bench *bench, Questions *questions)
     inquiry_close(&in);
 }
 
-void questions_judge(const Questions *questions, Text *complaints)
+void questions_judge(const Questions *questions, Text *faults)
 {
     const double most = 0.02; /* twigs of a ten thousandth of the tree are lost to rounding */
     if (!(questions->disagree <= most))
-        text_format(complaints, "questions: host and device differ about %.3g of the rays\n",
+        text_format(faults, "questions: host and device differ about %.3g of the rays\n",
                     questions->disagree);
 }

@@ -19,6 +19,6 @@ typedef struct Questions {
 
 void questions_run(Bench *bench, Questions *questions);
 /* Adds what is not as it should be. */
-void questions_judge(const Questions *questions, Text *complaints);
+void questions_judge(const Questions *questions, Text *faults);
 
 #endif

@@ -23,7 +23,7 @@ typedef struct Results {
     Triangles   triangles;
     Questions   questions;
     Latency     latency;
-    Text        complaints; /* what is not right, a line each */
+    Text        faults; /* what is not right, a line each */
 } Results;
 
 /* Everything, for programs. */

@@ -11,7 +11,7 @@
 /* What a picture is asked for: what a hand-written shader writes as well. */
 enum { AOVS = KRS_AOV_COLOR | KRS_AOV_DEPTH };
 
-static void complain(void *user, const KrsDiagnostic *diagnostic)
+static void hear_message(void *user, const KrsDiagnostic *diagnostic)
 {
     (void)user;
     fprintf(stderr, "%s\n", diagnostic->text);
@@ -38,11 +38,11 @@ void subject_open(Bench *bench, Subject *subject, const char *path, uint32_t lev
     char *text = read_file(bench->arena, path);
     if (levels > 0)
         text = with_levels(bench, text, path, levels);
-    KrsOptions options = {.diagnostic = complain, .research = true};
+    KrsOptions options = {.diagnostic = hear_message, .research = true};
     if (krs_compile_text(text, strlen(text), path, &options, &subject->scene) != KRS_OK)
         fail("%s does not compile", path);
-    if (krs_state_new(subject->scene, &subject->frame) != KRS_OK ||
-        krs_state_view(subject->frame, 0, &subject->view) != KRS_OK)
+    if (krs_state_new(subject->scene, &subject->state) != KRS_OK ||
+        krs_state_view(subject->state, 0, &subject->view) != KRS_OK)
         fail("%s: out of memory", path);
     if (krs_rendering_new(bench->renderer, subject->scene, KRS_FOR_PICTURES, &subject->rendering) !=
         KRS_OK)
@@ -54,7 +54,7 @@ void subject_open(Bench *bench, Subject *subject, const char *path, uint32_t lev
 void subject_close(Subject *subject)
 {
     krs_rendering_free(subject->rendering);
-    krs_state_free(subject->frame);
+    krs_state_free(subject->state);
     krs_scene_free(subject->scene);
     *subject = (Subject){0};
 }
@@ -65,7 +65,7 @@ static KrsPicture *render(Bench *bench, Subject *subject, KrsRenderOptions optio
     options.width  = bench->width;
     options.height = bench->height;
     options.aovs   = AOVS;
-    if (krs_render(subject->rendering, subject->frame, &options, &picture) != KRS_OK)
+    if (krs_render(subject->rendering, subject->state, &options, &picture) != KRS_OK)
         fail("cannot render: %s", krs_renderer_message(bench->renderer));
     return picture;
 }

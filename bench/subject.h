@@ -11,7 +11,7 @@
 
 typedef struct Subject {
     KrsScene         *scene;
-    KrsState         *frame;
+    KrsState         *state;
     KrsRendering     *rendering;
     const KrsProgram *program;
     KrsView           view;

@@ -394,6 +394,6 @@ void results_tables(const Bench *bench, const Results *results, Text *text)
         tell_questions(&results->questions, text);
     if (results->latency.cold_ms > 0)
         tell_latency(&results->latency, text);
-    if (results->complaints.length > 0)
-        text_format(text, "\n## Wrong\n\n%s", results->complaints.bytes);
+    if (results->faults.length > 0)
+        text_format(text, "\n## Wrong\n\n%s", results->faults.bytes);
 }

@@ -123,7 +123,7 @@ static KrsStatus check_options(Gridding *gridding)
     return status;
 }
 
-/* Of the library. */
+/* Says why the library failed. */
 static KrsStatus say_failure(const Gridding *gridding, KrsStatus status)
 {
     return status == KRS_INTERRUPTED ? status
@@ -446,7 +446,7 @@ KrsStatus command_grid(Options *options)
         status = scene_open(options, options->files.items[0], &scene);
     gridding.scene = scene;
     if (status == KRS_OK)
-        status = scene_frame(options, scene, &gridding.state);
+        status = scene_state(options, scene, &gridding.state);
     if (status == KRS_OK)
         status = take_options(&gridding);
     if (status == KRS_OK)

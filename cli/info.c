@@ -15,7 +15,7 @@ static void print_vector(const double *values, size_t count)
     fputs(count > 1 ? "]" : "", stdout);
 }
 
-/* Of the bounds of one component, and of the components of one loop; JSON has all. */
+/* So many bounds of a component, and components of a loop, are printed; JSON has all. */
 enum { MAX_LINES = 48, MAX_ALIKE = 50 };
 
 static bool is_box(const KrsBound *bound)
@@ -45,8 +45,8 @@ static void print_bound(const KrsBound *bound, size_t number)
         printf("; %u levels, %.0f instances", bound->levels, bound->instances);
     if (bound->same > 0)
         printf("; as %zu", bound->same);
-    if (bound->alike > 0)
-        printf("; %u more like it", bound->alike);
+    if (bound->similar > 0)
+        printf("; %u more like it", bound->similar);
     putchar('\n');
 }
 
@@ -110,7 +110,7 @@ static void print_parameter(const KrsParameter *parameter)
     putchar('\n');
 }
 
-/* Of many that are alike the first ones. */
+/* Prints the first few of many components that are alike. */
 static void print_components(const KrsScene *scene)
 {
     const size_t count = krs_component_count(scene);
@@ -201,7 +201,7 @@ static void add_bound(Text *json, const KrsBound *bound)
     text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
                 bound->exact ? "true" : "false", bound->estimate ? "true" : "false", bound->levels);
     json_number(json, bound->instances);
-    text_format(json, ", \"alike\": %u, \"same\": %zu}", bound->alike, bound->same);
+    text_format(json, ", \"similar\": %u, \"same\": %zu}", bound->similar, bound->same);
 }
 
 /* The tree of a component as a list, parents first; `same` counts its entries from 1. */

@@ -302,7 +302,7 @@ KrsStatus info_print(const Options *options, const KrsScene *scene)
     KrsState *state;
     printing.unit    = unit_choices[unit].name;
     printing.cm      = 100 * metres_of_units[unit];
-    KrsStatus status = scene_frame(options, scene, &state);
+    KrsStatus status = scene_state(options, scene, &state);
     if (status != KRS_OK)
         return status;
     status = measure(&printing, state);

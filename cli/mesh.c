@@ -332,7 +332,7 @@ static KrsStatus write_mesh(Meshing *meshing, const char *path)
     if (format->has_looks && meshing->options->mesh_bake > 0)
         status = bake_materials(meshing, &parts, farthest(bodies));
     else if (format->has_places)
-        status = find_places(meshing, &parts);
+        status = find_uvs(meshing, &parts);
     if (status != KRS_OK)
         return status;
     if (format->has_looks)
@@ -435,7 +435,7 @@ static void report(const Meshing *meshing, const Bodies *bodies)
 KrsStatus write_meshes(Meshing *meshing)
 {
     const Options *options = meshing->options;
-    KrsStatus      status  = scene_frame(options, meshing->scene, &meshing->state);
+    KrsStatus      status  = scene_state(options, meshing->scene, &meshing->state);
     meshing->scale         = 1;
     if (status == KRS_OK && options->animated)
         status = scene_set_time(options, meshing->state,

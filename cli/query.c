@@ -274,7 +274,7 @@ KrsStatus command_query(Options *options)
     Query *query   = arena_new(options->arena, Query);
     char  *input   = arena_alloc(options->arena, INPUT_SIZE + 1, 1);
     query->options = options;
-    status         = scene_frame(options, scene, &query->state);
+    status         = scene_state(options, scene, &query->state);
     if (status == KRS_OK && options->on_device)
         status = open_device(query, scene);
     if (status == KRS_OK) {

@@ -330,7 +330,7 @@ static KrsStatus specialize(Render *render)
     krs_scene_free(render->scene);
     render->state = NULL;
     render->scene = edited;
-    return scene_frame(options, edited, &render->state);
+    return scene_state(options, edited, &render->state);
 }
 
 /* With more samples, shaders that take longer to compile are better even if they are new.  What compilation takes
@@ -353,7 +353,7 @@ static KrsPurpose purpose_of(const Render *render)
 
 KrsStatus render_choose(Render *render)
 {
-    KrsStatus status = scene_frame(render->options, render->scene, &render->state);
+    KrsStatus status = scene_state(render->options, render->scene, &render->state);
     return status == KRS_OK ? choose_how(render) : status;
 }
 

@@ -526,7 +526,7 @@ KrsStatus command_slice(Options *options)
         status = scene_open(options, options->files.items[0], &scene);
     slicing.scene = scene;
     if (status == KRS_OK)
-        status = scene_frame(options, scene, &slicing.state);
+        status = scene_state(options, scene, &slicing.state);
     if (status == KRS_OK)
         status = find_options(&slicing);
     if (status == KRS_OK)

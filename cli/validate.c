@@ -415,7 +415,7 @@ static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
     if (status != KRS_OK)
         return status;
     choose_box(v);
-    status = scene_frame(v->options, v->scene, &v->state);
+    status = scene_state(v->options, v->scene, &v->state);
     if (status == KRS_OK && v->options->seconds > 0)
         status = try_search(v);
     if (status == KRS_OK)

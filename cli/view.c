@@ -41,7 +41,7 @@ static KrsStatus check_settings(const Options *options)
     KrsStatus status = scene_open(options, options->files.items[0], &scene);
     if (status != KRS_OK)
         return status;
-    status = scene_frame(options, scene, &state);
+    status = scene_state(options, scene, &state);
     krs_state_free(state);
     krs_scene_free(scene);
     return status;

@@ -138,7 +138,7 @@ static bool are_there(const Options *options)
     return there;
 }
 
-/* Of the document's version, in memory that is free again behind it. */
+/* Writes the mesh of the document's version, in memory that is free again behind it. */
 static KrsStatus write_solid(Watch *watch)
 {
     Arena    arena    = {.memory = watch->meshes.arena->memory};

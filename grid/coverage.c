@@ -22,7 +22,7 @@ typedef struct Cube {
     double distances[PLACES];
 } Cube;
 
-/* Of a part or a place around all, in parts from the middle. */
+/* Finds the middle of a part, or of a place around all, in parts from the middle. */
 static void place_of(int i, double at[3])
 {
     const double beyond = 0.5 * (SIDE + 1);

@@ -13,7 +13,7 @@
 /* Cells around what is solid where there is no band. */
 enum { MARGIN = 3 };
 static const double MAX_BAND = 1e6;
-/* Of a cell. */
+/* The error where none is given, in parts of a cell. */
 static const double USUAL_ERROR = 0.1;
 /* How far solids may reach beyond the box that is found, as a part of its side (narrow_box). */
 static const double BEYOND = 0.0021;

@@ -59,7 +59,7 @@ static const char *blame_at(const FirstError *first)
     return NULL;
 }
 
-/* Of what a drawing has and shapes do not, each kind is a note, "drawing.svg:3: clips and masks". */
+/* Notes what a drawing has and shapes do not, each kind once: "drawing.svg:3: clips and masks". */
 static void note_left_out(Import *import, const char *text)
 {
     static const char note[] = "= note: ";

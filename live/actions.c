@@ -14,15 +14,15 @@
 #include "live/text/camera_text.h"
 #include "live/text/text_edit.h"
 
-/* Of a turn for the height of the window. */
+/* The angle of a drag over the height of the window, and of a step. */
 #define DRAG_TURN M_PI
 #define STEP_TURN (M_PI / 24)
 #define STEP_MOVE 0.05
 /* What a step of the wheel leaves of the distance. */
 #define WHEEL_FACTOR 0.88
-/* Of the distance to the target, in a second. */
+/* Flying passes this part of the distance to the target in a second. */
 #define FLY_SPEED 0.8
-/* Of the distance: what is shown around a point of a component without an end. */
+/* This part of the distance is shown around a point of a component without an end. */
 #define NEAR_PART 0.1
 
 static void changed(Viewing *viewing)
@@ -52,7 +52,7 @@ static void act_frame(Viewing *viewing)
     const double aspect = viewing->view.height > 0
                               ? (double)viewing->view.width / viewing->view.height
                               : 1;
-    if (!krs_state_box(viewing_frame(viewing), low, high))
+    if (!krs_state_box(viewing_state(viewing), low, high))
         return;
     krs_camera_fit(&viewing->view.camera, low, high, aspect);
     changed(viewing);
@@ -67,7 +67,7 @@ static void act_frame_part(Viewing *viewing)
     double       low[3], high[3];
     if (!found.hit)
         return;
-    if (!krs_state_component_box(viewing_frame(viewing), found.component - 1, low, high))
+    if (!krs_state_component_box(viewing_state(viewing), found.component - 1, low, high))
         for (int i = 0; i < 3; i++) {
             low[i]  = found.position[i] - NEAR_PART * found.depth;
             high[i] = found.position[i] + NEAR_PART * found.depth;
@@ -78,7 +78,7 @@ static void act_frame_part(Viewing *viewing)
 
 static void act_home(Viewing *viewing)
 {
-    krs_state_fit_camera(viewing_frame(viewing));
+    krs_state_fit_camera(viewing_state(viewing));
     viewing_take_camera(viewing, viewing->camera);
 }
 
@@ -275,7 +275,7 @@ static void measure_scene(Viewing *viewing)
 {
     const KrsCamera *camera = &viewing->view.camera;
     double           low[3], high[3], sum = 0;
-    const bool       bounded = krs_state_box(viewing_frame(viewing), low, high);
+    const bool       bounded = krs_state_box(viewing_state(viewing), low, high);
     for (int i = 0; i < 3; i++)
         sum += bounded ? pow(high[i] - low[i], 2) : pow(camera->target[i] - camera->eye[i], 2);
     viewing->cut.size = fmax(sqrt(sum), 1e-9);

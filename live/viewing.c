@@ -82,7 +82,7 @@ const char *viewing_shape(const Viewing *viewing, uint32_t component)
         size_t next = i + 2; /* after the first part */
         while (krs_bound(scene, component - 1, next, &other) == KRS_OK && other.depth > part.depth)
             next++;
-        if (part.alike > 0 ||
+        if (part.similar > 0 ||
             (krs_bound(scene, component - 1, next, &other) == KRS_OK && other.depth == part.depth))
             break; /* several parts */
     }
@@ -106,7 +106,7 @@ void viewing_open_editor(Viewing *viewing, const char *place)
     free(argument);
 }
 
-/* Sets the frame to the values, as far as the scene permits them. */
+/* Sets the state to the values, as far as the scene permits them. */
 static void set_frame(Viewing *viewing)
 {
     const KrsScene *scene = version_scene(viewing->view.version);
@@ -131,7 +131,7 @@ void viewing_take_camera(Viewing *viewing, size_t camera)
     viewing_show(viewing);
 }
 
-KrsState *viewing_frame(Viewing *viewing)
+KrsState *viewing_state(Viewing *viewing)
 {
     set_frame(viewing);
     return viewing->state;
@@ -280,7 +280,7 @@ void viewing_adopt(Viewing *viewing, Version *version)
         keep_values(viewing, &before);
     else {
         begin_view(viewing);
-        krs_state_fit_camera(viewing_frame(viewing));
+        krs_state_fit_camera(viewing_state(viewing));
     }
     version_release(before.version);
     free(before.values);

@@ -92,8 +92,8 @@ double viewing_now(void);
 /* What is to be seen has changed. */
 void viewing_show(Viewing *viewing);
 void viewing_set_time(Viewing *viewing, double time);
-/* The frame, set to the values of the view as far as the scene permits them. */
-KrsState *viewing_frame(Viewing *viewing);
+/* The state, set to the values of the view as far as the scene permits them. */
+KrsState *viewing_state(Viewing *viewing);
 /* Takes the camera to that of the scene. */
 void viewing_take_camera(Viewing *viewing, size_t camera);
 /* Takes a new version of the document. */

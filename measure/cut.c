@@ -56,7 +56,7 @@ static void cross_edge(const double a[3], const double b[3], double at_a, double
         point[k] = a[k] + t * (b[k] - a[k]);
 }
 
-/* Of six corners, a triangle and the one that it was moved to. */
+/* Adds the wedge of six corners: a triangle and the one that it was moved to. */
 static void add_wedge(Cutter *cutter, Parts *parts, const double first[3][3],
                       const double second[3][3])
 {

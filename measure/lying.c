@@ -11,7 +11,7 @@
 enum { MAX_RESTS = 64 };
 /* Faces are level within a degree, and of one height within that part of the size. */
 static const double LEVEL = 0.99984769515639127, SAME_HEIGHT = 1e-5;
-/* Of the area: overhangs that differ by less are alike, and a base of less holds nothing. */
+/* Overhangs that differ by less of the area are alike, and a base of less holds nothing. */
 static const double SAME_AREA = 1e-3, MIN_BASE = 1e-4;
 
 /* ---- one orientation ---- */
@@ -37,8 +37,8 @@ static void find_heights(const Measurer *m, const double up[3], double *low, dou
 {
     *low  = INFINITY;
     *high = -INFINITY;
-    for (size_t i = 0; i < m->places.count; i++) {
-        double height = dot3(m->places.items[i].at, up);
+    for (size_t i = 0; i < m->samples.count; i++) {
+        double height = dot3(m->samples.items[i].at, up);
         *low          = min2(*low, height);
         *high         = max2(*high, height);
     }
@@ -62,12 +62,12 @@ static bool is_held(Lying *lying)
     return widest < M_PI - 1e-9;
 }
 
-static void add_to_base(Lying *lying, const Place *place)
+static void add_to_base(Lying *lying, const Sample *sample)
 {
     double offset[3];
-    add_scaled3(offset, place->at, -1, lying->m->measures->center);
+    add_scaled3(offset, sample->at, -1, lying->m->measures->center);
     lying->angles[lying->count++] = atan2(dot3(offset, lying->front), dot3(offset, lying->right));
-    lying->result->base += place->area;
+    lying->result->base += sample->area;
 }
 
 static KrsOrientation lie(const Measurer *m, const double up[3], double *angles)
@@ -78,13 +78,13 @@ static KrsOrientation lie(const Measurer *m, const double up[3], double *angles)
     memcpy(result.up, up, sizeof result.up);
     find_axes(up, lying.right, lying.front);
     find_heights(m, up, &low, &high);
-    for (size_t i = 0; i < m->places.count; i++) {
-        const Place *place = &m->places.items[i];
-        double       down  = -dot3(place->normal, up);
-        if (down > LEVEL && dot3(place->at, up) < low + SAME_HEIGHT * m->longest)
-            add_to_base(&lying, place);
+    for (size_t i = 0; i < m->samples.count; i++) {
+        const Sample *sample = &m->samples.items[i];
+        double        down   = -dot3(sample->normal, up);
+        if (down > LEVEL && dot3(sample->at, up) < low + SAME_HEIGHT * m->longest)
+            add_to_base(&lying, sample);
         else if (down > steepest + 1e-9)
-            result.overhang += place->area;
+            result.overhang += sample->area;
     }
     double ends[2] = {0, 0};
     for (size_t i = 0; i < m->mesh->vertex_count; i++) {
@@ -107,15 +107,15 @@ typedef struct Face {
 /* Rounded with an offset by which usual directions are not between two numbers. */
 static int round_off(double number) { return (int)floor(number + 0.381966); }
 
-static Face face_of(const Measurer *m, const Place *place)
+static Face face_of(const Measurer *m, const Sample *sample)
 {
     const double steps = 500;
-    Face         face  = {.area = place->area};
+    Face         face  = {.area = sample->area};
     for (int k = 0; k < 3; k++) {
-        face.normal[k] = place->normal[k];
-        face.key[k]    = round_off(steps * place->normal[k]);
+        face.normal[k] = sample->normal[k];
+        face.key[k]    = round_off(steps * sample->normal[k]);
     }
-    face.key[3] = round_off(steps * dot3(place->normal, place->at) / m->longest);
+    face.key[3] = round_off(steps * dot3(sample->normal, sample->at) / m->longest);
     return face;
 }
 
@@ -130,13 +130,13 @@ static int compare_areas(const void *a, const void *b)
     return x > y ? -1 : x < y ? 1 : compare_keys(a, b);
 }
 
-/* Joins places of the same plane to faces; returns how many there are, the largest first. */
+/* Joins samples of the same plane to faces; returns how many there are, the largest first. */
 static size_t find_faces(Measurer *m, Face *faces)
 {
     size_t count = 0, joined = 0;
-    for (size_t i = 0; i < m->places.count; i++)
-        if (m->places.items[i].settled)
-            faces[count++] = face_of(m, &m->places.items[i]);
+    for (size_t i = 0; i < m->samples.count; i++)
+        if (m->samples.items[i].snapped)
+            faces[count++] = face_of(m, &m->samples.items[i]);
     qsort(faces, count, sizeof *faces, compare_keys);
     for (size_t i = 0; i < count; i++) {
         if (joined > 0 && compare_keys(&faces[joined - 1], &faces[i]) == 0)
@@ -202,8 +202,8 @@ static void sort_orientations(Measurer *m)
 void measure_lying(Measurer *m)
 {
     KrsMeasures *measures = m->measures;
-    double      *angles   = arena_new_array(&m->arena, double, m->places.count + 1);
-    Face        *faces    = arena_new_array(&m->arena, Face, m->places.count + 1);
+    double      *angles   = arena_new_array(&m->arena, double, m->samples.count + 1);
+    Face        *faces    = arena_new_array(&m->arena, Face, m->samples.count + 1);
     double       up[3];
     size_t       count = find_faces(m, faces);
     add_orientation(m, measures->as_is.up, angles);

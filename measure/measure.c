@@ -9,7 +9,7 @@
 #include "slice/extent.h"
 
 enum { MAX_ORIENTATIONS = 72 };
-/* Parts of the work that are done behind the mesh, the volume and the places. */
+/* Parts of the work that are done behind the mesh, the volume and the samples. */
 static const double MESH_DONE = 0.4, VOLUME_DONE = 0.7;
 
 bool measurer_goes_on(Measurer *m, size_t part, double fraction)
@@ -114,8 +114,8 @@ static void measure_all(Measurer *m)
     measure_volume(m);
     m->begun = VOLUME_DONE;
     m->goal  = 1;
-    measure_places(m);
-    if (measurer_goes_on(m, 0, 1)) /* who asks may have had no part of the places */
+    measure_samples(m);
+    if (measurer_goes_on(m, 0, 1)) /* who asks may have had no part of the samples */
         measure_lying(m);
 }
 

@@ -4,9 +4,9 @@
  * 1. A mesh tells areas, and where the surface is.
  * 2. Cells tell the volume and the center: in a cell where the derivatives are known to be in ranges, the solid is between
  *    two half-spaces, whose volumes in the cell are exact (volume.c).
- * 3. Triangles are halved until they are small.  The point of the surface at the middle of each is a place, with its normal
- *    and the wall behind it (places.c).
- * 4. Places tell what hangs over, and on which of its faces the part can lie (lying.c).
+ * 3. Triangles are halved until they are small.  The point of the surface at the middle of each is a sample, with its normal
+ *    and the wall behind it (samples.c).
+ * 4. Samples tell what hangs over, and on which of its faces the part can lie (lying.c).
  */
 #ifndef KRS_MEASURE_MEASURE_H
 #define KRS_MEASURE_MEASURE_H
@@ -16,13 +16,13 @@
 #include "compiler/base/parallel.h"
 #include "compiler/field/field.h"
 
-/* A place of the surface. */
-typedef struct Place {
+/* A sample of the surface. */
+typedef struct Sample {
     double at[3], normal[3];
     double area;  /* of its triangle */
-    bool settled; /* it is on the surface, with the surface's normal; else those of the triangle */
+    bool snapped; /* it is on the surface, with the surface's normal; else those of the triangle */
     double wall;  /* behind it; INFINITY: none */
-} Place;
+} Sample;
 
 typedef struct Measurer {
     Memory                   memory;
@@ -35,9 +35,9 @@ typedef struct Measurer {
     KrsMesh                 *mesh;
     KrsMeasures             *measures;
     struct {
-        Place *items;
-        size_t count, capacity;
-    } places;
+        Sample *items;
+        size_t  count, capacity;
+    } samples;
     double        begun, goal; /* parts of all work that are done before and after this step */
     atomic_bool   stopped;
     atomic_size_t next; /* of what threads share */
@@ -48,7 +48,7 @@ bool measurer_goes_on(Measurer *m, size_t part, double fraction);
 
 /* Each sets its members of the measures. */
 void measure_volume(Measurer *m);
-void measure_places(Measurer *m);
+void measure_samples(Measurer *m);
 void measure_lying(Measurer *m);
 
 #endif

@@ -21,9 +21,10 @@ enum { MAX_ROUNDS = 64, PROBES = 64, HALVINGS = 45 };
 /* In errors: how far points are apart, if that is enough, and from edges, where the mesh may belong to the neighbour; how near to a vertex an
    edge is not split. */
 static const double SPACING = 2, MARGIN = 1.5, NEAR_VERTEX = 0.25;
-/* Of the size of the mesh: points are no nearer, however small the error is. */
+/* Points are no nearer than this part of the size of the mesh, however small the error is. */
 static const double MIN_SPACING = 1.0 / 500;
-/* Of the height of a triangle: the most that MARGIN is; and how far from an edge the place is where it is split. */
+/* Parts of the height of a triangle: the most that MARGIN is; and how far from an edge the place is where it is
+   split. */
 static const double MAX_MARGIN = 1.0 / 3, AT_EDGE = 1e-4;
 
 /* Where to split the edges of a triangle, from corner k to the next; 0: not. */
@@ -36,7 +37,7 @@ typedef struct Borders {
     Arena                 arena;
     const KrsMeshOptions *options;
     const double (*copy)[4];
-    KrsState *frames[MAX_PARTS];
+    KrsState *states[MAX_PARTS];
     struct {
         double (*items)[3];
         size_t count, capacity;
@@ -291,7 +292,7 @@ static void look_at_some(void *task, size_t part, size_t parts)
 {
     enum { SOME = 16 };
     Borders *b    = task;
-    Look     look = {.b = b, .state = b->frames[part], .asks = part == 0};
+    Look     look = {.b = b, .state = b->states[part], .asks = part == 0};
     (void)parts;
     while (!atomic_load(&b->stopped) && !atomic_load(&b->failed)) {
         size_t begin = atomic_fetch_add(&b->next, SOME);
@@ -401,9 +402,9 @@ static KrsStatus open_borders(Borders *b, KrsState *state, const KrsMesh *mesh)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
-        status = state_copy_of(state, &b->frames[i]);
+        status = state_copy_of(state, &b->states[i]);
         if (status == KRS_OK)
-            state_refresh_points(b->frames[i]);
+            state_refresh_points(b->states[i]);
     }
     for (size_t i = 0; i < mesh->vertex_count && status == KRS_OK; i++) {
         array_reserve_large(&b->arena, &b->vertices);
@@ -483,7 +484,7 @@ KrsStatus mesh_split_at_borders(KrsState *state, const KrsMeshOptions *options,
     b.arena.memory   = &b.memory;
     KrsStatus status = mesh->triangle_count > 0 ? split(&b, state, mesh) : KRS_OK;
     for (int i = 0; i < MAX_PARTS; i++)
-        state_free(b.frames[i]);
+        state_free(b.states[i]);
     arena_free(&b.arena);
     return status;
 }

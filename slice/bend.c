@@ -9,8 +9,8 @@
 static const double PART_OF_CHORDS = 0.25;
 /* Chords as short as that part of the error stay as they are. */
 static const double SHORTEST = 1.0 / 256;
-/* Of a corner: how far it is from the outline, in errors, at most, and in what tangents of an arc would be from it; and
-   the cosine of the angle by which normals differ at least. */
+/* Numbers for corners: how far one is from the outline, in errors, at most, and in what tangents of an arc
+   would be from it; and the cosine of the angle by which normals differ at least. */
 static const double NEAR_CORNER = 1e-3, PART_OF_ARC = 0.02, STRAIGHT_COSINE = 1 - 1e-5;
 /* Where normals differ by more than that, a stretch has a corner, or is halved. */
 static const double SMOOTH_COSINE = 0.996;
@@ -374,7 +374,7 @@ static void box_of_csg_node(const Section *s, size_t item, double low[2], double
     }
 }
 
-/* Of a chord: those of its bends, and the one with the next, if that is bent; false: it is not. */
+/* Looks at the bends of a chord for corners, and at the one with the next, if that is bent; false: it is not. */
 static bool look_at_ends(Section *s, const Chord *chord)
 {
     const Crossing *start  = &s->crossings.items[chord->from];

@@ -64,7 +64,8 @@ static size_t farthest_between(const OutlinePoint *points, size_t from, size_t t
     return farthest;
 }
 
-/* Of a contour without corners both ends are one point, so it is halved before. */
+/* Keeps the points that are needed.  A contour without corners is halved before, as both of its ends are one
+   point. */
 static void keep_needed(const OutlinePoint *points, size_t from, size_t to, double error,
                         bool *kept, Arena *scratch)
 {

@@ -9,8 +9,8 @@
 #include "slice/section.h"
 
 static const double DEFAULT_ERROR = 1.0 / 2000, MIN_ERROR = 1e-7;
-/* Of coordinates: how far roots are known, and by how much solids are thicker, so that faces that touch, and faces in
-   the plane itself, are not decided by rounding. */
+/* Parts of coordinates: how far roots are known, and by how much solids are thicker, so that faces that touch,
+   and faces in the plane itself, are not decided by rounding. */
 static const double ENOUGH = 1e-14, SKIN = 1e-12;
 
 struct KrsSlicer {

@@ -10,7 +10,8 @@ enum {
     ENTER_EVERY = 3,               /* halvings until the field is pruned again */
     ASK_EVERY   = 256
 };
-/* Of what is thinner than the smallest cells, cells are halved so often more; what is still thinner is counted. */
+/* Where something is thinner than the smallest cells, cells are halved so often more; what is still thinner is
+   counted. */
 enum { THIN_HALVINGS = 4 };
 /* Derivatives below that count as 0: a face that was turned by a right angle is straight. */
 static const double STRAIGHT = 1e-9;
@@ -281,7 +282,7 @@ static double look_both_ways(const Section *s, double side, const double from[2]
 static double find_thinnest(const Section *s, const Cell *cell, bool same, double at[2])
 {
     const double side = s->side * ((double)cell->side / WHOLE_SIDE);
-    /* Of a quarter without an outline nothing is to be found, unless it is where the thickness shows. */
+    /* A quarter without an outline has nothing that could be found, unless it is where the thickness shows. */
     const double reach = same ? 1.0001 * 0.25 * M_SQRT2 * side : 2 * side;
     double       middles[4][2], distances[4], thinnest = 0;
     for (uint32_t i = 0; i < 4; i++) {

@@ -123,7 +123,7 @@ old() { # options of the compiler
     "$cc" -std=c17 -Wall -Wextra -Wpedantic "$@" -Iinclude -o "$work/old" tests/api/old_names.c -L"$build" -lkrs >"$work/said" 2>&1
 }
 old -Werror -DKRS_NO_DEPRECATION_WARNINGS && LD_LIBRARY_PATH="$build" "$work/old" >>"$work/said" 2>&1
-report $? "a program with the names of before 0.3 runs"
+report $? "a program with the names of 0.2 runs"
 grep -oE '\b(krs_[a-z_]+|Krs[A-Za-z]+|KRS_[A-Z_]+)\b' tests/api/old_names.c | sort -u >"$work/used"
 sed -n 's/^KRS_RENAMED(.*, *\(krs_[a-z_]*\), krs_.*/\1/p; s/^KRS_RENAMED_VOID(\(krs_[a-z_]*\),.*/\1/p
     s/^typedef .* \(Krs[A-Za-z]*\) *KRS_DEPRECATED.*/\1/p; s/^#define \(KRS_[A-Z_]*\) *KRS_M.*/\1/p' include/krs/deprecated*.h |

@@ -35,7 +35,7 @@ once="date quick machine device driver processor memory system compiler krs revi
       width height repeats scenes growth sequences by_levels paper_kiloflops_per_ray triangles
       doublings ns_per_distance ns_per_evaluation questions
       points_per_second rays_per_second first_picture cold_ms
-      warm_ms complaints"
+      warm_ms faults"
 of_scenes="name scene flops_per_evaluation first_use reference entries by_hand_takes
            at_the_same_error at_the_same_coverage by_hand_at_the_reference_error"
 

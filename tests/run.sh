@@ -26,7 +26,7 @@ export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-${XDG_CACHE_HOME:-${HOME:
 export XDG_CACHE_HOME="$folder/caches"
 
 # Why a finished program counts as a failure beyond its `not ok` lines; nothing if it does not.
-complaint() { # status, tests that did not fail, tests that failed, tests that were planned
+fault_of() { # status, tests that did not fail, tests that failed, tests that were planned
     if [ "$1" -eq 124 ] || { [ "$1" -eq 137 ] && [ "$3" -ne 137 ]; }; then
         echo "took longer than $seconds seconds, or was killed"
     elif [ "$1" -ge 125 ] && [ "$1" -ne "$3" ]; then
@@ -68,7 +68,7 @@ test_program() { # program, where its output goes
     failed=$(grep '^not ok' "$2" | grep -cv '# SKIP')
     planned=$(sed -n 's/^1\.\.\([0-9][0-9]*\).*/\1/p' "$2" |
         awk '{ sum += $1 } END { print sum + 0 }')
-    why=$(complaint "$status" $((passed + skipped)) "$failed" "$planned")
+    why=$(fault_of "$status" $((passed + skipped)) "$failed" "$planned")
     [ -n "$why" ] && failed=$((failed + 1))
 
     if [ "$failed" -gt 0 ]; then

@@ -7,7 +7,7 @@ LIBDIR  ?= lib
 DESTDIR ?=
 INTO     = $(DESTDIR)$(PREFIX)
 COMMANDS = $(shell sed -n 's/^COMMAND.[A-Z]*, "\([a-z]*\)".*/\1/p' cli/options/commands.def)
-# Programs include <krs/krs.h>, and older ones <krs.h>: names of before 0.3, which only lead to these.
+# Programs include <krs/krs.h>, and older ones <krs.h>: names of 0.2, which only lead to these.
 PUBLIC   = $(sort $(wildcard include/krs/*))
 OLD_NAMES = krs.h krs_vulkan.h krs_camera.h
 INSTALLED = bin/krs $(LIBDIR)/libkrs.a $(LIBDIR)/$(SHARED) $(LIBDIR)/$(SONAME) $(LIBDIR)/libkrs.so $(LIBDIR)/pkgconfig/krs.pc $(PUBLIC) $(OLD_NAMES:%=include/%) \

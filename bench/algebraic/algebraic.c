@@ -122,7 +122,7 @@ typedef struct Method {
 typedef struct Fixture {
     KrsRenderer  *renderer;
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
 } Fixture;
 
@@ -131,7 +131,7 @@ static Fixture fixture_open(KrsRenderer *renderer, const char *name, const char 
     Fixture    fixture = {.renderer = renderer};
     KrsOptions options = {.gradients = true, .research = true};
     if (krs_compile_text(text, strlen(text), name, &options, &fixture.scene) != KRS_OK ||
-        krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
+        krs_state_new(fixture.scene, &fixture.state) != KRS_OK)
         give_up(name, "it does not compile");
     if (krs_rendering_new(renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering) != KRS_OK)
         give_up(name, krs_renderer_message(renderer));
@@ -141,7 +141,7 @@ static Fixture fixture_open(KrsRenderer *renderer, const char *name, const char 
 static void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
 }
 
@@ -155,7 +155,7 @@ static KrsPicture *shoot(const Fixture *fixture, const struct Variant *variant)
                                 .methods.normals = variant->normals,
                                 .no_occlusion    = true,
                                 .aovs            = KRS_AOV_COLOR};
-    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->state, &options, &picture) != KRS_OK)
         give_up(variant->name, krs_renderer_message(fixture->renderer));
     return picture;
 }

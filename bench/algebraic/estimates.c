@@ -24,8 +24,7 @@ typedef struct Tally {
 
 static Real size_of(const Real v[3]) { return sqrtl(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-/* Of the second derivatives: the root of the sum of their squares, which is not less than their
-   largest eigenvalue. */
+/* Bounds the largest eigenvalue of the second derivatives by the root of the sum of their squares. */
 static Real bend_of(Formula *formula, const Real p[3])
 {
     const Real step = 1e-4L;

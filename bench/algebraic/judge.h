@@ -10,7 +10,7 @@
 /* What is drawn: the solid f <= 0 within the ball, or the surface f = 0 alone. */
 typedef enum Drawn { CUT_SOLID, OPEN_SURFACE } Drawn;
 
-/* Of one pixel in sixteen, those that see something. */
+/* One pixel in sixteen is judged, where it sees something. */
 enum { STRIDE = 4, SEEN_ROWS = HEIGHT / STRIDE, SEEN_COLUMNS = WIDTH / STRIDE };
 
 /* The ray of a pixel. */

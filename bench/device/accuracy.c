@@ -204,7 +204,7 @@ static void finish(Gpu *gpu)
     vkDestroyDescriptorSetLayout(gpu->device, set_layout, NULL);
 }
 
-/* Of a row's text what stands before a comma and a space outside of parentheses is GLSL. */
+/* Counts the GLSL of a row's text: it ends before a comma and a space that are outside of parentheses. */
 static int glsl_length(const char *text)
 {
     int depth = 0, length = 0;

@@ -28,7 +28,7 @@ void print_shaders(KrsRenderer *renderer, const char *path)
     KrsTrace    trace    = KRS_TRACE_DEFAULT;
     KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
     if (krs_compile_file(path, NULL, &fixture.scene) != KRS_OK ||
-        krs_state_new(fixture.scene, &fixture.frame) != KRS_OK)
+        krs_state_new(fixture.scene, &fixture.state) != KRS_OK)
         give_up(path, "it does not compile");
     printf("| %s | front end | %.0f | |\n", name, clock_ms() - start);
     if (krs_rendering_new(renderer, fixture.scene, KRS_FOR_QUESTIONS, &fixture.rendering))

@@ -37,7 +37,7 @@ static void limit_band(KrsRenderer *renderer, uint64_t pixels, uint32_t usual)
     *limit          = pixels > 0 ? (uint32_t)(pixels + 16) * RESULT_ROWS * RESULT_BYTES : usual;
 }
 
-/* Of some pictures that which took least. */
+/* Renders some pictures, and returns the one that took least. */
 static KrsPicture *render_best(const Fixture *fixture, const KrsRenderOptions *options)
 {
     KrsPicture *best = fixture_render(fixture, options); /* compiles what is new */

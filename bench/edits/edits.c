@@ -223,7 +223,7 @@ static int compare(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Of every `step`th edit, the first of which is `edits`: the median of `weight`ed sums. */
+/* Finds the median of `weight`ed sums, over every `step`th edit from `edits` on. */
 static double median(const Edit *edits, size_t count, size_t step, Edit weight)
 {
     double sums[MAX_EDITS];

@@ -39,13 +39,13 @@ typedef struct Ray {
     double origin[3], direction[3];
 } Ray;
 
-static double distance_at(KrsState *frame, const Ray *ray, double t)
+static double distance_at(KrsState *state, const Ray *ray, double t)
 {
     double p[1][3];
     KrsHit hit;
     for (int i = 0; i < 3; i++)
         p[0][i] = ray->origin[i] + t * ray->direction[i];
-    if (krs_probe(frame, (const double(*)[3])p, 1, &hit) != KRS_OK)
+    if (krs_probe(state, (const double(*)[3])p, 1, &hit) != KRS_OK)
         give_up("convex", "a distance cannot be found");
     return hit.distance;
 }
@@ -101,17 +101,17 @@ static Ray ray_inwards(void)
 }
 
 /* A ray that has just entered the solid. */
-static Ray entering_ray(KrsState *frame)
+static Ray entering_ray(KrsState *state)
 {
     for (;;) {
         Ray    ray = ray_inwards();
         KrsHit hit;
-        if (krs_raycast(frame, (const double(*)[3])ray.origin, (const double(*)[3])ray.direction, 1,
+        if (krs_raycast(state, (const double(*)[3])ray.origin, (const double(*)[3])ray.direction, 1,
                         2 * radius, 0, &hit) != KRS_OK)
             give_up("convex", "a ray cannot be followed");
         for (int i = 0; i < 3; i++)
             ray.origin[i] += (hit.t + permitted) * ray.direction[i];
-        if (hit.hit && distance_at(frame, &ray, 0) < -0.2 * permitted)
+        if (hit.hit && distance_at(state, &ray, 0) < -0.2 * permitted)
             return ray;
     }
 }
@@ -132,12 +132,12 @@ static double step_of(Steps steps, double distance, double last_slope, double sl
 
 /* Marches from `t` towards `sign` to where the distance, positive there, has changed its sign.  `side`
    is -1 inside.  Where balls do not meet, a shorter step is tried.  Counts distances. */
-static double march(KrsState *frame, const Ray *ray, double t, double sign, double side,
+static double march(KrsState *state, const Ray *ray, double t, double sign, double side,
                     Steps steps, int *evaluations)
 {
     double last = 0, step = 0, slope = -1 / 0.7;
     for (int i = 0; i < MAX_STEPS; i++) {
-        double distance   = side * distance_at(frame, ray, t + sign * step);
+        double distance   = side * distance_at(state, ray, t + sign * step);
         double unverified = step - last;
         ++*evaluations;
         if (distance <= 0 && unverified <= permitted + tolerance)
@@ -162,17 +162,17 @@ typedef struct Counts {
     double farthest; /* of what is found from behind, from what is found inside */
 } Counts;
 
-static Counts count(KrsState *frame)
+static Counts count(KrsState *state)
 {
     Counts counts = {0};
     for (int i = 0; i < RAYS; i++) {
-        const Ray    ray    = entering_ray(frame);
+        const Ray    ray    = entering_ray(state);
         const double exit   = exit_of_ball(&ray);
-        const double inside = march(frame, &ray, 0, 1, -1, PLAIN, &counts.evaluations[0]);
-        march(frame, &ray, 0, 1, -1, RELAXED, &counts.evaluations[1]);
-        march(frame, &ray, 0, 1, -1, AUTOMATIC, &counts.evaluations[2]);
-        const double behind = march(frame, &ray, exit, -1, 1, PLAIN, &counts.evaluations[3]);
-        march(frame, &ray, exit, -1, 1, AUTOMATIC, &counts.evaluations[4]);
+        const double inside = march(state, &ray, 0, 1, -1, PLAIN, &counts.evaluations[0]);
+        march(state, &ray, 0, 1, -1, RELAXED, &counts.evaluations[1]);
+        march(state, &ray, 0, 1, -1, AUTOMATIC, &counts.evaluations[2]);
+        const double behind = march(state, &ray, exit, -1, 1, PLAIN, &counts.evaluations[3]);
+        march(state, &ray, exit, -1, 1, AUTOMATIC, &counts.evaluations[4]);
         counts.farthest = fmax(counts.farthest, fabs(behind - inside));
     }
     return counts;
@@ -187,17 +187,17 @@ void compare_convex(const Sheet *sheet)
         "| --- | --- | --- | --- | --- | --- | --- |\n");
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
         KrsScene *scene;
-        KrsState *frame;
+        KrsState *state;
         if (krs_compile_text(solids[i].text, strlen(solids[i].text), solids[i].name, NULL,
                              &scene) != KRS_OK ||
-            krs_state_new(scene, &frame) != KRS_OK)
+            krs_state_new(scene, &state) != KRS_OK)
             give_up(solids[i].name, "it does not compile");
-        const Counts counts = count(frame);
+        const Counts counts = count(state);
         sheet_print(sheet, "| %s ", solids[i].name);
         for (int k = 0; k < 5; k++)
             sheet_print(sheet, "| %.1f ", counts.evaluations[k] / (double)RAYS);
         sheet_print(sheet, "| %.4f |\n", counts.farthest);
-        krs_state_free(frame);
+        krs_state_free(state);
         krs_scene_free(scene);
     }
 }

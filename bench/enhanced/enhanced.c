@@ -171,7 +171,7 @@ static void find_distances(const Fixture *fixture, const KrsPicture *picture, do
         distances[i] = 0;
         if (!isfinite(picture->depth[i]))
             continue;
-        if (krs_probe(fixture->frame, p, 1, &hit) != KRS_OK)
+        if (krs_probe(fixture->state, p, 1, &hit) != KRS_OK)
             give_up(fixture->name, "a distance cannot be found");
         distances[i] = hit.distance / (2 * tangent * picture->depth[i] / HEIGHT);
     }

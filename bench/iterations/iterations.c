@@ -54,7 +54,7 @@ static void write_strip(const char *name)
         give_up(name, error.message);
 }
 
-/* Of the pixels that cost something at all. */
+/* Tells the steps of the pixels that cost something at all. */
 static void tell(const KrsPicture *picture, KrsTrace method)
 {
     double   sum   = 0;

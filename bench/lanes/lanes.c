@@ -13,7 +13,7 @@
 enum { POINTS = 4096, BOXES = 64, PRUNED_FOR = 256 };
 
 typedef struct Subject {
-    KrsState  *frame;
+    KrsState  *state;
     Memory     memory;
     Arena      arena;
     LaneTape   tape;
@@ -47,14 +47,14 @@ static bool open_subject(Subject *s, int spheres)
     write_scene(text, sizeof text, spheres);
     KrsOptions options = {0};
     if (krs_compile_text(text, strlen(text), "bench.krs", &options, &scene) != KRS_OK ||
-        krs_state_new(scene, &s->frame) != KRS_OK)
+        krs_state_new(scene, &s->state) != KRS_OK)
         return false;
-    state_refresh(s->frame);
+    state_refresh(s->state);
     const Node root = distance_root(&scene->roots, 0);
     s->tape         = lane_tape_new(&scene->distance, &root, 1, true, 0, &s->arena);
     s->tape.scalars = arena_new_array(&s->arena, double, s->tape.scalar_count + 1);
-    lane_tape_scalars(&s->tape, s->frame->values, s->tape.scalars);
-    s->work = lane_work_in(arena_alloc(&s->arena, lane_work_bytes(&s->tape), 1), s->frame->values);
+    lane_tape_scalars(&s->tape, s->state->values, s->tape.scalars);
+    s->work = lane_work_in(arena_alloc(&s->arena, lane_work_bytes(&s->tape), 1), s->state->values);
     s->ranges = lane_ranges_new(&s->tape, &s->arena);
     return true;
 }
@@ -74,7 +74,7 @@ static double rate_of_tape(Subject *s, const double (*points)[3])
     size_t done  = 0;
     do {
         for (int i = 0; i < 256; i++)
-            tape_run_point(&s->frame->scene->distance, points[i], s->frame->values);
+            tape_run_point(&s->state->scene->distance, points[i], s->state->values);
         done += 256;
         spent = now() - start;
     } while (spent < 0.3);
@@ -155,7 +155,7 @@ static void measure(int spheres)
     printf("| %zu | double, pruned for 256 points at a time, to %.0f steps | %.3g | %.1f |\n",
            s.tape.count, left, pruned, pruned / scalar);
     arena_free(&s.arena);
-    krs_state_free(s.frame);
+    krs_state_free(s.state);
 }
 
 int main(void)

@@ -79,7 +79,7 @@ static void shoot(const Fixture *fixture, int frame, uint32_t samples, bool plai
                                 .aovs              = KRS_AOV_COLOR,
                                 .methods.no_filter = plain,
                                 .seed              = samples > 16 ? 7 : 0};
-    krs_state_set_time(fixture->frame, frame);
+    krs_state_set_time(fixture->state, frame);
     KrsPicture *picture = fixture_render(fixture, &options);
     shot->ms            = 0;
     for (int i = KRS_PHASE_NORMALS; i <= KRS_PHASE_SHADING; i++)
@@ -218,7 +218,7 @@ static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
 {
     Fixture fixture = fixture_of(renderer, flight);
     double  normals[2][TURNS], all[2][TURNS], prewarm;
-    krs_state_set_time(fixture.frame, 0);
+    krs_state_set_time(fixture.state, 0);
     for (int plain = 0; plain < 2; plain++)
         time_once(&fixture, plain, &prewarm, &prewarm);
     for (int turn = 0; turn < TURNS; turn++)
@@ -241,7 +241,7 @@ static void widen(KrsRenderer *renderer, const struct Flight *flight)
                                 .samples           = 1,
                                 .aovs              = KRS_AOV_COLOR,
                                 .methods.no_filter = true};
-    krs_state_set_time(fixture.frame, 0);
+    krs_state_set_time(fixture.state, 0);
     KrsPicture *fine = fixture_render(&fixture, &options);
     pixel_filter_rows(&sheet, flight->name, fine);
     krs_picture_free(fine);

@@ -10,8 +10,8 @@ enum { FINE = 8 }; /* samples along each side of a pixel */
 
 void pixel_filter_titles(const Sheet *sheet);
 
-/* Of one sample a pixel and of four, taken from a picture with FINE x FINE, which is also what they
-   are held against, each filter against itself. */
+/* Prints rows for one sample a pixel and for four.  Both are taken from a picture with FINE x FINE, and each
+   filter is compared with what it makes of that. */
 void pixel_filter_rows(const Sheet *sheet, const char *scene, const KrsPicture *fine);
 
 #endif

@@ -133,7 +133,7 @@ static void find_normals(const Fixture *fixture, KrsNormals normals, float reach
         points[i][1]   = p[1] + reach * v.y;
         points[i][2]   = p[2] + reach * v.z;
     }
-    if (krs_device_distance(fixture->rendering, fixture->frame, (const float(*)[3])points,
+    if (krs_device_distance(fixture->rendering, fixture->state, (const float(*)[3])points,
                             count * stencil.taps, distances) != KRS_OK)
         give_up("cannot sample", krs_renderer_message(fixture->renderer));
     for (size_t i = 0; i < count; i++) {

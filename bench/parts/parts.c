@@ -12,7 +12,7 @@
 
 static const int counts[] = {1000, 10000, 100000};
 
-/* Of a formula the number of parts is the only argument; a line is repeated for each part. */
+/* A formula has the number of parts as its only argument; a line is repeated for each part. */
 static const struct {
     const char *name, *formula, *line;
 } scenes[] = {

@@ -183,11 +183,11 @@ static void slide(Trial *trial, int i)
 
 static void set_camera(Trial *trial)
 {
-    KrsState *frame;
-    if (krs_state_new(version_scene(trial->view.version), &frame) != KRS_OK ||
-        krs_state_camera(frame, 0, &trial->view.camera) != KRS_OK)
+    KrsState *state;
+    if (krs_state_new(version_scene(trial->view.version), &state) != KRS_OK ||
+        krs_state_camera(state, 0, &trial->view.camera) != KRS_OK)
         give_up(trial->path, "it has no camera");
-    krs_state_free(frame);
+    krs_state_free(state);
 }
 
 static void measure(const Sheet *sheet, const char *path)

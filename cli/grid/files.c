@@ -84,7 +84,7 @@ static size_t number_bytes(const GridSheet *sheet, GridNumber number)
     return sheet->half && number != MATERIAL ? 2 : 4;
 }
 
-/* Of a sample. */
+/* Returns the bytes of a sample. */
 static size_t array_step(const GridSheet *sheet, const GridArray *array)
 {
     size_t bytes = 0;

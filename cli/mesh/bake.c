@@ -17,7 +17,7 @@
 #include "compiler/base/vec.h"
 
 enum { PROBES = 256 };
-/* Of the mesh's error: nearer points are on the surface. */
+/* Points nearer than this part of the mesh's error are on the surface. */
 static const double ON_SURFACE = 1e-3;
 /* How far a pixel beyond an edge is moved into the triangle: in pixels, and of the way to the middle. */
 static const double INTO = 0.02, MAX_INTO = 1e-3;
@@ -59,7 +59,7 @@ typedef struct Baking {
     const Meshing *meshing;
     MeshParts     *parts;
     Atlas          atlas;
-    KrsState      *frames[MAX_PARTS];
+    KrsState      *states[MAX_PARTS];
     double         error;
     Texel         *texels;
     uint32_t      *piece_of;      /* of triangles */
@@ -163,7 +163,7 @@ static void bake_rows(void *task, size_t part, size_t parts)
         size_t row = atomic_fetch_add(&b->next, 1);
         if (row >= b->atlas.side)
             return;
-        if (bake_row(b, b->frames[part], row) != KRS_OK)
+        if (bake_row(b, b->states[part], row) != KRS_OK)
             atomic_store(&b->failed, true);
     }
 }
@@ -500,7 +500,7 @@ static bool any_baked(const Baking *b)
     return false;
 }
 
-/* Of the pixels of triangles, those of materials that vary. */
+/* Returns how many of the pixels of triangles show materials that vary. */
 static double share_baked(const Baking *b)
 {
     size_t all = 0, baked = 0;
@@ -539,15 +539,15 @@ KrsStatus bake_materials(Meshing *meshing, MeshParts *parts, double error)
     KrsStatus      status  = KRS_OK;
     parts->corner_colors   = NULL;
     for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
-        status = scene_frame(options, meshing->scene, &b.frames[i]);
+        status = scene_state(options, meshing->scene, &b.states[i]);
         if (status == KRS_OK && options->animated)
-            status = scene_set_time(options, b.frames[i],
+            status = scene_set_time(options, b.states[i],
                                     options->time + options->first_frame / options->fps);
     }
     if (status == KRS_OK)
         status = bake_all(&b);
     for (size_t i = 0; i < MAX_PARTS; i++)
-        krs_state_free(b.frames[i]);
+        krs_state_free(b.states[i]);
     if (status == KRS_OK)
         meshing->pixel = parts->pictures ? b.atlas.pixel : 0;
     return status;

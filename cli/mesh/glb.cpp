@@ -74,7 +74,7 @@ bool is_same_shape(const MeshParts *parts, const MeshPart &a, const MeshPart &b)
     return true;
 }
 
-// Of the same shape; nullptr: there is none.
+// Finds a part of the same shape; nullptr: there is none.
 const Written *find_written(const File &file, const MeshParts *parts, const MeshPart &part,
                             bool mirrored)
 {

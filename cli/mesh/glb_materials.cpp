@@ -14,7 +14,7 @@ std::vector<double> scaled(const double numbers[3], double factor)
     return {factor * numbers[0], factor * numbers[1], factor * numbers[2]};
 }
 
-// Of what pictures show factors are 1.
+// Factors are 1 where a picture shows the color.
 std::vector<double> base_color_of(const MeshMaterial &m)
 {
     const double *color = m.look.color;

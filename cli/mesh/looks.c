@@ -154,7 +154,7 @@ static uint32_t take_triangle(Groups *groups, const KrsHit *hit, double area)
     return number;
 }
 
-/* Of a material that varies all groups become the first. */
+/* Makes all groups of a material that varies the first one. */
 static void merge_groups(Groups *groups, uint32_t *new_numbers)
 {
     for (size_t i = 0; i < groups->list.count; i++) {

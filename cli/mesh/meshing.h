@@ -101,12 +101,12 @@ void find_materials(const Meshing *meshing, const MeshFormat *format, const char
                     MeshParts *parts);
 /* The name of a material that is only a color, in krs_material_name. */
 #define PLAIN_COLOR "colour"
-/* Of vertices, one that is the same for all of a connected surface. */
+/* Gives each vertex a number that is the same for all of a connected surface. */
 const uint32_t *mesh_shells(Arena *arena, const MeshParts *parts);
 /* Where the middle of a triangle is in the scene. */
 void mesh_middle(const MeshParts *parts, size_t triangle, double middle[3]);
-/* places.c: where triangles are in textures, if there are any. */
-KrsStatus find_places(const Meshing *meshing, MeshParts *parts);
+/* uvs.c: where triangles are in textures, if there are any. */
+KrsStatus find_uvs(const Meshing *meshing, MeshParts *parts);
 /* frames.c: frames of the corners of triangles whose materials ask for them. */
 void find_frames(const Meshing *meshing, MeshParts *parts);
 /* split.c: tells of vertices what is known of corners, by doubling those of which corners differ: colors, and
@@ -114,7 +114,7 @@ void find_frames(const Meshing *meshing, MeshParts *parts);
 void split_corners(Arena *arena, MeshParts *parts, bool all);
 /* bake.c: with --bake, pictures of what varies, at places of corners.  Points are at most by `error` off the surface. */
 KrsStatus bake_materials(Meshing *meshing, MeshParts *parts, double error);
-/* Of a length of 1, in the order of unit_choices. */
+/* What a length of 1 is in metres, in the order of unit_choices. */
 extern const double metres_of_units[];
 /* What a length of 1 is in the file. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts);

@@ -12,7 +12,8 @@
 #include "cli/mesh/meshing.h"
 
 enum { MAX_HALVINGS = 10, PLACES = 7 };
-/* Of the time between two keyframes.  They are uneven, so that what shakes is not met at rest each time; one is the middle. */
+/* Parts of the time between two keyframes.  They are uneven, so that what shakes is not met at rest each time;
+   one is the middle. */
 static const double SHARES[PLACES] = {0.083, 0.219, 0.347, 0.5, 0.638, 0.791, 0.926};
 static const double MAX_SAMPLES    = 1e7; /* copies times frames */
 

@@ -7,7 +7,8 @@
 
 #include "cli/mesh/meshing.h"
 
-/* Of several components with a name, --component takes the first, and the name is told once. */
+/* Tells whether this is the first component of its name: that one --component takes, and it tells the name
+   once. */
 static bool is_first_of_name(const Meshing *meshing, size_t index)
 {
     KrsComponent component, other;

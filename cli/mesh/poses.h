@@ -20,7 +20,7 @@ typedef struct MeshPose {
 
 /* Tells whether a transform mirrors what it places. */
 bool mesh_is_reflection(const double matrix[3][4]);
-/* Of a matrix that moves, turns, mirrors and scales evenly. */
+/* Finds the pose of a matrix that moves, rotates, mirrors and scales evenly. */
 void mesh_pose_of(const double matrix[3][4], MeshPose *pose);
 /* What is between two keyframes, which mirror both or none: lengths by the share, and the shorter way of the rotation
    at an even speed (glTF 2.0, appendix C). */

@@ -299,7 +299,7 @@ static bool put_lattice(Model *model, const MeshBody *body, size_t *built)
 
 /* ---- copies ---- */
 
-/* Of an item of an assembly: as it is, and as its image in the plane x = 0.  By that no transform is a
+/* An item of an assembly as it is, and as its image in the plane x = 0.  So no transform has to be a
    reflection. */
 typedef struct ItemObjects {
     bool   wanted[2];

@@ -48,7 +48,7 @@ void scene_enter_compile(const char *path);
 void scene_print_counts(const DiagnosticSink *sink);
 
 /* A frame with --set, --zone and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
-KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsState **state);
+KrsStatus scene_state(const Options *options, const KrsScene *scene, KrsState **state);
 /* Words as well where the frame cannot have this time. */
 KrsStatus scene_set_time(const Options *options, KrsState *state, double time);
 /* "a/ring.krs" is called "ring". */

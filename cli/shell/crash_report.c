@@ -11,7 +11,7 @@
 
 #include "cli/shell/console.h"
 
-/* Of a regular file only: a pipe may never have a writer, a device never end. */
+/* Copies regular files only: a pipe may never have a writer, a device never end. */
 static void copy_file(const char *from, const char *to)
 {
     char        buffer[65536];

@@ -288,7 +288,7 @@ KrsStatus scene_set_time(const Options *options, KrsState *state, double time)
     return say_usage(options, "at time %g something in the scene is not finite", time);
 }
 
-KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsState **state)
+KrsStatus scene_state(const Options *options, const KrsScene *scene, KrsState **state)
 {
     KrsStatus status = krs_state_new(scene, state);
     if (status != KRS_OK)

@@ -208,7 +208,7 @@ static void catch_signal(int number)
         sigaction(number, &action, NULL);
 }
 
-/* Of what is written to: drivers for cards reserve far more than they use. */
+/* Limits the memory that is written to, for drivers of cards reserve far more than they use. */
 static void limit_memory(uint64_t bytes)
 {
     struct rlimit limit;

@@ -51,7 +51,7 @@ static ArenaBlock *block_new(Memory *memory, size_t bytes)
     size_t size = bytes + HEADER_BYTES;
     if (memory->limit != 0 && (memory->used > memory->limit || size > memory->limit - memory->used))
         out_of_memory(memory);
-    /* Of a block from the system that was never used calloc touches nothing. */
+    /* A block from the system that was never used is zero: calloc touches nothing of it. */
     ArenaBlock *block = memory->allocate ? memory->allocate(memory->user, size) : calloc(1, size);
     if (!block)
         out_of_memory(memory);

@@ -14,7 +14,7 @@
 void unchecked_count_at(atomic_int *count);
 void unchecked_begin(void);
 void unchecked_end(void);
-/* Of any thread; may be asked by handlers of signals. */
+/* Tells whether unchecked work runs in any thread; handlers of signals may ask it. */
 bool unchecked_runs(void);
 
 #endif

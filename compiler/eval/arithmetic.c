@@ -361,7 +361,7 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
     return value_of_node(e, graph_op2(e->graph, ops[syntax->op], left, right));
 }
 
-/* Of maps that stay apart a product has as many as both have. */
+/* Multiplies maps that stay separate: the product has as many as both have. */
 static Value multiply_maps(Elaboration *e, const Syntax *syntax, const Map *a, const Map *b)
 {
     size_t count = 0;

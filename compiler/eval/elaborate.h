@@ -161,7 +161,7 @@ Definition *scope_find(const Scope *scope, const char *name);
 static const double MAX_EXTENT = 1e12;
 
 /* ---- expression.c ---- */
-/* Of one list. */
+/* A list has no more elements than that. */
 enum { MAX_ELEMENTS = 4 * 1000 * 1000 };
 /* Counts steps of evaluation; false when a limit is reached (reported once). */
 bool count_steps(Elaboration *e, uint64_t count, Span span);
@@ -421,7 +421,7 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
 void complete_view(Elaboration *e);
 
 /* view/studio.c */
-/* Plans which boxes of components are to be found in each frame. */
+/* Plans which boxes of components are to be found in each state. */
 void plan_boxes(Elaboration *e);
 /* Then adds lights, a sky and a floor to a scene that has none, if that is wanted. */
 void run_studio(Elaboration *e, const Files *files);

@@ -12,7 +12,7 @@
 #include "compiler/lower/context.h"
 #include "compiler/shape/slope.h"
 
-/* Of a component: operations on numbers, and cells that are open at once. */
+/* A component may have so many operations on numbers, and so many cells that are open at once. */
 enum { MAX_OPERATIONS = 500000, MAX_CELLS = 64 };
 
 /* Placing and painting make nothing empty. */

@@ -15,7 +15,7 @@
 #include "compiler/graph/instances/iterations.h"
 #include "compiler/shape/iteration_boxes.h"
 
-/* Of loops made at once: each takes a slot of the parameter block. */
+/* So many loops may be made at once: each takes a slot of the parameter block. */
 enum { MAX_LOOPS = 256, MAX_CONDITIONS = 8, MAX_SHARED_SHAPES = 4096 };
 
 /* ---- what may be tried ---- */

@@ -171,7 +171,8 @@ static bool is_part_of(Elaboration *e, Node index, size_t count)
     return false;
 }
 
-/* Of an index that depends on the iteration of a loop: iterations in which it is none are made by themselves. */
+/* Demands that an index which depends on the iteration of a loop is one of the list's.  Iterations in which it
+   is none are made by themselves. */
 static bool is_required(Elaboration *e, Node index, size_t count)
 {
     Graph     *g       = e->graph;

@@ -149,7 +149,7 @@ static void run_print(Elaboration *e, const Call *call)
     diag_add(e->diags, DIAG_PRINTED, call->syntax->span, "%s", line);
 }
 
-/* Of a comparison that does not hold: the two numbers. */
+/* Notes the two numbers of a comparison that does not hold. */
 static void note_sides(Elaboration *e, const Environment *env, Diag *diag, const Syntax *condition)
 {
     if (condition->kind != SYNTAX_BINARY || diag == &e->diags->scrap)

@@ -24,7 +24,7 @@ bool written_in_degrees(const Elaboration *e, const Syntax *syntax)
 
 void add_number(Text *text, double number, bool degrees)
 {
-    /* Of conversions to radians and back the last digits are noise. */
+    /* Conversions to radians and back make noise of the last digits. */
     if (degrees)
         text_format(text, "%.12gdeg", number * 180 / M_PI);
     else

@@ -89,7 +89,7 @@ static inline Value value_boolean(bool truth)
     return (Value){.type = VALUE_BOOLEAN, .boolean = truth};
 }
 
-/* Of a shape or a map; NULL, whose reason has been reported, is VALUE_ERROR. */
+/* Makes the value of a shape or a map; NULL, whose reason has been reported, becomes VALUE_ERROR. */
 static inline Value value_shape(const Shape *shape)
 {
     return shape ? (Value){.type = VALUE_SHAPE, .shape = shape} : value_error();

@@ -77,7 +77,7 @@ static bool check_bend(ShapeBuilder *builder, const DeformArguments *asked, Box 
     return false;
 }
 
-/* Of what is bent, in lengths that it had. */
+/* Finds the least length of what is bent, for a length of 1 that it had. */
 static double min_length(Box box, Range rate)
 {
     return fmin(1 - range_mul(rate, box.axis[2]).high, 1);

@@ -82,7 +82,7 @@ bool shape_plane(ShapeBuilder *builder, const Shape *shape, Node *normal, Node *
 /* Centre and radius of a shape that is a ball, also a moved, turned or scaled one. */
 bool shape_ball(ShapeBuilder *builder, const Shape *shape, Node *centre, Node *radius);
 
-/* Of shapes that fade by a falloff with this reach: where the sum is at least the level. */
+/* The sum of shapes that fade by a falloff with this reach is at least the level inside. */
 const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32_t count,
                        Node level, Node reach, FalloffKind falloff, Span span);
 
@@ -93,7 +93,7 @@ void make_iterations(ShapeBuilder *builder, const Shape *shared,
                      const Box *boxes, size_t count, const Shape **iterations);
 
 /* ---- fractal.c: iterations are a whole number of frame time, `most` the most there can be ---- */
-/* Of q -> q^power + c; c is a VEC4. */
+/* The Julia set of q -> q^power + c; c is a VEC4. */
 const Shape *make_julia(ShapeBuilder *builder, Node c, uint32_t power, Node iterations, double most,
                         Span span);
 const Shape *make_mandelbulb(ShapeBuilder *builder, uint32_t power, Node iterations, double most,

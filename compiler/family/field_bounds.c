@@ -359,7 +359,7 @@ static Node cheapest(const TrialMarch *march, Node present, const Node *others, 
 
 FieldBounds field_bounds(ShapeBuilder *builder, Node formula, double slope, Box box, bool uniform)
 {
-    /* Of the slope, what a local one may be: fields may be flatter by far where the surface is. */
+    /* A local slope may be one of these parts of the slope: fields may be flatter by far where the surface is. */
     static const double fractions[] = {0.25, 0x1p-6, 0x1p-11, 0x1p-17, 0x1p-24, 0x1p-32, 0x1p-42};
     enum { FRACTIONS = sizeof fractions / sizeof *fractions };
     Graph      *g      = builder->graph;

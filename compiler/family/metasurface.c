@@ -66,7 +66,7 @@ static Node faded(Graph *g, Node x)
     return graph_op2(g, OP_mul, high, graph_number(g, 1 / (1 - end)));
 }
 
-/* Of t in [0, 1]. */
+/* Makes the falloff at t in [0, 1]. */
 static Node falloff_at(Graph *g, FalloffKind kind, Node t)
 {
     Node one = graph_number(g, 1), square = graph_op1(g, OP_square, t);

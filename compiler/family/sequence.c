@@ -15,7 +15,7 @@
 
 /* ---- bounding volumes, level by level ---- */
 
-/* Of a sequence with spheres or maps that invert: balls all the way (cover.h). */
+/* Bounds a sequence with spheres or maps that invert, by balls all the way (cover.h). */
 static Box bound_inverted(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
 {
     Cover cover = {0};
@@ -53,7 +53,7 @@ static Box bound_inverted(ShapeBuilder *builder, const Shape *krs, LevelBound *b
     return cover_box(&cover);
 }
 
-/* Of a sequence of reflections and similarities. */
+/* Bounds a sequence of reflections and similarities. */
 static Box bound_sequence(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
 {
     ReachStage          *reach = arena_new_array(builder->arena, ReachStage, krs->stage_count + 1);

@@ -184,7 +184,7 @@ bool field_normal(const MeshField *field, const double point[3], double step, do
 
 /* ---- boxes ---- */
 
-/* Of what changes no faster than the point moves: all values within a box around a middle. */
+/* Holds all values, within a box around a middle, of what changes no faster than the point moves. */
 static Range range_around(double middle, Box box)
 {
     double radius = 0;
@@ -277,7 +277,7 @@ bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slo
            lane_hessians_run(tape, &field->ranges, field->slopes, field->hessians, hessian);
 }
 
-/* Of steps that have taken the place of a call nothing is known yet. */
+/* Prunes once more where steps have taken the place of a call: nothing is known of them yet. */
 static void prune_again(MeshField *field, FieldRegion *region)
 {
     FieldRegion again = {.box = region->box, .memory = field->spare};

@@ -67,7 +67,7 @@ bool field_normal(const MeshField *field, const double point[3], double step, do
 Range field_range(const MeshField *field, Box box);
 /* That and the ranges of its derivatives by x, y and z; false: there are none, or no value is 0. */
 bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope);
-/* Of the distance in a box that was entered last: as of LaneStep. */
+/* Tells where the distance comes from in the box that was entered last, as LaneStep has it. */
 uint32_t field_origin(const MeshField *field, Box box);
 /* And the ranges of its second derivatives; false: there are none, or the first may jump. */
 bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slope,

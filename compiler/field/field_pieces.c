@@ -404,7 +404,7 @@ static bool add_condition(Finding *f, uint32_t operand, double sign)
     return step && (step->op == OP_and || step->op == OP_or) && add_conditions(f, step, sign);
 }
 
-/* Of a choice whose condition tells the sign. */
+/* Adds the pieces of a choice whose condition tells the sign. */
 static bool add_chosen(Finding *f, const LaneStep *step, double sign)
 {
     double way = sign_of_choice(f, step);
@@ -491,8 +491,8 @@ static bool is_whole(const LaneStep *step)
            step->op != OP_add && step->op != OP_sub;
 }
 
-/* Of what is not chosen all over the box each number is a piece, or several are, and has derivatives.  Ranges tell
-   that. */
+/* Counts the pieces of what is not chosen all over the box: each number that has derivatives is one.  Ranges
+   tell that. */
 static bool count_pieces(Finding *f, uint32_t operand, double sign, double offset)
 {
     const LaneStep *step = lane_step_of(f->tape, operand);

@@ -122,7 +122,7 @@ static double length_of(const Form *form)
     return sqrt(square);
 }
 
-/* Of length 1, since the sign alone counts. */
+/* Makes the form of a piece with length 1, since the sign alone counts. */
 static Form form_of(const Forms *forms, const FieldPieces *pieces, const uint32_t *operands,
                     size_t piece)
 {
@@ -163,7 +163,7 @@ typedef struct Tree {
     int                children[MAX_PIECE_STEPS][2]; /* of steps that choose */
     int                sides
         [MAX_PIECE_STEPS]; /* of pieces that are left out: -1, as if below all others, or 1, above them; else 0 */
-    /* Of steps that choose: a piece of each child, which are opposite to each other; -1: none. */
+    /* Steps that choose have a piece of each child, which are opposite to each other; -1: they have none. */
     int pairs[MAX_PIECE_STEPS][2];
     int root;
 } Tree;

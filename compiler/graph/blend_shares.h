@@ -6,7 +6,7 @@
 
 #include "compiler/graph/graph.h"
 
-/* Of more operands only the nearest count. */
+/* Only the nearest operands have shares, no more than that. */
 enum { MAX_SHARERS = 8 };
 
 /* The result of a blend, and the threshold below which operands have a share. */
@@ -14,12 +14,13 @@ typedef struct BlendShares {
     double result, threshold;
 } BlendShares;
 
-/* Of up to MAX_SHARERS distances, at least one, in any order, over a width.  A width of 0 or less leaves the least. */
+/* Finds the shares of up to MAX_SHARERS distances, at least one, in any order, over a width.  A width of 0 or
+   less leaves the least. */
 typedef BlendShares FindShares(const double *distances, uint32_t count, double width);
 FindShares          shares_quadratic, shares_cubic;
 
-/* Of an operation that is such a minimum of vectors: the same of two numbers, of one vector and of two, and
-   how it is found; zeros: it is none. */
+/* For an operation that is such a minimum of vectors: the same of two numbers, of one vector and of two, and
+   how its shares are found.  Other operations have zeros. */
 typedef struct SharingOp {
     Op          of_two, of_four, of_eight;
     FindShares *find;

@@ -120,7 +120,7 @@ bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values
     return true;
 }
 
-/* Of the frame's numbers that OP_row may read. */
+/* Finds a number of the frame that OP_row may read and that is not finite. */
 static Node column_infinite(const Graph *graph, const Expr *row, const NodeValue *values)
 {
     uint32_t             id    = (uint32_t)graph->items[row->operands[0]].number[0];

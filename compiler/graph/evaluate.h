@@ -17,9 +17,9 @@ typedef struct Tape {
     size_t          frame_count; /* the first frame_count of them are compile or frame time */
     const uint32_t *skips;       /* NULL, or how many to skip at each when it is a guard that leaves
                               something out */
-    /* Of instance functions (instance_table.h) that are called, by their number: what each does at an instance.
-       What they need of the frame is on the tape that calls them.  Others are empty.  These tapes
-       know each other as well, but count none as theirs. */
+    /* What each instance function (instance_table.h) that is called does at an instance, by its number.  What
+       they need of the frame is on the tape that calls them.  Others are empty.  These tapes know each other as
+       well, but count none as theirs. */
     const struct Tape *functions;
     uint32_t           function_count;
     /* Instance group functions have the list of one cell, as in shaders, so a distance is at most the cell's
@@ -60,9 +60,9 @@ bool tape_depends_on(const Tape *tape, uint32_t slot);
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values);
 /* Tells whether a node's value is finite: elements of numbers, vectors and truth values count. */
 bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values);
-/* Of what the part of a tape that depends on the point gets from the frame, something that is not
-   finite; NODE_NONE: all is.  A value that is chosen against, as in `if a == 0 then 1 else 1 / a`,
-   is not used: it does not count. */
+/* Finds something that is not finite in what the part of a tape that depends on the point gets from the frame;
+   NODE_NONE: all is.  A value that is chosen against, as in `if a == 0 then 1 else 1 / a`, is not used: it does
+   not count. */
 Node tape_frame_infinite(const Tape *tape, const NodeValue *values);
 /* Runs the rest at a point; tape_run_frame has filled `values`. */
 void tape_run_point(const Tape *tape, const double point[3], NodeValue *values);

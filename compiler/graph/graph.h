@@ -183,7 +183,7 @@ double op_cost(Op op, GraphType type, const GraphType *operands);
 typedef struct Substitution {
     Node point, instance, level, uv, normal, trap, front;
 } Substitution;
-/* Of the point alone. */
+/* Makes a substitution of the point alone. */
 Substitution substitute_point(Node point);
 Node         graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch);
 /* A copy with one leaf replaced by a node of its type. */

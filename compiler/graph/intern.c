@@ -59,7 +59,7 @@ static NearSlot *slot_find(const Graph *graph, const Expr *e, uint32_t hash)
     }
 }
 
-/* Of a node that is not in the table. */
+/* Gives a slot to a node that is not in the table. */
 static void slot_take(Graph *graph, Node node, uint32_t hash)
 {
     const uint32_t near                        = near_of(&graph->items[node], hash);

@@ -197,7 +197,7 @@ static bool range_holds(Range a, double peak, double period)
     return next <= a.high + slack;
 }
 
-/* Of a wave between -1 and 1 with these values at the ends of a. */
+/* Holds a wave between -1 and 1 that has these values at the ends of a. */
 static Range range_wave(Range a, double at_low, double at_high, double peak)
 {
     if (!isfinite(a.low) || !isfinite(a.high) || range_largest(a) > 1e9)
@@ -279,7 +279,7 @@ static Range product_of_all(Range a, Range b)
 
 static bool is_ordered(Range a) { return a.low <= a.high; }
 
-/* Of ranges of which at least one has 0 inside. */
+/* Multiplies ranges of which at least one has 0 inside. */
 static Range product_across(Range a, Range b)
 {
     if (b.low >= 0)

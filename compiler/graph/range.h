@@ -35,7 +35,7 @@ static inline Range range_hull(Range a, Range b)
     return (Range){min2(a.low, b.low), max2(a.high, b.high)};
 }
 
-/* Of ranges that must overlap; else a. */
+/* Intersects ranges that must overlap; if they do not it returns a. */
 static inline Range range_intersect(Range a, Range b)
 {
     Range common = {max2(a.low, b.low), min2(a.high, b.high)};

@@ -29,9 +29,9 @@ typedef struct Regions {
     } list;
 } Regions;
 
-/* Of all nodes of point time that the roots need; `of` and `body` have graph->count elements,
-   NO_REGION where there is none.  `regions` is zero, or was found before in the same graph and
-   arena: its memory is then used again. */
+/* Finds the regions of all nodes of point time that the roots need.  `of` and `body` have graph->count
+   elements, NO_REGION where there is none.  `regions` is zero, or was found before in the same graph and arena:
+   its memory is then used again. */
 void graph_regions(Regions *regions, const Graph *graph, const Node *roots, size_t root_count,
                    Arena *arena);
 

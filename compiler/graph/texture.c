@@ -282,7 +282,7 @@ static NodeValue level_value(const Texture *texture, uint32_t level, const doubl
     return mix_values(rows[0], rows[1], y.share);
 }
 
-/* Of a pixel of a width, which may be no number where a place has no derivative. */
+/* Finds the level for a pixel of a width, which may be no number where a place has no derivative. */
 static double level_of(double width)
 {
     const double widest = 1 << MAX_TEXTURE_LEVELS;
@@ -304,7 +304,7 @@ NodeValue texture_value(const Texture *texture, const double uv[2], double width
     return value;
 }
 
-/* Of several taps, as large a share reads the coarser level as a mixture would have. */
+/* Takes the mean of several taps: as large a share of them reads the coarser level as a mixture would have. */
 NodeValue texture_mean(const Texture *texture, const double uv[2], const double pixel[4])
 {
     const double asked = pixel[TEXTURE_TAPS];

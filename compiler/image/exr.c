@@ -111,8 +111,9 @@ static bool read_header(ExrReader *reader)
 
 /* ---- pixels ---- */
 
-/* Of a chunk, channel by channel: the library mixes channels up that it is to interleave, and fails
-   where it is to leave some out.  So what is not wanted goes into a plane behind the others. */
+/* Finds where the lines of a chunk go, channel by channel: the library mixes channels up that it is to
+   interleave, and fails where it is to leave some out.  So what is not wanted goes into a plane behind the
+   others. */
 static float *lines_of(const ExrReader *reader, int place)
 {
     size_t plane = place >= 0 ? (size_t)place : image_channels(reader->image);

@@ -56,7 +56,7 @@ static Nearest nearest_operands(const Blending *b, bool pairs)
     return nearest;
 }
 
-/* Of some groups and parts by themselves, together more than one. */
+/* Joins some groups and separate parts, together more than one. */
 static Node join_operands(const Blending *b)
 {
     const BlendMany many = blend_many(b->blend.kind);

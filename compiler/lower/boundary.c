@@ -15,7 +15,7 @@
 /* More lines go to a table, and more arcs are left. */
 enum { MAX_LINES = 48, MAX_ARCS = 192, MAX_ITERATIONS = 8 };
 
-/* Of a circle, to both sides of a direction; half of the angle. */
+/* A part of a circle, to both sides of a direction: half of the angle. */
 typedef struct Arc {
     double centre[2], radius, middle, half;
 } Arc;
@@ -493,7 +493,7 @@ static Arc arc_of(const Curve *curve)
 }
 
 /* Makes one arc of two that go on in each other; `size` is that of the figure. */
-static bool go_on(Arc *arc, const Arc *next, double size)
+static bool join_arc(Arc *arc, const Arc *next, double size)
 {
     double slack = 1e-7 * size;
     double turn  = remainder(next->middle - arc->middle, 2 * M_PI);
@@ -518,7 +518,7 @@ static void join_arcs(Arcs *arcs, double size)
 {
     for (size_t i = 0; i < arcs->count; i++)
         for (size_t k = i + 1; k < arcs->count; k++)
-            if (go_on(&arcs->items[i], &arcs->items[k], size)) {
+            if (join_arc(&arcs->items[i], &arcs->items[k], size)) {
                 arcs->items[k] = arcs->items[--arcs->count];
                 k              = i;
             }

@@ -122,7 +122,7 @@ static InstanceInBody instance_in_body(const InstanceGroup *group, const GroupJo
 
 static uint32_t next_function(Graph *g) { return (uint32_t)graph_instances(g)->functions.count; }
 
-/* Of the distance to all instances, which are joined sharply or blended; 0: it has no bound. */
+/* Bounds the slope of the distance to all instances, which are joined sharply or blended; 0: it has no bound. */
 static double slope_of(const InstanceGroup *group, const GroupJoin *join)
 {
     double slope = group->slope;

@@ -47,7 +47,7 @@ InstanceGroup group_new(Template *template, Arena *arena)
     return group;
 }
 
-/* Of those before there are lists if some differ. */
+/* Adds an entry behind others, for which there are lists if some differ. */
 static void add_entry(SlotElement *all, size_t before, Entry entry, Arena *scratch)
 {
     if (before == 0) {

@@ -6,7 +6,7 @@
 
 #include "compiler/shape/shape.h"
 
-/* Of two, sharp or blended. */
+/* Joins two distances, sharply or blended. */
 Node join_distances(Graph *g, Blend blend, Node a, Node b);
 
 /* The nearest operands of a blend of many, as far as they count: of pairs the two nearest; else MAX_SHARERS

@@ -146,7 +146,7 @@ void path_take(Path *path, const Path *other)
 
 /* ---- one curve ---- */
 
-/* Of `via` among the control points. */
+/* Returns the weight of `via` among the control points. */
 static double weight_of(const Curve *curve)
 {
     return curve->radius > 0 ? curve->radius / hypot(curve->via[0] - curve->centre[0],

@@ -144,8 +144,8 @@ typedef struct End {
     double   angle; /* of the direction in which the edge leaves the knot */
 } End;
 
-/* Of tangents that are equal the curves tell which is where: so not the tangent counts, but the way
-   to a point that is near. */
+/* Where tangents are equal the curves tell which is where: so not the tangent counts, but the way to a point
+   that is near. */
 static double leaving_angle(const Edge *edge, bool last)
 {
     const double *at = last ? edge->curve.to : edge->curve.from;

@@ -17,7 +17,7 @@
 /* `use` in `use`, and gradients that continue others. */
 enum { MAX_REFERENCES = 24, MAX_ENTERED = 400000 };
 
-/* Of a fill or a stroke.  Its colour is sRGB, 0xrrggbb. */
+/* What fills or strokes.  Its colour is sRGB, 0xrrggbb. */
 typedef struct Paint {
     bool     drawn;
     uint32_t rgb;
@@ -518,7 +518,7 @@ static void read_looks(Reader *reader, const SvgElement *element, State *state)
         state->line.drawn = false;
 }
 
-/* Of an element within these; false: it is not drawn. */
+/* Reads the state of an element within others that have this one; false: it is not drawn. */
 static bool read_state(Reader *reader, const SvgElement *element, State *state)
 {
     const char *transform = svg_property(&reader->tree, element, "transform");

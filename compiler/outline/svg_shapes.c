@@ -111,7 +111,7 @@ static void mapped(const SvgPen *pen, const double p[2], double q[2])
     q[1]            = m[1] * p[0] + m[3] * p[1] + m[5];
 }
 
-/* Of the trail.  What follows a `Z` begins where that contour did. */
+/* Begins a part of the trail.  What follows a `Z` begins where that contour did. */
 static Path *begin_subpath(SvgPen *pen, const double at[2])
 {
     const double *m     = pen->map.m;

@@ -158,7 +158,7 @@ static void middle_of(const Way *a, const Way *b, double point[2])
     beside(a, dot2(between, b->along) / turn, point);
 }
 
-/* Of a piece that is bent more than the stroke is wide: two sectors, of which one goes back. */
+/* Draws a piece that is bent more than the stroke is wide: two sectors, of which one goes back. */
 static void draw_bent(Stroker *stroker, const Curve *piece, const Way *a, const Way *b)
 {
     double middle[2];

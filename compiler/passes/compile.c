@@ -238,7 +238,7 @@ static KrsStatus load_and_compile(const char *text, size_t length, const char *n
                           .loader  = &loader,
                           .name    = name,
                           .loaded  = {.text = text, .length = text ? length : 0}};
-    if (!text && options->text) /* as programs of before 0.3 */
+    if (!text && options->text) /* as programs for 0.2 do */
         c.loaded = (Loaded){.text = options->text, .length = options->text_length};
     if (loader_open(&loader, options->root, name))
         status = compile(&c, scene);

@@ -35,7 +35,7 @@ typedef struct KrsRefutation {
     bool     refuted;     /* a diagnostic has the witness and the shape at fault */
     size_t   shapes;      /* number of shapes that were searched */
     size_t   settings;    /* sets of parameter values tried: the largest number for one shape */
-    size_t   refused;     /* sets that frames refuse, as well as their substitutes */
+    size_t   refused;     /* sets that states refuse, as well as their substitutes */
     size_t   skipped;     /* shapes too large to be searched by themselves */
     uint64_t evaluations; /* number of distances evaluated */
     double   steepest;    /* largest slope of a distance; 1 is permitted */

@@ -2,7 +2,7 @@
  * find_assembly.c: finds the parts of components, and how they are placed, while there are shapes.
  *
  * Transforms, sharp unions and sequences are taken apart.  What else has copies in it is a part with
- * all of them.  Whether mirrors cut anything is asked for each frame (mesh/assemble.c).
+ * all of them.  Whether mirrors cut anything is asked for each state (mesh/assemble.c).
  *
  * With KrsOptions.motion so is what the time moves: transforms that depend on it, and the unions and turns of
  * loops around them.  What stands still in a union is one part.

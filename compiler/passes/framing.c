@@ -50,9 +50,9 @@ typedef struct Rays {
     double     seen[2 * ROUNDS * RAYS][3];
     size_t     seen_count;
     Box        box;    /* around what is seen */
-    const Box *boxes;  /* of components in the frame: state_find_boxes */
+    const Box *boxes;  /* of components in the state: state_find_boxes */
     bool       apart;  /* they keep away from what has no end, as a floor */
-    uint64_t   most;   /* operations of the frame, at the end */
+    uint64_t   most;   /* operations of the state, at the end */
     RayLimits  limits; /* of the round */
 } Rays;
 
@@ -316,8 +316,8 @@ static void look_for_ball(KrsState *state, Box box, Rays *rays, Cells *cells, Ba
         grow_ball(rays, most, ball);
 }
 
-/* Of a box that is much too large a floor may be hit, and nothing else: then all is tried again, if that takes
-   little time. */
+/* Finds the ball of what is hit.  In a box that is much too large a floor may be, and nothing else: then all is
+   tried again, if that takes little time. */
 static void find_ball(KrsState *state, Box box, Rays *rays, Cells *cells, Ball *ball)
 {
     const Ball outer = *ball;
@@ -398,7 +398,7 @@ static DefaultCamera place_camera(const Rays *rays, const Ball *ball, double fov
     return camera;
 }
 
-/* Finds eye and target of the default camera for the values of a frame.  Its direction and field of
+/* Finds eye and target of the default camera for the values of a state.  Its direction and field of
    view are fixed.  Without bounded components nothing is changed: then `found` is false. */
 static KrsStatus find_camera(KrsState *state, DefaultCamera *camera, bool *found)
 {

@@ -161,7 +161,7 @@ static void refuse_number(Compilation *c, const Component *shown, Span span)
         diag_secondary(&c->diags, diag, span, "in here");
 }
 
-/* Of those that a tape has at points and frames, functions of instance groups included. */
+/* Finds the first node beyond numbers at points and in frames, in functions of instance groups too. */
 static Node first_beyond_numbers(const Tape *tape)
 {
     Node found = NODE_NONE;

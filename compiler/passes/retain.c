@@ -72,7 +72,7 @@ static void retain_slopes(Compilation *c)
     const Scene *s     = &c->elaborated;
     scene->slopes      = arena_new_array(&scene->arena, RetainedSlope, s->slopes.count + 1);
     for (size_t i = 0; i < s->slopes.count; i++) {
-        const FrameSlope *from = &s->slopes.items[i];
+        const StateSlope *from = &s->slopes.items[i];
         if (!is_needed(scene->graph, from->slot))
             continue;
         const Source *source   = &c->sources.items[from->span.source];
@@ -82,7 +82,7 @@ static void retain_slopes(Compilation *c)
         scene->slopes[scene->slope_count++] = (RetainedSlope){
             from->slot,
             slope_task(scene->graph, roots_of(&scene->roots, ROOTS_SLOPE).items[i], from->region,
-                       frame_slope_cells(from->region), &scene->arena),
+                       state_slope_cells(from->region), &scene->arena),
             place.bytes};
     }
 }
@@ -91,9 +91,10 @@ static void retain_boxes(Compilation *c)
 {
     KrsScene    *scene      = c->scene;
     const Scene *s          = &c->elaborated;
-    scene->boxes            = frame_boxes_copy(&s->boxes, &scene->arena);
+    scene->boxes            = box_plan_copy(&s->boxes, &scene->arena);
     scene->floor            = s->floor;
-    scene->floor.eyes.items = arena_new_array(&scene->arena, FrameNumber, s->floor.eyes.count + 1);
+    scene->floor.eyes.items = arena_new_array(&scene->arena, PlannedNumber,
+                                              s->floor.eyes.count + 1);
     for (size_t i = 0; i < s->floor.eyes.count; i++)
         scene->floor.eyes.items[i] = s->floor.eyes.items[i];
 }

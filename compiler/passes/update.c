@@ -3,7 +3,7 @@
  */
 #include "compiler/scene/changes.h"
 
-/* Of the text or, when that is NULL, of the scene's file. */
+/* Compiles the text or, when that is NULL, the scene's file. */
 static KrsStatus compile_again(const KrsScene *scene, const char *text, size_t length,
                                const KrsOptions *options, KrsScene **updated)
 {

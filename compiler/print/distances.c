@@ -158,7 +158,7 @@ static const char *emit_kept_distance(Emitter *e, uint32_t component, const char
     return "tangent";
 }
 
-/* Of one component: the gradient, and the distance. */
+/* Emits the gradient of one component, and its distance. */
 void emit_gradient_of(Emitter *e, const ModuleFunction *function)
 {
     const Node *roots = function->roots;

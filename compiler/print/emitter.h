@@ -174,7 +174,7 @@ const char *emit_call_with(Emitter *e, FunctionKind kind, uint32_t component, co
 /* ---- prepare.c ---- */
 
 /* krs_prepare, and the globals that it sets: frame values that the roots read. */
-void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues *values);
+void emit_prepare(Emitter *e, const Node *roots, size_t count, const StateValues *values);
 /* Tells whether functions need the zones of the caller. */
 bool emit_reads_zones(const Emitter *e);
 /* Slots that are in the block of a variant before zones of the caller. */

@@ -117,7 +117,7 @@ static const char *text_of(Emitter *e, const char *bytes, size_t length)
     return arena_copy_text(e->scratch, bytes, length);
 }
 
-/* Of vectors, component by component. */
+/* Prints an operation on vectors, component by component. */
 static void print_spread(Emitter *e, const char *name, size_t length, GraphType type,
                          uint32_t operands)
 {

@@ -5,14 +5,14 @@
 #define KRS_MODULE_H
 
 #include "compiler/lower/lower.h"
-#include "compiler/print/frame_values.h"
+#include "compiler/print/state_values.h"
 #include "compiler/print/printer.h"
 #include "compiler/print/variant.h"
 
-/* The slots of what the host finds: for each frame, and for each origin of camera-relative points. */
-typedef struct FrameSlots {
-    FrameValues plain, camera_relative;
-} FrameSlots;
+/* The slots of what the host finds: for each state, and for each origin of camera-relative points. */
+typedef struct StateSlots {
+    StateValues plain, camera_relative;
+} StateSlots;
 
 /* Boxes as numbers of the frame (OP_PARAMETERISED), two nodes each; NULL where they are literals. */
 typedef struct BoxNodes {
@@ -20,8 +20,8 @@ typedef struct BoxNodes {
     Node *parts;  /* of each scene part: the low and the high corner */
 } BoxNodes;
 
-/* Of a mirror (OP_fold) where normals are numbers of the frame: whether it may be in a row, and twice
-   the products of its normal with those of the two mirrors before; NODE_NONE: there are none. */
+/* What a mirror (OP_fold) is where normals are numbers of the frame: whether it may be in a row, and twice the
+   products of its normal with those of the two mirrors before; NODE_NONE: there are none. */
 typedef struct MirrorNodes {
     bool in_row;
     Node products[2];
@@ -39,7 +39,7 @@ typedef struct Module {
     size_t      research_count;
     const Node
         *gradients; /* lower_gradient's two, of the zones as well; FLOATs where there is none */
-    /* Of the scene: */
+    /* The rest is the scene's: */
     Node        zone;   /* the depth in zones, or NODE_NONE */
     const Node *planes; /* where a ray meets one, and how steeply it falls */
     const Node
@@ -55,7 +55,7 @@ typedef struct Module {
     const bool     *is_subsurface; /* whether light may go on below its surface; NULL: none */
     bool            has_slopes;    /* there are slots of slopes behind those of parameters */
     bool            derives;       /* gradients were asked for */
-    FrameSlots      slots;
+    StateSlots      slots;
 } Module;
 
 /* Gives all that functions of the point need of the frame their slots, behind those of the

@@ -62,7 +62,7 @@ Emitter emitter_new(const Module *module, Arena *scratch)
     return e;
 }
 
-/* Of components, or camera-relative ones. */
+/* Returns the roots of components, or of camera-relative ones. */
 static const Node *surface_roots(const Emitter *e)
 {
     return e->variant->camera_relative ? e->module->camera_relative : e->module->surfaces;
@@ -81,7 +81,7 @@ bool emit_has_tangent(const Emitter *e, uint32_t component)
            box_is_finite(e->module->boxes[component]);
 }
 
-/* Of a surface, with the distance to the plane that has its gradient, if that is asked for. */
+/* Returns the roots of a surface, with the distance to the plane that has its gradient, if that is asked for. */
 static const Node *tangent_roots(const Emitter *e, uint32_t component, const Node *surface)
 {
     const Node *gradient = e->module->gradients + 2 * component;
@@ -93,7 +93,7 @@ static const Node *tangent_roots(const Emitter *e, uint32_t component, const Nod
     return roots;
 }
 
-/* Of a scene that was compiled with `research`. */
+/* Returns the root of a method in a scene that was compiled with `research`. */
 static const Node *research_root(const Module *module, ResearchMethod method, uint32_t component)
 {
     const size_t at = method * module->components + component;
@@ -155,7 +155,7 @@ static void add_nodes(Emitter *e, NodeList *list, const Node *nodes, size_t coun
         array_push(e->scratch, list, nodes[i]);
 }
 
-/* Of components, of scene parts: where they are numbers of the frame. */
+/* Adds the boxes of components or of scene parts, where they are numbers of the frame. */
 static void add_boxes(Emitter *e, NodeList *list, bool around, bool parts)
 {
     const size_t   count = e->module->components;
@@ -165,11 +165,11 @@ static void add_boxes(Emitter *e, NodeList *list, bool around, bool parts)
               nodes.parts && parts ? 2 * (size_t)module_scene_part_count(count) : 0);
 }
 
-static void lay_out(Emitter *e, NodeList *roots, FrameValues *values, Arena *arena)
+static void lay_out(Emitter *e, NodeList *roots, StateValues *values, Arena *arena)
 {
     emit_find_called(e, roots);
     emit_count_uses(e, roots->items, roots->count, false);
-    frame_values_assign(values, e->graph, e->needed.items, e->needed.count, arena, e->scratch);
+    state_values_assign(values, e->graph, e->needed.items, e->needed.count, arena, e->scratch);
 }
 
 void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *scratch)
@@ -185,7 +185,7 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
     add_nodes(&e, &all, module->planes, planes);
     add_boxes(&e, &all, true, true);
     add_nodes(&e, &all, module->gradients, module->derives ? 2 * (count + 1) : 0);
-    FrameSlots *slots       = &module->slots;
+    StateSlots *slots       = &module->slots;
     slots->plain.first_slot = (uint32_t)module->graph->parameters.count;
     lay_out(&e, &all, &slots->plain, arena);
     slots->camera_relative.first_slot = slots->plain.first_slot + slots->plain.slots + zone_slots;
@@ -229,7 +229,7 @@ static void add_kept_boxes(Emitter *e, NodeList *list)
             add_nodes(e, list, nodes + (size_t)2 * i, 2);
 }
 
-/* Of all functions. */
+/* Gathers the roots of all functions. */
 static NodeList gather_roots(Emitter *e)
 {
     NodeList roots = {0};

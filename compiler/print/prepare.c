@@ -43,14 +43,14 @@ static const char *component_text(Emitter *e, uint32_t slot, uint32_t first, uin
     return name.bytes;
 }
 
-static const char *number_text(Emitter *e, const FrameValue *value, uint32_t k)
+static const char *number_text(Emitter *e, const StateValue *value, uint32_t k)
 {
     return value->at[k] == NO_PLACE ? emit_number(e, value->constant[k])
                                     : component_text(e, value->at[k] / 4, value->at[k] % 4, 1);
 }
 
 /* What the host has found, out of its slots. */
-static const char *found_text(Emitter *e, const FrameValue *value)
+static const char *found_text(Emitter *e, const StateValue *value)
 {
     GraphType type     = (GraphType)e->graph->items[value->node].type;
     uint32_t  last     = value->width - 1;
@@ -77,12 +77,12 @@ static const char *found_text(Emitter *e, const FrameValue *value)
 }
 
 /* A value of the frame as shaders get it from the host. */
-static const char *read_text(Emitter *e, const FrameValues *values, Node n)
+static const char *read_text(Emitter *e, const StateValues *values, Node n)
 {
     const Expr *expr = &e->graph->items[n];
     if (e->place[n])
         return found_text(e, &values->items[e->place[n] - 1]);
-    if (expr->op == OP_COMPONENT && frame_value_is_given(e->graph, n))
+    if (expr->op == OP_COMPONENT && state_value_is_given(e->graph, n))
         return component_text(e, e->graph->items[expr->operands[0]].index, expr->index, 1);
     for (uint32_t k = 0; k < expr->operand_count; k++) /* a leaf has none */
         e->text[expr->operands[k]] = read_text(e, values, expr->operands[k]);
@@ -90,7 +90,7 @@ static const char *read_text(Emitter *e, const FrameValues *values, Node n)
 }
 
 /* The globals from the parameter block, in which the host has put them. */
-static void emit_reads(Emitter *e, const Node *set, size_t globals, const FrameValues *values)
+static void emit_reads(Emitter *e, const Node *set, size_t globals, const StateValues *values)
 {
     e->slot_is_read = arena_new_array(e->scratch, bool, emit_slot_count(e));
     memset(e->place, 0, e->graph->count * sizeof *e->place);
@@ -128,7 +128,7 @@ bool emit_reads_zones(const Emitter *e)
 /* The first slot of the zones of the caller. */
 static uint32_t zone_slot(const Emitter *e)
 {
-    const FrameValues *plain = &e->module->slots.plain;
+    const StateValues *plain = &e->module->slots.plain;
     const bool         found = e->variant->values || e->variant->camera_relative;
     return plain->first_slot + (found ? plain->slots : 0);
 }
@@ -143,13 +143,13 @@ static void emit_zone_reads(Emitter *e)
 
 uint32_t emit_slot_count(const Emitter *e)
 {
-    const FrameSlots *slots = &e->module->slots;
+    const StateSlots *slots = &e->module->slots;
     if (e->variant->camera_relative)
         return slots->camera_relative.first_slot + slots->camera_relative.slots + 1;
     return zone_slot(e) + e->variant->zones;
 }
 
-void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues *values)
+void emit_prepare(Emitter *e, const Node *roots, size_t count, const StateValues *values)
 {
     Node  *set       = arena_new_array(e->scratch, Node, e->graph->count);
     bool  *is_global = arena_new_array(e->scratch, bool, e->graph->count);

@@ -43,7 +43,7 @@ typedef struct Printer {
 
 #define KRS_TARGET(id, name, about) extern const Printer name##_printer;
 #include "krs/targets.def"
-/* Of each KrsTarget. */
+/* A printer for each KrsTarget. */
 extern const Printer *const printers[];
 
 /* Adds the functions that the text of one operation calls, where its first operand has this type;

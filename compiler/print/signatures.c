@@ -27,7 +27,7 @@ static const TextParameter footprint = {TYPE_FLOAT, "footprint", false};
 static const TextParameter part      = {TYPE_UINT, "scene_part", false};
 static const TextParameter low = {TYPE_VEC3, "low", true}, high = {TYPE_VEC3, "high", true};
 
-/* Of the scene; what has no row has no function of its own. */
+/* The functions of the scene; what has no row has no function of its own. */
 static const Signature of_scene[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_DISTANCE] =
         {"krs_distance",
@@ -121,7 +121,7 @@ static const Signature prepare = {
     {NULL},
     "// Everything that stays the same within a frame: call it first.\n"};
 
-/* Of components, whose number is the end of the name. */
+/* The functions of components, whose number is the end of the name. */
 static const Signature of_component[FUNCTION_KINDS] = {
     [OF_DISTANCE] = {"krs_distance", TYPE_FLOAT, {&point}, NULL},
     [OF_ALONG]    = {"krs_along", TYPE_FLOAT, {&point, &direction, &footprint}, NULL},

@@ -74,7 +74,8 @@ static const char *fill_template(Emitter *e, const Expr *expr)
     return text.bytes;
 }
 
-/* Of two variables by a choice of the printer: built-ins mind what is not a number. */
+/* Tells whether an operation is one of two variables by a choice of the printer: built-ins mind what is not a
+   number. */
 static bool picks_variable(const Emitter *e, const Expr *expr)
 {
     return (expr->op == OP_min || expr->op == OP_max) && expr->type == TYPE_FLOAT &&

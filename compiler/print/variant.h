@@ -108,7 +108,7 @@ typedef struct KrsVariant {
                            variables are three instructions, since they mind what is not a number */
     bool shares;  /* where both are wanted, krs_surface goes on from what krs_distance has found:
                            half the text, in which operations have another order */
-    bool values;  /* the host fills in what depends on the frame alone (krs_state_values) */
+    bool values;  /* the host fills in what depends on the state alone (krs_state_values) */
     bool buffers; /* tables are storage buffers, for devices that read too few texels */
     /* krs_surface finds the nearest component by the planes of krs_gradient: for points of surfaces,
        where these cost less than the safe distances of polynomials.  Outside of the box around a

@@ -18,7 +18,7 @@
 #include "compiler/refute/refuter.h"
 #include "compiler/refute/search.h"
 
-/* Of the machine whose seconds are counted; most of today's are as fast, or faster. */
+/* So fast is the machine whose seconds are counted; most of today's are as fast, or faster. */
 static const double OPERATIONS_PER_SECOND = 1e8;
 
 /* After so many somebody is asked whether to go on. */
@@ -229,7 +229,7 @@ static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
     for (size_t i = r->suspects.count; i-- > 0 && !r->stopped;) {
         if (is_whole(r, i) != whole || is_wrapper(r->suspects.items[i].shape))
             continue;
-        /* Of thousands of shapes the nodes would be too many. */
+        /* Thousands of shapes would have too many nodes. */
         GraphMark mark = graph_mark(r->graph);
         if (try_shape(r, i, r->total / 2 / count, finding) ||
             try_claims(r, i, r->total / 8 / count, finding) ||

@@ -1,5 +1,5 @@
 /*
- * refute_settings.c: values of parameters at which distances are searched, such as a frame can
+ * refute_settings.c: values of parameters at which distances are searched, such as a state can
  * have.
  */
 #include "compiler/refute/refute_settings.h"
@@ -45,13 +45,13 @@ void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values)
     }
 }
 
-/* Into the slots; false: one has no bound, and the frame is refused. */
+/* Into the slots; false: one has no bound, and the state is refused. */
 static bool find_slopes(const Refuter *r, NodeValue *values)
 {
     const Scene *scene = r->in->scene;
     for (size_t i = 0; i < scene->slopes.count; i++) {
         const double(*parameters)[4] = (const double(*)[4])values;
-        double slope                 = frame_slope_upward(
+        double slope                 = state_slope_upward(
                             slope_task_run(&r->slopes[i], parameters, r->workspace, NULL));
         values[scene->slopes.items[i].slot].v[0] = slope;
         if (!isfinite(slope))
@@ -67,10 +67,10 @@ void prepare_slopes(Refuter *r)
     size_t       most  = 0;
     r->slopes          = arena_new_array(r->in->arena, SlopeTask, scene->slopes.count + 1);
     for (size_t i = 0; i < scene->slopes.count; i++) {
-        const FrameSlope *slope = &scene->slopes.items[i];
+        const StateSlope *slope = &scene->slopes.items[i];
         Node              root  = slope->formula;
         Graph            *plain = graph_simplify(r->graph, &root, 1, r->in->arena);
-        uint32_t          cells = frame_slope_cells(slope->region);
+        uint32_t          cells = state_slope_cells(slope->region);
         r->slopes[i]            = slope_task(plain, root, slope->region, cells, r->in->arena);
         size_t workspace        = slope_task_size(&r->slopes[i]);
         most                    = workspace > most ? workspace : most;
@@ -78,7 +78,7 @@ void prepare_slopes(Refuter *r)
     r->workspace = arena_alloc(r->in->arena, most, 1);
 }
 
-/* As frames have them: all components outside of everything. */
+/* As states have them: all components outside of everything. */
 void prepare_frames(Refuter *r)
 {
     Arena *arena = r->in->arena;
@@ -91,17 +91,17 @@ void prepare_frames(Refuter *r)
     }
     r->result->skipped = 0; /* they are lowered once more */
     Graph *simple      = graph_simplify(r->graph, roots, count, arena);
-    r->frames          = tape_new(simple, roots, count, arena);
-    r->frame_values    = arena_new_array(arena, NodeValue, simple->count);
+    r->state_tape      = tape_new(simple, roots, count, arena);
+    r->state_values    = arena_new_array(arena, NodeValue, simple->count);
 }
 
-/* Tells whether a frame can have these parameters; finds its slopes. */
+/* Tells whether a state can have these parameters; finds its slopes. */
 static bool is_possible(const Refuter *r, NodeValue *parameters)
 {
     if (!find_slopes(r, parameters))
         return false;
-    tape_run_frame(&r->frames, parameters, r->frame_values);
-    return tape_frame_infinite(&r->frames, r->frame_values) == NODE_NONE;
+    tape_run_frame(&r->state_tape, parameters, r->state_values);
+    return tape_frame_infinite(&r->state_tape, r->state_values) == NODE_NONE;
 }
 
 bool needs_parameters(const Tape *tape)

@@ -43,8 +43,8 @@ typedef struct Refuter {
     uint64_t                random, total, done;
     SlopeTask              *slopes; /* of the scene's, in its order */
     void                   *workspace;
-    Tape                    frames; /* all components: what frames are refused by */
-    NodeValue              *frame_values;
+    Tape                    state_tape; /* all components: what states are refused by */
+    NodeValue              *state_values;
     struct {
         Suspect *items;
         size_t   count, capacity;

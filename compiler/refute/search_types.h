@@ -83,7 +83,7 @@ typedef struct Search {
     struct {
         Node  *items;
         size_t count, capacity;
-    } landmarks; /* points that the frame knows */
+    } landmarks; /* points that the state knows */
 } Search;
 
 /* Pairs nearer than this, in sizes, say more about rounding than about the distance. */

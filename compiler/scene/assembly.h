@@ -37,7 +37,7 @@ typedef struct AssemblyItem {
     const char *name;         /* likewise, by the author */
 } AssemblyItem;
 
-/* Of a component that is shown: the first of its numbers, each a SceneBeam. */
+/* The beams of a component that is shown: the first of its numbers, each a SceneBeam. */
 typedef struct AssemblyBeams {
     uint32_t root;
     size_t   count;

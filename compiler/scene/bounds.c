@@ -3,7 +3,7 @@
  * who ask after shapes are gone (`krs info`).
  *
  * A list of each tree, parents first.  Parts that were made in the same place of the text, as in a
- * loop, and are built alike, are one entry; a part that is met again refers to the first time.
+ * loop, and have one structure, are one entry; a part that is met again refers to the first time.
  */
 #include "compiler/scene/bounds.h"
 
@@ -110,7 +110,7 @@ static bool say_the_same(const KrsBound *a, const KrsBound *b)
 {
     return a->depth == b->depth && a->line == b->line && a->column == b->column &&
            a->slope == b->slope && a->exact == b->exact && a->estimate == b->estimate &&
-           a->levels == b->levels && a->instances == b->instances && a->alike == b->alike &&
+           a->levels == b->levels && a->instances == b->instances && a->similar == b->similar &&
            a->same == b->same && !strcmp(a->name, b->name) && !strcmp(a->source, b->source) &&
            !strcmp(a->rule, b->rule);
 }
@@ -135,12 +135,12 @@ static const KrsBound *lasting(Listing *l, const KrsBound *about)
     return copy;
 }
 
-static BoundEntry entry_for(Listing *l, const Shape *shape, Box box, uint32_t depth, uint32_t alike,
-                            size_t same)
+static BoundEntry entry_for(Listing *l, const Shape *shape, Box box, uint32_t depth,
+                            uint32_t similar, size_t same)
 {
     const Source *source = &l->sources->items[shape->span.source];
     KrsBound      about  = {.depth     = depth,
-                            .alike     = alike,
+                            .similar   = similar,
                             .same      = same,
                             .name      = shape->name,
                             .source    = source->name,
@@ -163,7 +163,7 @@ static BoundEntry entry_for(Listing *l, const Shape *shape, Box box, uint32_t de
     return entry;
 }
 
-static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t alike)
+static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t similar)
 {
     if (l->entries.count == KRS_MAX_BOUNDS) {
         l->more++;
@@ -172,7 +172,7 @@ static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t 
     const Box box    = shape->box;
     shape            = shape_in_iterations(shape);
     size_t     same  = entry_of(l, shape);
-    BoundEntry entry = entry_for(l, shape, box, depth, alike, same);
+    BoundEntry entry = entry_for(l, shape, box, depth, similar, same);
     array_push(l->scratch, &l->entries, entry);
     array_push(l->scratch, &l->shapes, shape);
     for (uint32_t i = 0; i < shape->child_count && !same;) {

@@ -412,7 +412,7 @@ static bool same_placings(const Assembly *a, const Assembly *b)
     return same;
 }
 
-/* Of the components, as many in both. */
+/* Tells whether the components, as many in both, are parts of the same items. */
 static bool same_parts(const KrsScene *a, const KrsScene *b)
 {
     const Assembly *x = &a->assembly, *y = &b->assembly;

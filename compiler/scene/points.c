@@ -11,8 +11,8 @@
 #include "compiler/base/vec.h"
 #include "compiler/graph/lanes/lanes.h"
 
-/* Of one state. */
-struct FrameLanes {
+/* What evaluates many points of one state. */
+struct StateLanes {
     Memory memory;
     Arena  arena;
     Tape bound; /* the scene's tape of distances, where instance groups have the list of one cell */
@@ -21,18 +21,18 @@ struct FrameLanes {
     LaneWork distance_work, surface_work;
 };
 
-static LaneWork new_work(struct FrameLanes *lanes, const LaneTape *tape, NodeValue *values)
+static LaneWork new_work(struct StateLanes *lanes, const LaneTape *tape, NodeValue *values)
 {
     return lane_work_in(arena_alloc(&lanes->arena, lane_work_bytes(tape), 1), values);
 }
 
-static void room_for_scalars(struct FrameLanes *lanes, LaneTape *tape)
+static void room_for_scalars(struct StateLanes *lanes, LaneTape *tape)
 {
     tape->scalars = arena_new_array(&lanes->arena, double, tape->scalar_count + 1);
 }
 
 /* The distances of all components, and the zones, whose least is output 0. */
-static void make_distance(struct FrameLanes *lanes, KrsState *state)
+static void make_distance(struct StateLanes *lanes, KrsState *state)
 {
     const KrsScene *scene = state->scene;
     size_t          count = scene->component_count;
@@ -56,7 +56,7 @@ static uint32_t outputs_of(const KrsScene *scene, Node root)
     return type <= TYPE_VEC4 ? (uint32_t)type : 1;
 }
 
-static void make_surface(struct FrameLanes *lanes, KrsState *state)
+static void make_surface(struct StateLanes *lanes, KrsState *state)
 {
     const KrsScene *scene = state->scene;
     size_t          count = scene->component_count, outputs = 0;
@@ -89,11 +89,11 @@ bool state_lanes(KrsState *state)
     const Memory *from = &state->scene->memory;
     if (state->lanes)
         return true;
-    struct FrameLanes *lanes = from->allocate ? from->allocate(from->user, sizeof *lanes)
+    struct StateLanes *lanes = from->allocate ? from->allocate(from->user, sizeof *lanes)
                                               : malloc(sizeof *lanes);
     if (!lanes)
         return false;
-    *lanes = (struct FrameLanes){
+    *lanes = (struct StateLanes){
         .memory = {.allocate = from->allocate, .release = from->release, .user = from->user}};
     lanes->arena = (Arena){.memory = &lanes->memory};
     state->lanes = lanes;
@@ -161,7 +161,7 @@ static void deal_part(void *task, size_t part, size_t parts)
 }
 
 /* Rows and, where it reads tables, values of the state, for each part but the first. */
-static void give_works(struct FrameLanes *lanes, const KrsState *state, LaneWork *works)
+static void give_works(struct StateLanes *lanes, const KrsState *state, LaneWork *works)
 {
     size_t parts = parallel_parts(), count = state->scene->graph->count;
     for (size_t i = 1; i < parts; i++) {
@@ -179,7 +179,7 @@ static bool worth_threads(const Deal *deal)
     return (double)deal->count * (double)(deal->tape->count + 1) >= STEPS_FOR_THREADS;
 }
 
-static bool deal_out(struct FrameLanes *lanes, Deal *deal)
+static bool deal_out(struct StateLanes *lanes, Deal *deal)
 {
     const ArenaMark mark = arena_mark(&lanes->arena);
     volatile bool   done = false; /* it lives through a jump */
@@ -266,7 +266,7 @@ static double output_of(const LaneTape *tape, const LaneWork *work, size_t outpu
 /* As distance_by of query.c: behind output 0 are the distances of the components. */
 static uint32_t nearest_component(const KrsState *state, size_t lane)
 {
-    const struct FrameLanes *lanes   = state->lanes;
+    const struct StateLanes *lanes   = state->lanes;
     double                   least   = INFINITY;
     uint32_t                 nearest = 0;
     for (size_t i = 0; i < state->scene->component_count; i++) {
@@ -282,7 +282,7 @@ static uint32_t nearest_component(const KrsState *state, size_t lane)
 void points_look(KrsState *state, const double (*points)[3], const double (*normals)[3],
                  size_t count, double *distances, uint32_t *nearest)
 {
-    struct FrameLanes *lanes = state->lanes;
+    struct StateLanes *lanes = state->lanes;
     LanePoints         all   = {.points = points, .normals = normals, .count = count};
     lane_run(&lanes->distance, &lanes->distance_work, LANE_DOUBLE, all, 0, 1, distances);
     for (size_t i = 0; i < count; i++) {
@@ -295,7 +295,7 @@ void points_look(KrsState *state, const double (*points)[3], const double (*norm
 void points_surface(KrsState *state, size_t point, uint32_t nearest)
 {
     const KrsScene          *scene  = state->scene;
-    const struct FrameLanes *lanes  = state->lanes;
+    const struct StateLanes *lanes  = state->lanes;
     const Node              *roots  = surface_roots(&scene->roots, nearest - 1);
     size_t                   output = lanes->surface_outputs[nearest - 1];
     for (size_t k = 0; k < ROOT_COUNT; k++)

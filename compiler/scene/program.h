@@ -150,8 +150,8 @@ struct KrsScene {
     Assembly         assembly;   /* nothing unless the options ask for it */
     RetainedSlope   *slopes;     /* slopes that are computed per state */
     size_t           slope_count;
-    FrameBoxes       boxes; /* of shown components in a state, */
-    FrameFloor       floor; /* and what stands below them */
+    BoxPlan          boxes; /* of shown components in a state, */
+    StateFloor       floor; /* and what stands below them */
     Tape             box_numbers;
     EmissivePart    *emissive;
     size_t           emissive_count;
@@ -183,9 +183,9 @@ struct KrsScene {
 };
 
 /* Those tapes of the scene that read tables, over the tables of a state where these are its own. */
-typedef struct FrameTapes {
+typedef struct StateTapes {
     Tape distance, guarded, ahead, turned, surface, places;
-} FrameTapes;
+} StateTapes;
 
 /* A state: values of the parameters, and memory for the values of all nodes. */
 struct KrsState {
@@ -194,7 +194,7 @@ struct KrsState {
                                    slopes always belong to the other values */
     size_t         *lit;        /* parts of the scene that may emit light (state_emissive.c) */
     void           *workspace;  /* memory for the computation of slopes */
-    Box            *boxes;      /* memory for those of planned shapes (FrameBoxes) */
+    Box            *boxes;      /* memory for those of planned shapes (BoxPlan) */
     double          framed_eye[3], framed_target[3]; /* if the scene is framed: as there, or placed
                                                         for this state */
     const char     *unbounded; /* location of the slope without a bound in the last refused
@@ -204,9 +204,9 @@ struct KrsState {
     float (*sky)[3];              /* of daylight, */
     KrsSkyMap           sky_map;  /* which these texels are of, */
     Daylight            sky_made; /* as it was made; turbidity 0: not yet */
-    FrameTapes          tapes;
-    struct FrameTables *tables; /* NULL: they are those of the scene */
-    struct FrameLanes  *lanes;  /* points.h; NULL: nobody has asked for many points */
+    StateTapes          tapes;
+    struct StateTables *tables; /* NULL: they are those of the scene */
+    struct StateLanes  *lanes;  /* points.h; NULL: nobody has asked for many points */
     bool                exact;  /* rays are marched with exact distances of instance groups */
     uint64_t            ran; /* operations that marching rays has taken; one for many points at once
                                    counts as one */

@@ -51,7 +51,7 @@ static bool find_slopes(KrsState *state, uint32_t changed)
         if (!tape_depends_on(&slope->task.tape, changed))
             continue;
         double found = slope_task_run(&slope->task, parameters, state->workspace, NULL);
-        found        = frame_slope_upward(found);
+        found        = state_slope_upward(found);
         state->parameters[slope->slot].v[0] = found;
         if (!isfinite(found) && !state->unbounded)
             state->unbounded = slope->place;
@@ -275,13 +275,13 @@ void krs_state_rebase(KrsState *state, const double rebase_origin[3], float (*bl
         return;
     memcpy(state->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
            3 * sizeof *rebase_origin);
-    frame_values_find(&scene->module.slots.camera_relative, state->parameters, state->values,
+    state_values_find(&scene->module.slots.camera_relative, state->parameters, state->values,
                       block);
 }
 
 void krs_state_values(const KrsState *state, float (*block)[4])
 {
-    frame_values_find(&state->scene->module.slots.plain, state->parameters, state->values, block);
+    state_values_find(&state->scene->module.slots.plain, state->parameters, state->values, block);
 }
 
 void krs_state_parameters(const KrsState *state, float (*block)[4])

@@ -12,8 +12,8 @@ const Box *state_find_boxes(KrsState *state)
     if (scene->boxes.nodes.count == 0)
         return NULL;
     tape_run_frame(&scene->box_numbers, state->parameters, state->values);
-    frame_boxes_find(&scene->boxes, roots_of(&scene->roots, ROOTS_BOX).items, state->values,
-                     state->boxes);
+    box_plan_find(&scene->boxes, roots_of(&scene->roots, ROOTS_BOX).items, state->values,
+                  state->boxes);
     return state->boxes;
 }
 
@@ -65,17 +65,16 @@ static double lowest_eye(const KrsState *state)
     const KrsScene *scene = state->scene;
     double          least = HUGE_VAL;
     for (size_t i = 0; i < scene->floor.eyes.count; i++)
-        least = fmin(least,
-                     frame_number_range(&scene->floor.eyes.items[i], 1,
-                                        roots_of(&scene->roots, ROOTS_BOX).items, state->values)
-                         .low);
+        least = fmin(least, planned_range(&scene->floor.eyes.items[i], 1,
+                                          roots_of(&scene->roots, ROOTS_BOX).items, state->values)
+                                .low);
     return least;
 }
 
 void state_find_floor(KrsState *state, uint32_t changed)
 {
     const KrsScene   *scene = state->scene;
-    const FrameFloor *floor = &scene->floor;
+    const StateFloor *floor = &scene->floor;
     if (floor->slot == 0 || !tape_depends_on(&scene->box_numbers, changed))
         return;
     const Box *boxes  = state_find_boxes(state);

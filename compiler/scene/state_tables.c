@@ -9,7 +9,7 @@
 #include "compiler/scene/program.h"
 #include "compiler/scene/tables.h"
 
-struct FrameTables {
+struct StateTables {
     Memory     memory;
     Arena      arena;          /* of all but grids */
     Arena      grids, scratch; /* freed for each state */
@@ -21,7 +21,7 @@ struct FrameTables {
 /* ---- tapes ---- */
 
 /* A tape of the scene over the tables of the state; so are those of functions that it calls. */
-static Tape tape_of_frame(const Tape *tape, struct FrameTables *tables)
+static Tape tape_of_frame(const Tape *tape, struct StateTables *tables)
 {
     Tape  copy      = *tape;
     Tape *functions = arena_new_array(&tables->arena, Tape, tape->function_count + 1);
@@ -37,12 +37,12 @@ static Tape tape_of_frame(const Tape *tape, struct FrameTables *tables)
 
 void state_count_operations(KrsState *state)
 {
-    FrameTapes *tapes   = &state->tapes;
+    StateTapes *tapes   = &state->tapes;
     tapes->distance.ran = tapes->guarded.ran = tapes->ahead.ran = &state->ran;
     tapes->turned.ran = tapes->surface.ran = tapes->places.ran = &state->ran;
 }
 
-static void make_tables(KrsState *state, struct FrameTables *tables)
+static void make_tables(KrsState *state, struct StateTables *tables)
 {
     const KrsScene *scene    = state->scene;
     Tape           *copies[] = {&state->tapes.distance, &state->tapes.guarded, &state->tapes.ahead,
@@ -72,15 +72,15 @@ static void release(const Memory *memory, void *block)
 bool state_tables_new(KrsState *state)
 {
     const KrsScene *scene = state->scene;
-    state->tapes          = (FrameTapes){scene->distance, scene->guarded, scene->ahead,
+    state->tapes          = (StateTapes){scene->distance, scene->guarded, scene->ahead,
                                          scene->turned,   scene->surface, scene->places};
     state_count_operations(state);
     if (!instances_move(scene->graph->instances))
         return true;
-    struct FrameTables *tables = allocate(&scene->memory, sizeof *tables);
+    struct StateTables *tables = allocate(&scene->memory, sizeof *tables);
     if (!tables)
         return false;
-    *tables       = (struct FrameTables){.memory = {.allocate = scene->memory.allocate,
+    *tables       = (struct StateTables){.memory = {.allocate = scene->memory.allocate,
                                                     .release  = scene->memory.release,
                                                     .user     = scene->memory.user}};
     tables->arena = tables->grids = tables->scratch = (Arena){.memory = &tables->memory};
@@ -97,7 +97,7 @@ bool state_tables_new(KrsState *state)
 
 void state_tables_free(KrsState *state)
 {
-    struct FrameTables *tables = state->tables;
+    struct StateTables *tables = state->tables;
     if (!tables)
         return;
     arena_free(&tables->arena);
@@ -116,7 +116,7 @@ void state_tables_change(KrsState *state)
 }
 
 /* Where memory runs out the grids are those for all states, which are right in each. */
-static void find_grids(struct FrameTables *tables, const Instances *of_scene,
+static void find_grids(struct StateTables *tables, const Instances *of_scene,
                        const NodeValue *values)
 {
     jmp_buf exhausted;
@@ -133,7 +133,7 @@ static void find_grids(struct FrameTables *tables, const Instances *of_scene,
 
 void state_tables_refresh(const KrsState *state)
 {
-    struct FrameTables *tables = state->tables;
+    struct StateTables *tables = state->tables;
     const KrsScene     *scene  = state->scene;
     if (!tables || tables->found)
         return;

@@ -21,7 +21,7 @@ static size_t cell_count(const Grid *grid)
     return (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
 }
 
-/* Of a table that begins at these texels, with so many cells and entries; they move on to the next one. */
+/* Places the parts of a table with so many cells and entries at `next`, and moves that on to the next table. */
 static Place place_parts(const InstanceTable *table, size_t cells, size_t entries, TableSizes *next)
 {
     size_t texels = row_texels(table);

@@ -18,7 +18,7 @@ Box box_move(Box box, const Range by[3]);
 /* The box around a box after a linear map with these rows, each entry a range. */
 Box    box_rotate(Box box, Range rows[3][3]);
 double box_diagonal(Box box);
-/* Of a finite box. */
+/* Finds the middle of a finite box. */
 void box_centre(Box box, double centre[3]);
 /* Tells how far the side `content` of a box stays from the walls of a cell that is centred at 0;
    < 0: it sticks out. */

@@ -2,7 +2,7 @@
  * box_rules.h: how the box of a shape follows from those of its parts and from its numbers.
  *
  * One rule for each kind (shapes.def), for three that ask: what makes a shape knows its numbers for all
- * values of the parameters, iteration_boxes.h knows them in each iteration of a loop, frame_boxes.h in a frame.
+ * values of the parameters, iteration_boxes.h knows them in each iteration of a loop, box_plan.h in a state.
  */
 #ifndef KRS_BOX_RULES_H
 #define KRS_BOX_RULES_H

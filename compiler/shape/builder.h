@@ -18,7 +18,7 @@ typedef struct ShapeBuilder {
     Diags            *diags;
     Graph            *graph;
     const Parameters *parameters; /* those that numbers may depend on */
-    FrameSlopes      *slopes;     /* gets those that no constant bounds */
+    StateSlopes      *slopes;     /* gets those that no constant bounds */
     struct {
         struct OutlineShape **items;
         size_t                count, capacity;

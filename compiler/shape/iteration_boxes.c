@@ -1,5 +1,5 @@
 /*
- * iteration_boxes.c: boxes of a shape in each iteration of a loop, planned as those in frames are.
+ * iteration_boxes.c: boxes of a shape in each iteration of a loop, planned as those of states are.
  *
  * Only what depends on the iteration is looked at.  Its numbers are found for all iterations at once.
  */
@@ -9,7 +9,7 @@
 
 #include "compiler/graph/instances/iterations.h"
 #include "compiler/graph/op_values.h"
-#include "compiler/shape/frame_boxes.h"
+#include "compiler/shape/box_plan.h"
 
 /* As found when a shape is made, where a quarter turn's cosine is 0 and other roundings differ. */
 static void round_out(const double *vector, uint32_t size, Range *ranges)
@@ -22,13 +22,13 @@ static void round_out(const double *vector, uint32_t size, Range *ranges)
         ranges[i] = vector[i] == 0 ? range_of(0) : (Range){vector[i] - error, vector[i] + error};
 }
 
-/* Of an iteration: `row` has the components of all nodes.  False: one is not finite. */
-static bool set_ranges(const Graph *graph, const FrameBoxes *plan, const size_t *columns,
+/* Takes the ranges of an iteration: `row` has the components of all nodes.  False: one is not finite. */
+static bool set_ranges(const Graph *graph, const BoxPlan *plan, const size_t *columns,
                        const double *row)
 {
     bool finite = true;
     for (size_t i = 0; i < plan->numbers.count; i++) {
-        FrameNumber    *number = &plan->numbers.items[i];
+        PlannedNumber  *number = &plan->numbers.items[i];
         const GraphType type   = (GraphType)graph->items[number->node].type;
         if (!number->asked)
             continue;
@@ -43,8 +43,8 @@ static bool set_ranges(const Graph *graph, const FrameBoxes *plan, const size_t 
     return finite;
 }
 
-static bool find_boxes(const Graph *graph, const FrameBoxes *plan, Node leaf,
-                       const double *iterations, size_t count, Box *boxes, Arena *arena)
+static bool find_boxes(const Graph *graph, const BoxPlan *plan, Node leaf, const double *iterations,
+                       size_t count, Box *boxes, Arena *arena)
 {
     const Node  *nodes   = plan->nodes.items;
     const size_t width   = graph_numbers_of(graph, nodes, plan->nodes.count);
@@ -57,7 +57,7 @@ static bool find_boxes(const Graph *graph, const FrameBoxes *plan, Node leaf,
     for (size_t i = 0; i < count; i++) {
         if (!set_ranges(graph, plan, columns, table + i * width))
             return false;
-        frame_boxes_find(plan, NULL, NULL, found);
+        box_plan_find(plan, NULL, NULL, found);
         boxes[i] = found[0];
     }
     return true;
@@ -66,7 +66,7 @@ static bool find_boxes(const Graph *graph, const FrameBoxes *plan, Node leaf,
 bool iteration_boxes(ShapeBuilder *builder, const Shape *shape, Node leaf, const double *iterations,
                      size_t count, Box *boxes, Arena *arena)
 {
-    FrameBoxes plan;
-    return frame_boxes_plan_iterations(builder, shape, leaf, arena, &plan) &&
+    BoxPlan plan;
+    return box_plan_iterations(builder, shape, leaf, arena, &plan) &&
            find_boxes(builder->graph, &plan, leaf, iterations, count, boxes, arena);
 }

@@ -1,5 +1,5 @@
 /*
- * parameters.h: numbers of a scene that change from frame to frame: what its author may set, and
+ * parameters.h: numbers of a scene that change from state to state: what its author may set, and
  * slopes that follow from that.
  */
 #ifndef KRS_PARAMETERS_H
@@ -27,18 +27,18 @@ typedef struct Parameters {
 } Parameters;
 
 /* The slope of an expression that no constant bounds, as parameters in it have no limits: it is
-   found for the values of each frame (slope.c), and stands in a slot of the parameter block. */
-typedef struct FrameSlope {
+   found for the values of each state (slope.c), and stands in a slot of the parameter block. */
+typedef struct StateSlope {
     uint32_t slot;
     Node     formula;
     Box      region; /* over which it is found; infinite: all space */
     Span     span;   /* of the formula */
-} FrameSlope;
+} StateSlope;
 
-typedef struct FrameSlopes {
-    FrameSlope *items;
+typedef struct StateSlopes {
+    StateSlope *items;
     size_t      count, capacity;
-} FrameSlopes;
+} StateSlopes;
 
 /* The host finds each anew whenever anything changes. */
 enum { MAX_FRAME_SLOPES = 256 };

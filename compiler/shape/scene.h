@@ -4,7 +4,7 @@
 #ifndef KRS_SCENE_H
 #define KRS_SCENE_H
 
-#include "compiler/shape/frame_boxes.h"
+#include "compiler/shape/box_plan.h"
 #include "compiler/shape/parameters.h"
 #include "compiler/shape/shape.h"
 #include "compiler/shape/sky_map.h"
@@ -31,7 +31,7 @@ typedef struct Component {
     size_t           beam_count;
 } Component;
 
-/* Rows of camera.def that depend on the frame. */
+/* Rows of camera.def that depend on the state. */
 typedef struct CameraNodes {
 #define KRS_CAMERA(name, kind, part, positive, counts, ...) Node name;
 #include "krs/camera.def"
@@ -89,16 +89,16 @@ typedef struct SceneFog {
 } SceneFog;
 
 /* The height of a floor below all components of a scene without surroundings: a slot of the parameter
-   block, found for the values of each frame.  It stays where it is for all of them (or, if that has no
+   block, found for the values of each state.  It stays where it is for all of them (or, if that has no
    end, for the defaults) while it would be above a camera. */
-typedef struct FrameFloor {
-    uint32_t slot;      /* 0: there is no floor, or its height is the same in all frames */
+typedef struct StateFloor {
+    uint32_t slot;      /* 0: there is no floor, or its height is the same in all states */
     double   otherwise; /* where it stays */
     struct {
-        FrameNumber *items;
-        size_t       count, capacity;
+        PlannedNumber *items;
+        size_t         count, capacity;
     } eyes; /* of cameras */
-} FrameFloor;
+} StateFloor;
 
 typedef struct Scene {
     Graph *graph;
@@ -108,9 +108,9 @@ typedef struct Scene {
     } components,
         shown; /* what is lowered; what has a number for the user: more, where many are alike */
     Parameters  parameters;
-    FrameSlopes slopes;
-    FrameBoxes  boxes; /* of what is shown, in this order, but for a floor */
-    FrameFloor  floor;
+    StateSlopes slopes;
+    BoxPlan     boxes; /* of what is shown, in this order, but for a floor */
+    StateFloor  floor;
     /* Declared half-spaces, which may be in no component: mirrors. */
     struct {
         const Shape **items;

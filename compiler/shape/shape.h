@@ -85,8 +85,8 @@ typedef struct BlendMany {
     Op of_four, of_eight; /* SHARE: operations on distances in vectors */
 } BlendMany;
 BlendMany blend_many(BlendKind kind);
-/* Of so many operands, in widths: how far the least may exceed a result of 0; and how far above a
-   result an operand no longer changes it. */
+/* For so many operands, in widths: how far the least may exceed a result of 0; and how far above a result an
+   operand no longer changes it. */
 double blend_bulge(BlendKind kind, uint32_t count);
 double blend_reach(BlendKind kind, double n);
 /* Tells how far above the least of the others one of them changes nothing. */
@@ -176,7 +176,7 @@ struct Shape {
     bool     curved_child; /* shape_is_curved of a child */
     bool     claimed;      /* PRIMITIVE: its slope is claimed, not derived */
     bool     estimate;  /* nothing is proven of the distance: a primitive in it is measured only */
-    bool     per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
+    bool     per_frame; /* in the tree is a slope that is found anew for each state (StateSlope) */
     bool     trapped;   /* in the tree is a fractal or a mirror: `orbit_trap` means something */
     bool     figure;    /* a plane figure in x and y */
     bool     nothing;   /* made of empty unions alone: a figure as well as a solid */

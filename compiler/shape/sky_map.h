@@ -6,7 +6,7 @@
 
 #include "krs/krs.h"
 
-/* Of texels whose map is complete but for its version. */
+/* Returns the version of texels whose map is complete but for that. */
 uint64_t sky_map_version(const KrsSkyMap *map);
 
 #endif

@@ -2,12 +2,12 @@
  * slope.c: how fast an expression changes at most, by which its value becomes a distance.
  *
  * A bound that holds for all values of the parameters and of the time is a constant.  Where there
- * is none because they have no limits, as in sin(time * x), the slope is a number of the frame:
- * the host finds it by the same rules, at the values of the frame, and puts it into a slot of the
+ * is none because they have no limits, as in sin(time * x), the slope is a number of the state:
+ * the host finds it by the same rules, at the values of the state, and puts it into a slot of the
  * parameter block.  That is promised only if the slope has a bound at first, at time 0 and the
- * defaults, and at other values tried here; a frame that has none is refused when it comes.
+ * defaults, and at other values tried here; a state that has none is refused when it comes.
  *
- * The slope is a number of the frame, too, where that of all frames is many times as large: a value
+ * The slope is a number of the state, too, where that of all states is many times as large: a value
  * that is divided by so much says little about the surface.  Where it meets others, as the sides of a
  * region, these are greater beside the edge, and normals are theirs.
  */
@@ -20,7 +20,7 @@
 
 enum { CELLS = 512, FRAME_CELLS = 64, TRIALS = 3, FIRST_TRIALS = 2 };
 
-/* A constant slope may be so many times as large as those of the first frames.  Normals beside edges
+/* A constant slope may be so many times as large as those of the first states.  Normals beside edges
    are wrong from some thirty on.  Half of the slots are left to expressions that have no constant. */
 static const double MAX_EXCESS = 16;
 enum { MAX_PREFERRED = MAX_FRAME_SLOPES / 2 };
@@ -29,10 +29,10 @@ enum { MAX_PREFERRED = MAX_FRAME_SLOPES / 2 };
    bounded there is nowhere unbounded but by accident. */
 static const double trial_times[TRIALS] = {0, 1.618, 100.7}, trial_steps[TRIALS] = {0, 0.732, 14.1};
 
-uint32_t frame_slope_cells(Box box) { return box_is_finite(box) ? FRAME_CELLS : 1; }
+uint32_t state_slope_cells(Box box) { return box_is_finite(box) ? FRAME_CELLS : 1; }
 
 /* Above this, single precision has no room for quotients by it. */
-double frame_slope_upward(double slope)
+double state_slope_upward(double slope)
 {
     const double MOST = 1e30, SLACK = 1 + 0x1p-20; /* parameters are rounded, too */
     if (!(slope <= MOST))
@@ -40,7 +40,7 @@ double frame_slope_upward(double slope)
     return slope > 0 ? (double)nextafterf((float)(slope * SLACK), HUGE_VALF) : 0;
 }
 
-/* Tells whether some value of the frame that the expression needs can be any number. */
+/* Tells whether some value of the state that the expression needs can be any number. */
 static bool needs_the_endless(const Graph *graph, Node root, Arena *scratch)
 {
     Tape tape = tape_new(graph, &root, 1, scratch);
@@ -119,8 +119,8 @@ void explain_steep(ShapeBuilder *builder, Diag *diag, Blame blame)
             diag_note(builder->diags, diag, steep_operations[i].why);
 }
 
-/* Of equal expressions the first place is known, which may be in the library: then `otherwise` is
-   blamed, which is the author's. */
+/* Finds whom to blame.  The first place of equal expressions is known, which may be in the library: then it is
+   `otherwise`, which is the author's. */
 static Blame blame_of(ShapeBuilder *builder, const Graph *plain, Node node, Span otherwise)
 {
     if (node == NODE_NONE)
@@ -144,7 +144,7 @@ static Graph with_own_ranges(const Graph *plain, Arena *scratch)
     return own;
 }
 
-/* Tells whether frames have a slope over a region; `found` gets the first one, or whom to blame. */
+/* Tells whether states have a slope over a region; `found` gets the first one, or whom to blame. */
 static bool bounded_in_frames(ShapeBuilder *builder, const Graph *plain, Node root, Box region,
                               Span span, Steepness *found)
 {
@@ -152,9 +152,9 @@ static bool bounded_in_frames(ShapeBuilder *builder, const Graph *plain, Node ro
     for (int trial = TRIALS; trial-- > 0;) {
         Node blame = NODE_NONE;
         try_values(builder->parameters, &tried, trial, false);
-        found->bound = graph_slope(&tried, root, region, NULL, frame_slope_cells(region), &blame,
+        found->bound = graph_slope(&tried, root, region, NULL, state_slope_cells(region), &blame,
                                    builder->scratch);
-        if (isfinite(found->bound) && (trial > 0 || isfinite(frame_slope_upward(found->bound))))
+        if (isfinite(found->bound) && (trial > 0 || isfinite(state_slope_upward(found->bound))))
             continue;
         found->blame = blame_of(builder, plain, blame, span);
         found->bound = HUGE_VAL;
@@ -172,9 +172,9 @@ static bool same_box(Box a, Box b)
 }
 
 /* The slot of the slope of a formula over a region: equal ones have one. */
-static Node frame_slot(ShapeBuilder *builder, Node formula, Box region, Span span)
+static Node slope_slot(ShapeBuilder *builder, Node formula, Box region, Span span)
 {
-    FrameSlopes *slopes = builder->slopes;
+    StateSlopes *slopes = builder->slopes;
     for (size_t i = 0; i < slopes->count; i++)
         if (slopes->items[i].formula == formula && same_box(slopes->items[i].region, region))
             return graph_parameter(builder->graph, slopes->items[i].slot, TYPE_FLOAT);
@@ -186,15 +186,15 @@ static Node frame_slot(ShapeBuilder *builder, Node formula, Box region, Span spa
         diag->help       = "give the `param` a range, or use one expression for several shapes";
         builder->stopped = true;
     }
-    FrameSlope     slope = {(uint32_t)builder->graph->parameters.count, formula, region, span};
+    StateSlope     slope = {(uint32_t)builder->graph->parameters.count, formula, region, span};
     GraphParameter range = {{0}, {HUGE_VAL}};
     array_push(builder->arena, &builder->graph->parameters, range);
     array_push(builder->arena, slopes, slope);
     return graph_parameter(builder->graph, slope.slot, TYPE_FLOAT);
 }
 
-/* Tells whether the expression depends on the frame by nothing but the time and the author's parameters.
-   Cells and turns have slots as well, but no single value in a frame. */
+/* Tells whether the expression depends on the state by nothing but the time and the author's parameters.
+   Cells and turns have slots as well, but no single value in a state. */
 static bool needs_the_frame_alone(const Parameters *parameters, const Graph *plain, Node root,
                                   Arena *scratch)
 {
@@ -213,7 +213,7 @@ static bool needs_the_frame_alone(const Parameters *parameters, const Graph *pla
     return all > 0 && known == all;
 }
 
-/* The slope of the first frames: the steepest, and with time 0 and the defaults. */
+/* The slope of the first states: the steepest, and with time 0 and the defaults. */
 typedef struct FirstSlopes {
     double most, first;
 } FirstSlopes;
@@ -225,14 +225,14 @@ static FirstSlopes slopes_at_first(ShapeBuilder *builder, const Graph *plain, No
     for (int trial = FIRST_TRIALS; trial-- > 0;) {
         Node blame = NODE_NONE;
         try_values(builder->parameters, &tried, trial, true);
-        slopes.first = graph_slope(&tried, root, region, NULL, frame_slope_cells(region), &blame,
+        slopes.first = graph_slope(&tried, root, region, NULL, state_slope_cells(region), &blame,
                                    builder->scratch);
         slopes.most  = fmax(slopes.most, slopes.first);
     }
     return slopes;
 }
 
-/* Takes slopes of frames where the constant is far above them. */
+/* Takes slopes of states where the constant is far above them. */
 static void prefer_frames(ShapeBuilder *builder, const Graph *plain, Node root, Node formula,
                           Span span, Steepness *found)
 {
@@ -243,7 +243,7 @@ static void prefer_frames(ShapeBuilder *builder, const Graph *plain, Node root, 
     if (found->bound <= MAX_EXCESS * fmax(slopes.most, 1))
         return;
     found->bound = slopes.first;
-    found->slot  = frame_slot(builder, formula, found->region, span);
+    found->slot  = slope_slot(builder, formula, found->region, span);
 }
 
 bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
@@ -268,7 +268,7 @@ bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int cou
     for (int i = 0; frames && i < count; i++) {
         found->region = regions[i];
         if (bounded_in_frames(builder, plain, root, regions[i], span, found)) {
-            found->slot = frame_slot(builder, formula, regions[i], span);
+            found->slot = slope_slot(builder, formula, regions[i], span);
             return true;
         }
     }

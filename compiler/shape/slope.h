@@ -7,8 +7,8 @@
 #include "compiler/shape/builder.h"
 
 typedef struct Steepness {
-    double bound;  /* of all frames; with a slot, of the first: time 0, defaults */
-    Node   slot;   /* the slope in the frame; NODE_NONE: the bound is a constant */
+    double bound;  /* of all states; with a slot, of the first: time 0, defaults */
+    Node   slot;   /* the slope in the state; NODE_NONE: the bound is a constant */
     Box    region; /* over which; infinite: all space */
     Blame  blame;  /* what changes fastest */
 } Steepness;
@@ -16,7 +16,7 @@ typedef struct Steepness {
    `span` is its place. */
 bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
                 Steepness *found);
-/* The slope of an expression over all space and in all frames; infinite: it has no bound. */
+/* The slope of an expression over all space and in all states; infinite: it has no bound. */
 double slope_everywhere(ShapeBuilder *builder, Node formula);
 /* Says in a diagnostic why an operation has no bound on its slope, and what to write instead. */
 void explain_steep(ShapeBuilder *builder, Diag *diag, Blame blame);
@@ -29,8 +29,8 @@ Node divide_by_slope(Graph *graph, Node distance, double slope);
 
 /* The slot has a number of single precision that is no less than the slope; infinite: there is no
    bound. */
-double frame_slope_upward(double slope);
+double state_slope_upward(double slope);
 /* Into how many cells the region is cut at most. */
-uint32_t frame_slope_cells(Box region);
+uint32_t state_slope_cells(Box region);
 
 #endif

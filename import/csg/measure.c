@@ -30,8 +30,8 @@ static void add_point(Reach *reach, const double point[3])
     memcpy(reach->points[reach->count++], point, 3 * sizeof *point);
 }
 
-/* Of a ball, or of a circle in x and y (`dimensions` 2), as they are placed: q = center + radius * M u
-   for unit vectors u goes farthest along an axis where u is that row of M. */
+/* Adds a ball, or a circle in x and y (`dimensions` 2), as it is placed: q = center + radius * M u for unit
+   vectors u goes farthest along an axis where u is that row of M. */
 static void add_round(Reach *reach, const Transform *transform, const double center[3],
                       double radius, int dimensions)
 {
@@ -266,7 +266,7 @@ static Part *disc(const Projection *projection, const Part *part, const Transfor
     return figure;
 }
 
-/* Of the hull of points: its edges join some of them, so that all pairs tell where z is 0. */
+/* Finds the outline of the hull of points: its edges join some of them, so that all pairs tell where z is 0. */
 static Part *outline(const Projection *projection, const Part *part, const Transform *transform)
 {
     const CsgNode *node  = projection->node;

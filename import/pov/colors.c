@@ -29,7 +29,7 @@ double pov_light_of(const PovReader *reader, double channel)
     return gamma == 0 ? linear(channel) : pow(fmax(channel, 0), gamma);
 }
 
-/* Of a channel as it is shown. */
+/* Converts a channel from how it is shown. */
 static double in_space_of_file(const PovReader *reader, double shown)
 {
     double gamma = reader->gamma;

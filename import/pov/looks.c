@@ -425,7 +425,7 @@ static bool finish(PovReader *reader, PovLook *look)
     return true;
 }
 
-/* Of all that is inside of a thing, its index of refraction shows. */
+/* Reads what is inside of a thing: its index of refraction alone shows. */
 static bool interior(PovReader *reader, PovLook *look)
 {
     while (!word_is(&reader->words, "}")) {

@@ -70,7 +70,7 @@ typedef enum PovKind {
     POV_REFUSED /* of an included file; `string` says why, to who uses it */
 } PovKind;
 
-/* Of a macro, and of a function: where its text is. */
+/* Where the text of a macro or of a function is. */
 typedef struct PovMacro {
     struct {
         const char **items;

@@ -282,7 +282,7 @@ static bool do_declare(PovReader *reader, bool local, bool *next)
 
 /* ---- directives ---- */
 
-/* Of a text for people, or of what changes no shape. */
+/* Reads over words for people, and over what changes no shape. */
 static bool do_words(PovReader *reader, PovCell *said, bool *next)
 {
     words_advance(&reader->words);

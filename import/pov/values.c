@@ -48,7 +48,7 @@ static const struct {
     {"clock_delta", {{0}, 1}},
     {"clock_on", {{0}, 1}},
     {"input_file_name", {{0}, 1}},
-/* Of colors.inc, where it is not installed. */
+/* The names of colors.inc, for where it is not installed. */
 #define COLOR(name, r, g, b, filter) {#name, {{r, g, b, filter, 0}, 5}},
 #include "import/pov/colors.def"
 };

@@ -378,8 +378,8 @@ static const char *point_text(PovReader *reader, const double q[3])
     return import_vector_text(reader->import, p, 3);
 }
 
-/* Of n samples POV-Ray's lens is a pattern of points, whose mean distance from the middle is about that
-   of a disc with a quarter of the aperture as its radius. */
+/* Writes the lens.  With n samples POV-Ray's lens is a pattern of points, whose mean distance from the middle
+   is about that of a disc with a quarter of the aperture as its radius. */
 static void write_lens(PovReader *reader)
 {
     const PovView *view  = &reader->view;

@@ -28,7 +28,7 @@ typedef struct JsurfSurface {
 bool jsurf_read(JsurfSurface *surface);
 /* The last one of a name counts; NULL when there is none. */
 const JsurfProperty *jsurf_property(const JsurfSurface *surface, const char *key);
-/* Of the property; 1 when there is none. */
+/* Returns the line of the property; 1 when there is none. */
 unsigned jsurf_line(const JsurfSurface *surface, const char *key);
 /* `count` numbers; those given stay as they are when there is no such property. */
 bool jsurf_numbers(const JsurfSurface *surface, const char *key, double *numbers, int count);

@@ -114,7 +114,7 @@ typedef struct KrsMethods {
     uint64_t      reserved[8]; /* 0: this is a part of KrsRenderOptions, and keeps its size */
 } KrsMethods;
 
-/* They were members of KrsRenderOptions itself before 0.3. */
+/* Version 0.2 has them as members of KrsRenderOptions itself. */
 #ifdef KRS_NO_DEPRECATED
 #define KRS_WITH_OLD_METHODS(member) member
 #else

@@ -1,5 +1,5 @@
 /*
- * deprecated.h: names of before 0.3, which stay for this version; krs.h includes it.
+ * deprecated.h: names of version 0.2 that are others now, which stay for one more; krs.h includes it.
  */
 #ifndef KRS_DEPRECATED_H
 #define KRS_DEPRECATED_H

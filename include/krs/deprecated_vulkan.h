@@ -1,5 +1,5 @@
 /*
- * deprecated_vulkan.h: names of before 0.3 in vulkan.h, which stay for this version; it includes this.
+ * deprecated_vulkan.h: names of version 0.2 in vulkan.h that are others now, which stay for one more; it includes this.
  */
 #ifndef KRS_DEPRECATED_VULKAN_H
 #define KRS_DEPRECATED_VULKAN_H

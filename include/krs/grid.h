@@ -51,7 +51,7 @@ typedef struct KrsGridShape {
     size_t  count[3]; /* of samples; 0: there is nothing solid */
     /* How far distances may be below the true ones where `exact` is asked for, else 0. */
     double error;
-    /* Of the mesh behind exact distances: places at which that is not proven, the first of them. */
+    /* How many places of the mesh behind exact distances have no proof of that, and the first of them. */
     size_t unresolved;
     double unresolved_at[3];
     bool   outside;  /* distances are exact outside of the solid, but for rounding */

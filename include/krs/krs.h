@@ -41,7 +41,7 @@ extern "C" {
 #endif
 
 /*
- * Names of before 0.3 stay for this version, with a warning that says what to write instead (deprecated.h).  With
+ * Names of version 0.2 that are others now stay for one more, with a warning that says what to write instead (deprecated.h).  With
  * KRS_NO_DEPRECATION_WARNINGS compilers do not warn, and with KRS_NO_DEPRECATED there are no such names.
  */
 #ifdef KRS_LIBRARY
@@ -458,8 +458,9 @@ typedef struct KrsBound {
     bool        exact, estimate; /* as in KrsComponent, like the next two */
     uint32_t    levels;
     double      instances;
-    uint32_t    alike; /* number of similar parts, made at the same place, that have no entry */
-    size_t      same;  /* number from 1 of the entry that lists its parts; 0: this one */
+    /* How many parts of the same structure, made at the same place, have no entry. */
+    KRS_WAS(uint32_t similar, uint32_t alike, "similar");
+    size_t same; /* number from 1 of the entry that lists its parts; 0: this one */
 } KrsBound;
 
 /* The number of entries, at most 256; 0 if there is no such component.  *more, unless NULL, becomes

@@ -12,13 +12,13 @@ extern "C" {
 #endif
 
 /* How many numbers a member has, by its kind in lights.def. */
-#define KRS_LIGHT_NUMBERS_way   [3]
-#define KRS_LIGHT_NUMBERS_color [3]
-#define KRS_LIGHT_NUMBERS_axis  [3]
-#define KRS_LIGHT_NUMBERS_sides [2]
+#define KRS_LIGHT_NUMBERS_vector [3]
+#define KRS_LIGHT_NUMBERS_color  [3]
+#define KRS_LIGHT_NUMBERS_axis   [3]
+#define KRS_LIGHT_NUMBERS_sides  [2]
 #define KRS_LIGHT_NUMBERS_number
 
-/* The shapes of lights, a row of light_types.def each. */
+/* The types of lights, which have other shapes: a row of light_types.def each. */
 typedef enum KrsLightType {
     KRS_LIGHT_ROUND, /* a ball, or a disc in the sky */
 #define KRS_LIGHT_TYPE(number, id, name, given, across, along, disc) KRS_LIGHT_##id = number,

@@ -93,7 +93,8 @@ typedef struct KrsItem {
     size_t   first, count;     /* these of the assembly's */
     double   copies;           /* number of its copies in all that is shown; 0: not used */
     double   first_copy[3][4]; /* of a mesh: where one of them is */
-    /* Of a mesh: that of the innermost `let`, or of the component; NULL: it is of several.  It lives as long as the scene. */
+    /* The name of the innermost `let`, or of the component, that a mesh is of; NULL: it is of several.  It
+       lives as long as the scene. */
     const char *name;
 } KrsItem;
 

@@ -219,12 +219,12 @@ typedef struct KrsRenderOptions {
     uint32_t light;
     bool     light_groups; /* makes KrsPicture.lights; neither with max_radiance nor with noise */
     bool     mattes;       /* count what the rays of each pixel hit: KrsPicture.mattes */
-    /* Of another renderer, a number and a colour for each pixel of the whole picture, from the top;
-       NULL: none.  Rays end at the depths, which are as those of the depth AOV; what is not a number
-       is no limit.  What rays do not hit shows the plate: premultiplied light and alpha.  Both must
-       live as long as the film.  Where both are known, the plate catches shadows of the scene, as a
-       surface whose normals follow from the depths: see KrsPicture.caught.  Shapes mirror the plate, and
-       lie in its shadow, where a camera that is no panorama shows what rays meet of it. */
+    /* What another renderer has made: a number and a colour for each pixel of the whole picture, from the top;
+       NULL: none.  Rays end at the depths, which are as those of the depth AOV; what is not a number is no
+       limit.  What rays do not hit shows the plate: premultiplied light and alpha.  Both must live as long as
+       the film.  Where both are known, the plate catches shadows of the scene, as a surface whose normals
+       follow from the depths: see KrsPicture.caught.  Shapes mirror the plate, and lie in its shadow, where a
+       camera that is no panorama shows what rays meet of it. */
     const float *depth;
     const float (*plate)[4];
     KrsCatcher catcher;             /* anything but KRS_CATCHER_NONE needs depths */

@@ -26,7 +26,7 @@ struct Canvas {
     bool          previews;    /* such shaders there are */
     bool          paths_first; /* what the rendering is for */
     Film          films[FILM_COUNT];
-    /* Of the picture that is being made: films keep the functions that they were made with. */
+    /* How far the picture is that is being made: films keep the functions that they were made with. */
     KrsProgressCallback *progress;
     void                *user;
     /* While canvas_prepare compiles. */
@@ -54,7 +54,7 @@ void view_free(View *view)
     *view = (View){0};
 }
 
-static bool go_on_compiling(void *user, double done)
+static bool tell_compiling(void *user, double done)
 {
     Canvas *canvas = user;
     return !canvas->compiling || canvas->compiling(canvas->compiling_user, done);
@@ -66,7 +66,7 @@ KrsStatus canvas_new(const KrsRendererOptions *options, Canvas **canvas)
     *canvas                 = calloc(1, sizeof **canvas);
     if (!*canvas)
         return KRS_OUT_OF_MEMORY;
-    with.progress      = go_on_compiling;
+    with.progress      = tell_compiling;
     with.progress_user = *canvas;
     return krs_renderer_new(&with, &(*canvas)->renderer);
 }
@@ -186,7 +186,7 @@ static void note_made(Canvas *canvas, const Needs *needs)
     made->points        = made->points || old.points;
 }
 
-/* Makes frame and rendering; what there was stays if that fails. */
+/* Makes state and rendering; what there was stays if that fails. */
 static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool paths)
 {
     KrsState     *state     = NULL;

@@ -68,7 +68,7 @@ KrsStatus canvas_adopt(Canvas *canvas, const View *view);
 /* Frees what pictures need. */
 void canvas_rest(Canvas *canvas);
 
-/* Sets the frame to the view's values and time.  Those that the scene refuses stay as they were:
+/* Sets the state to the view's values and time.  Those that the scene refuses stay as they were:
    KRS_BAD_ARGUMENT. */
 KrsStatus canvas_set(Canvas *canvas, const View *view);
 

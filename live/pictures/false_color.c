@@ -59,8 +59,8 @@ static double middle_depth(const KrsPicture *picture)
     return used > 0 ? exp(sum / used) : 1;
 }
 
-/* Of depths, a number that grows with them up to 1: a floor to the horizon leaves the differences of
-   what is near. */
+/* Shows depths by a number that grows with them up to 1: a floor to the horizon leaves the differences of what
+   is near. */
 static double value_at(const KrsPicture *picture, ShadingMode shading, double middle, size_t at)
 {
     const double depth = fmax(picture->depth[at], 0);

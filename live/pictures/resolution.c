@@ -22,7 +22,8 @@
 #define LATE         1.15
 #define WORTH_TRYING 0.25
 
-/* Of a picture with as many pixels as the last one; a shorter time is shorter in all of its parts. */
+/* Returns the fixed part of a picture with as many pixels as the last one; a shorter time is shorter in all of
+   its parts. */
 static double fixed_of_same(const Resolution *resolution, double ms, double pixels)
 {
     const double expected = resolution->fixed_ms + pixels * resolution->pixel_ms;

@@ -15,7 +15,7 @@
 #include "krs/camera.h"
 #include "live/pictures/picture_file.h"
 
-/* Of an order, how much is done when its shaders are compiled; not more than a frame is. */
+/* So much of an order is done when its shaders are compiled; not more than a frame is. */
 #define COMPILED_PART 0.2
 
 const char *const save_names[SAVE_COUNT] = {
@@ -55,7 +55,7 @@ static bool tell(Saver *saver, double done)
     return !atomic_load(&saver->given_up);
 }
 
-static bool go_on_compiling(void *user, double done)
+static bool tell_compiling(void *user, double done)
 {
     Saver *saver = user;
     return tell(saver, done * COMPILED_PART / frames_of(&saver->order));
@@ -122,7 +122,7 @@ static KrsStatus save(Saver *saver, char message[300])
     const uint32_t frames = frames_of(&saver->order);
     KrsStatus      status = canvas_new(&saver->options, &saver->canvas);
     if (status == KRS_OK)
-        status = canvas_prepare(saver->canvas, &saver->order.view, go_on_compiling, saver);
+        status = canvas_prepare(saver->canvas, &saver->order.view, tell_compiling, saver);
     if (status != KRS_OK)
         snprintf(message, 300, "%.299s", canvas_message(saver->canvas));
     for (saver->frame = 0; status == KRS_OK && saver->frame < frames; saver->frame++)

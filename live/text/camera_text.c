@@ -35,7 +35,7 @@ static void print_numbers(FILE *out, const double *v, int count)
     fprintf(out, "]");
 }
 
-/* Of each kind and type of camera.def. */
+/* Print a member of each kind and type of camera.def. */
 static void print_place(FILE *out, const double *v) { print_numbers(out, v, 3); }
 static void print_axis(FILE *out, const double *v) { print_numbers(out, v, 3); }
 static void print_pair(FILE *out, const double *v) { print_numbers(out, v, 2); }

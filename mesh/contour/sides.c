@@ -7,7 +7,7 @@
 
 /* Tetrahedra that have a point that may be moved. */
 enum { MAX_AROUND = 200 };
-/* Of the sphere around a point, that one may join. */
+/* The sphere around a point may have so many parts that one joins. */
 enum { MAX_PARTS = 16 };
 
 /* The points around a point, by their number in the place, and the edges of the sphere that they are on: where those begin. */
@@ -153,7 +153,7 @@ static void count_around(const Place *place, const Link *link, uint32_t *leaders
     join(place, link, leaders, parts);
 }
 
-/* Of all of the place. */
+/* Counts the parts of all of the place. */
 static void count_parts(const Place *place, uint32_t *leaders, uint32_t parts[2])
 {
     parts[0] = parts[1] = 0;

@@ -337,7 +337,7 @@ typedef struct Event {
     uint32_t plane;
 } Event;
 
-/* Of the angle between two planes: as much less is known of where their line is. */
+/* Returns the sine of the angle between two planes: the less it is, the less is known of where their line is. */
 static double sine_between(const FlatFaces *faces, uint32_t a, uint32_t b)
 {
     double product[3];

@@ -45,7 +45,7 @@ typedef struct Finding {
     bool             failed;
 } Finding;
 
-/* Of the size: what is less apart is one. */
+/* What is less apart than this part of the size is one. */
 #define FLAT_ROUNDING 1e-11
 
 void find_forms(Finding *f);

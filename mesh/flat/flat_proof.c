@@ -135,7 +135,7 @@ static OneWay find_one_sheet(const Proof *proof)
 
 enum { MAX_MEMBERS = 64, MAX_SETS = 128 };
 
-/* Of half-spaces and complements; bit i is the growth i. */
+/* Sets of half-spaces and complements; bit i is the growth i. */
 typedef struct Sets {
     uint64_t items[MAX_SETS];
     size_t   count;
@@ -195,7 +195,8 @@ static void add_common(const Sets *first, const Sets *second, Sets *to)
             add_set(to, first->items[i] | second->items[k]);
 }
 
-/* Of numbers that are above 0 together where a place is outside of the solid; `inside`: of less these numbers, where it is inside. */
+/* Finds sets of numbers that are above 0 together where a place is outside of the solid; `inside`: of which
+   each is less than 0 where it is inside. */
 static void find_sets(Members *members, int root, bool inside, Sets *sets)
 {
     sets->count  = 0;

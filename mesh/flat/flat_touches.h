@@ -19,7 +19,7 @@ typedef struct FlatTouches {
     size_t     count, capacity;
 } FlatTouches;
 
-/* Of each vertex the first that is no farther than `near`, or itself. */
+/* Finds for each vertex the first that is no farther than `near`, or itself. */
 void flat_join_vertices(const FlatVertices *vertices, double near, uint32_t *first, Arena *arena);
 
 /* Appends the vertices that are no farther than `near` from an edge and farther from both its ends.  Of vertices at one place the first

@@ -28,7 +28,7 @@ typedef struct Sure {
 } Sure;
 
 void arounds_find(Arounds *arounds, const Tets *tets, Arena *arena);
-/* Of one that fits. */
+/* Finds what is sure of one that fits. */
 void sure_find(const Arounds *arounds, const Tets *tets, const Tet *tet, double error, Sure *sure);
 bool sure_has(const Sure *sure, const double corners[4][3]);
 

@@ -231,8 +231,8 @@ double smooth_most_of_three(double a, double b, double c)
     return ROUNDING * a * b * c / square;
 }
 
-/* Of four whose pairs that are not neighbours have `a` and `b`, and all others at most c: with the share s of
-   the first pair it is at most s^2 a / 4 + (1 - s)^2 b / 4 + s (1 - s) c. */
+/* The most for four points whose pairs that are not neighbours have `a` and `b`, and all others at most c: with
+   the share s of the first pair it is at most s^2 a / 4 + (1 - s)^2 b / 4 + s (1 - s) c. */
 static double max_of_ring(double a, double b, double c)
 {
     double curve = 0.25 * (a + b) - c, best = max2(0.25 * a, 0.25 * b);

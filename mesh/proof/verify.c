@@ -23,7 +23,7 @@ enum { MAX_UNRESOLVED = 16, MAX_HALVINGS = 80 };
 static const double LESS_FLAT = 0.7, LESS_STEEP = 0.35;
 /* Parts of the error: what is smaller is not divided further. */
 static const double TINY_CELL = 0.25, TINY_TRIANGLE = 0.125;
-/* Of a side, in errors, that is not thinner than the error: about as deep is one that a right angle leaves. */
+/* How deep, in errors, a side is that is not thinner than the error: a right angle leaves about as much. */
 static const double DEEP = 0.2;
 
 bool verify_is_far(const Tets *tets, const Tet *tet)

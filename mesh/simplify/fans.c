@@ -92,7 +92,7 @@ static bool find_fans(const double (*at)[3], const uint32_t (*triangles)[3], con
     return rounds == 1;
 }
 
-/* Of the vertex, over the new fan. */
+/* Finds the distance of the vertex that was, over the new fan. */
 static double distance_at_vertex(const Fans *fans)
 {
     static const double ROUNDING = 1e-9;

@@ -62,7 +62,7 @@ typedef struct Seen {
 
 /* Heights are along the normal, and as much as `aslant` says besides; NULL: that alone.  False: it is so thin that rounding
    matters. */
-static bool state_new(const NearMesh *mesh, const double corners[3][3], double error,
+static bool frame_new(const NearMesh *mesh, const double corners[3][3], double error,
                       const double *aslant, Frame *frame)
 {
     static const double least = 1e-9, most = 1e-5;
@@ -326,7 +326,7 @@ static Verdict face_along(const NearMesh *mesh, const double corners[3][3], doub
 {
     Frame frame;
     forget_faced(look);
-    if (!state_new(mesh, corners, error, aslant, &frame))
+    if (!frame_new(mesh, corners, error, aslant, &frame))
         return IS_UNDECIDED;
     for (size_t i = 0; i < start_count && look->faced_count == 0; i++)
         if (is_faced(mesh, &frame, starts[i]))
@@ -421,7 +421,7 @@ static bool are_parts_near(const NearMesh *mesh, const double corners[3][3], dou
     return is_near(mesh, (const double(*)[3])middles, error, NULL, 0, cuts - 1, look);
 }
 
-/* Of the whole one wants to know what it faces, where that can be found. */
+/* Only where all of a triangle is looked at it is noted what it faces, if that can be found. */
 
 static bool is_near(const NearMesh *mesh, const double corners[3][3], double error,
                     const uint32_t *starts, size_t start_count, int cuts, NearLook *look)

@@ -19,7 +19,7 @@
 #include "mesh/simplify/slivers.h"
 
 enum { MAX_TRIALS = 14 };
-/* Of meshoptimizer's proposals, those with more faults are given up: some, and a part of their triangles. */
+/* Proposals of meshoptimizer with more faults are given up: some, and a part of their triangles. */
 static const double MANY_FAULTS = 16, PART_OF_FAULTS = 0.005;
 /* From trial to trial triangles are kept so many times as far around faults. */
 static const double GROWTH = 1.25;
@@ -44,8 +44,8 @@ typedef struct Simplifier {
     Numbering judged; /* new triangles, by how far they are from the mesh, at most, in steps */
     Numbering noted;  /* those that are, and of which `facing` was written down */
     NearMesh  original;
-    /* Of each triangle of the mesh, one above or below it, by its vertices: of the last trial, and of the best;
-       all 0: none. */
+    /* For each triangle of the mesh, one above or below it, by its vertices: in the last trial, and in the
+       best; all 0: none. */
     uint32_t (*facing)[3], (*best_facing)[3];
     NearLook *looks;              /* of each part */
     double fraction, begun, goal; /* of the work: done, and before and after what is being done */
@@ -363,7 +363,7 @@ static bool is_wanted(void *user, double part)
     return !atomic_load(&s->stopped);
 }
 
-/* Of each vertex of the mesh that the best has not, its nearest triangle. */
+/* Finds the nearest triangle for each vertex of the mesh that the best has not. */
 static void find_below(Simplifier *s, uint32_t *below)
 {
     const double(*at)[3] = (const double(*)[3])s->mesh->vertices;

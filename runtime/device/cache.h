@@ -30,7 +30,7 @@ typedef enum CacheKind {
     CACHE_KIND_COUNT
 } CacheKind;
 
-/* Of one thread at a time; zero is a cache that keeps nothing. */
+/* A folder of entries that one thread at a time uses; zero is a cache that keeps nothing. */
 typedef struct Cache {
     KrsAllocator allocator;
     DIR         *folder;

@@ -68,7 +68,7 @@ typedef struct Gpu {
 #define NO_DEVICE \
     "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
 
-/* Of type CPU, and not to be treated as a graphics card. */
+/* Tells whether the device is of type CPU, and not to be treated as a graphics card. */
 bool gpu_is_cpu(const Gpu *gpu);
 /* Bytes of the largest memory that is the device's own. */
 uint64_t gpu_memory(const Gpu *gpu);

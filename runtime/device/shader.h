@@ -59,7 +59,7 @@ typedef struct ShaderCode {
     CacheKey      key;      /* of its text, then */
 } ShaderCode;
 
-/* Of making shaders, how much is done when all are SPIR-V. */
+/* So much of the making of shaders is done when all are SPIR-V. */
 #define COMPILED_PART 0.5
 
 typedef struct ShaderRequest {

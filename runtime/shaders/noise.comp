@@ -93,8 +93,8 @@ uint check_quarter(uvec2 corner, uint exist, uint sampled)
         errors[number] = error;
     }
     bool noisy = squares > control.noise * control.noise * float(bitCount(exist));
-    bool all_go_on = control.value < MIN_NOISE_SAMPLES || noisy;
-    for (uint left = all_go_on ? 0u : sampled; left != 0u; left &= left - 1u) {
+    bool all_continue = control.value < MIN_NOISE_SAMPLES || noisy;
+    for (uint left = all_continue ? 0u : sampled; left != 0u; left &= left - 1u) {
         uint number = uint(findLSB(left));
         if (errors[number] <= control.noise) {
             end_samples(index_of(corner + uvec2(number & 3u, number >> 2u)), errors[number]);

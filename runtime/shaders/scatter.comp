@@ -224,7 +224,7 @@ vec3 choose_way(Bsdf bsdf, Axes axes, Cones cones, vec2 square_point, float choi
 
 // Sends the path on, or ends it.  Returns where its ray begins (media.glsl); 0: it ends.  `off` is the
 // distance of the hit from the surface.
-float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 facing, vec3 weight,
+float continue_path(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 facing, vec3 weight,
             float roughness, float off, Boundary boundary, Cones cones)
 {
     vec3  light = choose_way(bsdf, axes, cones, choose(pixel, 0u), choose(pixel, 2u).y);
@@ -364,7 +364,7 @@ void do_item(uint number)
     uint  row;
     vec3  of_lights = is_direct() && come_by != STRAIGHT ? vec3(0.0) : weight;
     vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, of_lights, cones, row);
-    float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
+    float side = continue_path(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
                        surface.distance, boundary, cones);
     store_path(PATH_TOWARD, index, vec4(toward, side));
     if (side != 0.0)

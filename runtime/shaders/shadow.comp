@@ -64,7 +64,7 @@ float find_own_radius(ivec2 pixel, uint own)
     return blocked ? min(radius, widest) : radius;
 }
 
-// Of a neighbour: whether it is visible, and whether that is known.
+// Tells whether a neighbour is visible, and whether that is known.
 vec2 find_seen(uint list, Neighbour there)
 {
     float seen = list == RAYS_SHARED ? float(there.code == LIT) : openness_of_code(there.code);

@@ -74,7 +74,7 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
 /* The rows of four numbers of the frame: the number of the row, then its members.  ONE is a vec4, TWO
    a vec3 and a float, THREE a vec2 and two floats; and there are rows of FLOATS and of UINTS. */
 #define FRAME_ROWS(ONE, TWO, THREE, FLOATS, UINTS)                                                     \
-    /* Of a sky that is a picture: its columns and rows, or 0; its rotation in radians; a factor. */   \
+    /* A sky that is a picture has: columns and rows, or 0; its rotation in radians; a factor. */      \
     /* It comes first: lavapipe compiles shaders anew for each value of a block's first number. */     \
     ONE(0, sky_map)                                                                                    \
     TWO(1, eye, farthest) /* no ray goes farther */                                                    \
@@ -99,8 +99,8 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
     /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp, */ \
     /* corners of the aperture; 0: it is round. */                                                     \
     ONE(15, lens)                                                                                      \
-    /* Of the picture in half widths and half heights; how far the eye of a panorama is to the */      \
-    /* right, for stereo; 0. */                                                                        \
+    /* How far the picture moves, in half widths and half heights; how far the eye of a panorama */    \
+    /* is to the right, for stereo; 0. */                                                              \
     ONE(16, shift)
 
 /* Members of a struct, of rows. */
@@ -437,7 +437,7 @@ struct ListedRay {
 
 #ifdef __STDC_VERSION__
 enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 };
-/* Of packed values, and of those in rows, the host needs the size only. */
+/* The host needs only the size of packed values, and of those in rows. */
 enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, PATH_BYTES = 16 * PATH_ROWS, MARCH_BYTES = 32 };
 typedef struct Light LightBlock;
 static_assert(sizeof(LightBlock) == 16 * LIGHT_ROWS, "std430");

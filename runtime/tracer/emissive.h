@@ -1,5 +1,5 @@
 /*
- * emissive.h: balls around what emits light in a frame, for paths.
+ * emissive.h: balls around what emits light in a state, for paths.
  */
 #ifndef KRS_TRACER_EMISSIVE_H
 #define KRS_TRACER_EMISSIVE_H

@@ -1,5 +1,5 @@
 /*
- * job.c: reads a frame: where its rays come from, its lights and parameters.
+ * job.c: reads a state: where its rays come from, its lights and parameters.
  */
 #include "runtime/tracer/job.h"
 

@@ -68,7 +68,7 @@ typedef struct Job {
 
 /* Notes why a call is refused; returns false. */
 bool job_refuse(Job *job, const char *words);
-/* Reads a frame: lights, parameters, and the camera or the rays of a list.  `camera` may be NULL
+/* Reads a state: lights, parameters, and the camera or the rays of a list.  `camera` may be NULL
    for that of the options, which must be complete (settings.h). */
 bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera);
 /* The width at a distance: of a pixel in the middle of the picture, or of a ray of the list. */

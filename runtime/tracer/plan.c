@@ -11,7 +11,7 @@
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/pixel_filter.h"
 
-/* Of short items; all loops of a lane together may have 32,768 turns. */
+/* A lane takes so many short items; all loops of a lane together may have 32,768 iterations. */
 #define SHORT_ITEMS_OF_LANE 64
 #define MIN_GROUPS          64 /* enough for all cores of the device */
 

@@ -1,12 +1,12 @@
 /*
- * rendering.h: what a scene on a device needs for a frame, and the commands that run its shaders.
+ * rendering.h: what a scene on a device needs for a state, and the commands that run its shaders.
  */
 #ifndef KRS_RENDERING_H
 #define KRS_RENDERING_H
 
 #include "runtime/tracer/handles.h"
 
-/* Copies the frame's parameters and zones to the device.  Chooses the shaders for these zones, and
+/* Copies the state's parameters and zones to the device.  Chooses the shaders for these zones, and
    for the scene's own cameras. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsState *state,
                               const double *rebase_origin);
@@ -16,7 +16,7 @@ bool rendering_set_rays(KrsRendering *rendering, RayKind kind);
 /* Makes points relative to this origin, and chooses the shaders for that; call it after
    rendering_set_parameters. */
 bool rendering_rebase(KrsRendering *rendering, KrsState *state, const double rebase_origin[3]);
-/* Copies the lights of a frame to the device, relative to an origin, and makes room for `rays`
+/* Copies the lights of a state to the device, relative to an origin, and makes room for `rays`
    listed rays behind them.  `light` is as in KrsRenderOptions: others are black. */
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
                           uint32_t light, const double rebase_origin[3], size_t rays);

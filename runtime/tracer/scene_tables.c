@@ -85,7 +85,7 @@ static bool upload(KrsRendering *rendering, const KrsState *state, const double 
     return done;
 }
 
-/* The tables are those of the frame, unless they are so already. */
+/* The tables are those of the state, unless they are so already. */
 static bool renew(KrsRendering *rendering, const KrsState *state, const double *rebase_origin)
 {
     Gpu   *gpu         = &rendering->renderer->gpu;

@@ -1,5 +1,5 @@
 /*
- * old_names.c: a program of before 0.3: it has each old name (krs/deprecated.h), and is told the right things.
+ * old_names.c: a program for 0.2: it has each old name (krs/deprecated.h), and is told the right things.
  */
 #include <math.h>
 #include <stdio.h>
@@ -134,6 +134,8 @@ static void use_members(void)
           "options of a device");
     const KrsComponent component = {.per_frame = true};
     check(component.per_state, "a component");
+    const KrsBound bound = {.alike = 3};
+    check(bound.similar == 3, "a bound");
     const KrsMeshOptions mesh = {.go_on = wait};
     check(mesh.progress == wait, "options of meshes");
     KrsPlacing        placing  = {.item = 3};

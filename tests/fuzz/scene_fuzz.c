@@ -36,13 +36,13 @@ static void ask(const KrsScene *scene)
 {
     static const double points[4][3] = {{0, 0, 0}, {1, 2, 3}, {-4, 0.5, 10}, {100, -100, 3}};
     double              distances[4];
-    KrsState           *frame;
+    KrsState           *state;
     KrsView             view;
-    if (krs_state_new(scene, &frame) != KRS_OK)
+    if (krs_state_new(scene, &state) != KRS_OK)
         return;
-    krs_distance(frame, points, 4, distances);
-    demand(krs_state_view(frame, 0, &view) == KRS_OK);
-    krs_state_free(frame);
+    krs_distance(state, points, 4, distances);
+    demand(krs_state_view(state, 0, &view) == KRS_OK);
+    krs_state_free(state);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);

@@ -20,7 +20,7 @@ typedef struct Show {
     const char   *path;
     KrsRenderer  *renderer;
     KrsRendering *rendering;
-    KrsState     *frame;
+    KrsState     *state;
     bool          failed;
 } Show;
 
@@ -28,7 +28,7 @@ static void render(Show *show, const char *option, const char *name,
                    const KrsRenderOptions *options)
 {
     KrsPicture *picture;
-    if (krs_render(show->rendering, show->frame, options, &picture) != KRS_OK) {
+    if (krs_render(show->rendering, show->state, options, &picture) != KRS_OK) {
         /* Such as analytic normals of a scene without derivatives. */
         printf("%s %s=%s: %s\n", show->path, option, name, krs_renderer_message(show->renderer));
         return;
@@ -81,14 +81,14 @@ static bool show_scene(KrsRenderer *renderer, const char *path)
     const KrsOptions options = {.research = true};
     KrsScene        *scene;
     bool             good = krs_compile_file(path, &options, &scene) == KRS_OK &&
-                krs_state_new(scene, &show.frame) == KRS_OK &&
+                krs_state_new(scene, &show.state) == KRS_OK &&
                 krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &show.rendering) == KRS_OK;
     if (good)
         render_all(&show);
     else
         fprintf(stderr, "pictures: %s cannot be rendered\n", path);
     krs_rendering_free(show.rendering);
-    krs_state_free(show.frame);
+    krs_state_free(show.state);
     krs_scene_free(scene);
     return good;
 }

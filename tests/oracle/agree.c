@@ -34,7 +34,7 @@ enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT, ASKED = 400 };
 typedef struct Fixture {
     const char   *name;
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     KrsView       view;
     Lens          lens;
@@ -46,11 +46,11 @@ static void fixture_open(Fixture *fixture, KrsStatus status)
 {
     if (status != KRS_OK)
         fail_msg("%s does not compile", fixture->name);
-    assert_int_equal(krs_state_new(fixture->scene, &fixture->frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture->scene, &fixture->state), KRS_OK);
     if (krs_rendering_new(renderer, fixture->scene, KRS_FOR_PICTURES, &fixture->rendering) !=
         KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
-    assert_int_equal(krs_state_view(fixture->frame, 0, &fixture->view), KRS_OK);
+    assert_int_equal(krs_state_view(fixture->state, 0, &fixture->view), KRS_OK);
     const KrsCamera *camera = &fixture->view.camera;
     assert_int_equal(camera->projection, KRS_PERSPECTIVE);
     fixture->lens = lens_make(vec_of(camera->eye), vec_of(camera->target), tan(camera->fov / 2),
@@ -60,7 +60,7 @@ static void fixture_open(Fixture *fixture, KrsStatus status)
 static void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
 }
 
@@ -70,7 +70,7 @@ static KrsPicture *fixture_render(Fixture *fixture, KrsRenderOptions options)
     options.width   = WIDTH;
     options.height  = HEIGHT;
     options.samples = 1;
-    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->state, &options, &picture) != KRS_OK)
         fail_msg("%s: %s", fixture->name, krs_renderer_message(renderer));
     return picture;
 }
@@ -97,7 +97,7 @@ static double distance_at(Fixture *fixture, Vec p)
 {
     const double point[1][3] = {{p.x, p.y, p.z}};
     double       distance;
-    assert_int_equal(krs_distance(fixture->frame, point, 1, &distance), KRS_OK);
+    assert_int_equal(krs_distance(fixture->state, point, 1, &distance), KRS_OK);
     return distance;
 }
 
@@ -123,7 +123,7 @@ static bool is_of_neighbour(Fixture *fixture, Line ray, const Answer *said, doub
         Vec p = vec_add(at, vec((i % 3 - 1) * pixel, (i / 3 % 3 - 1) * pixel, (i / 9 - 1) * pixel));
         const double point[1][3] = {{p.x, p.y, p.z}};
         KrsHit       hit;
-        assert_int_equal(krs_probe(fixture->frame, point, 1, &hit), KRS_OK);
+        assert_int_equal(krs_probe(fixture->state, point, 1, &hit), KRS_OK);
         if (hit.component == said->component && hit.level == said->level &&
             hit.instance == said->instance)
             return true;
@@ -239,14 +239,14 @@ static size_t wrong_rays(Fixture *fixture, const KrsPicture *picture)
         put(directions[i], ray.direction);
     }
     assert_int_equal(
-        krs_raycast(fixture->frame, origins, rays, ASKED, HUGE_VAL, 1e-7 * (1 + size), host),
+        krs_raycast(fixture->state, origins, rays, ASKED, HUGE_VAL, 1e-7 * (1 + size), host),
         KRS_OK);
     double nearest = HUGE_VAL;
     for (int i = 0; i < ASKED; i++)
         if (host[i].hit)
             nearest = fmin(nearest, host[i].t);
     double tolerance = nearest < HUGE_VAL ? 0.25 * pixel_at(fixture, nearest) : 1e-3;
-    if (krs_device_raycast(fixture->rendering, fixture->frame, origins, rays, ASKED, HUGE_VAL,
+    if (krs_device_raycast(fixture->rendering, fixture->state, origins, rays, ASKED, HUGE_VAL,
                            tolerance, device) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int i = 0; i < ASKED; i++) {
@@ -336,9 +336,9 @@ static size_t wrong_scene(Fixture *fixture, KrsTrace trace)
     return wrong;
 }
 
-static void examples_agree(void **state)
+static void examples_agree(void **context)
 {
-    (void)state;
+    (void)context;
     static const char *const paths[] = {"examples/01-hello.krs", "examples/05-rock.krs",
                                         "examples/14-inversion.krs"};
     size_t                   wrong   = 0;
@@ -352,9 +352,9 @@ static void examples_agree(void **state)
 }
 
 /* A picture of something else does not pass: moved by two pixels, or of other ids. */
-static void other_pictures_are_found(void **state)
+static void other_pictures_are_found(void **context)
 {
-    (void)state;
+    (void)context;
     static const char text[] =
         "param aside = 0;\n"
         "camera { eye: [0, 1, 5], target: [0, 0, 0], fov: 0.6 }\n"
@@ -369,9 +369,9 @@ static void other_pictures_are_found(void **state)
     assert_true(wrong_rays(&fixture, picture) > 0);
     krs_picture_free(picture);
     const double lateral = 2 * pixel_at(&fixture, 5), none = 0;
-    assert_int_equal(krs_state_set(fixture.frame, "aside", &lateral, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture.state, "aside", &lateral, 1), KRS_OK);
     picture = fixture_render(&fixture, (KrsRenderOptions){0});
-    assert_int_equal(krs_state_set(fixture.frame, "aside", &none, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture.state, "aside", &none, 1), KRS_OK);
     assert_true(wrong_rays(&fixture, picture) > 0);
     krs_picture_free(picture);
     fixture_close(&fixture);
@@ -405,9 +405,9 @@ static size_t wrong_random_scene(int number)
     return wrong;
 }
 
-static void random_scenes_agree(void **state)
+static void random_scenes_agree(void **context)
 {
-    (void)state;
+    (void)context;
     size_t wrong = 0;
     for (int i = 0; i < 6; i++)
         wrong += wrong_random_scene(i);

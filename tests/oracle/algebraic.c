@@ -126,7 +126,7 @@ static void judge_by(const char *name, KrsTrace first, KrsTrace last, double pla
                                     .methods.trace = trace,
                                     .aovs          = KRS_AOV_POSITION | KRS_AOV_IDS};
         KrsPicture      *picture;
-        if (krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
+        if (krs_render(rendering, product.state, &options, &picture) != KRS_OK)
             fail_msg("%s: %s", name, krs_renderer_message(renderer));
         Verdict verdict = judge_picture(surface, picture, pixels);
         assert_int_equal(picture->stats.unresolved, 0);

@@ -154,7 +154,7 @@ static double noise_of_columns(const KrsPicture *picture, double *expected)
     return sqrt(squares / columns);
 }
 
-/* Of pixels almost as wide as the penumbra: noise as a share of that of 256 independent rays. */
+/* Returns the noise of pixels almost as wide as the penumbra, as a share of that of 256 independent rays. */
 static double narrow_noise(double degrees, uint32_t samples)
 {
     Shot        shot    = {LEDGE,

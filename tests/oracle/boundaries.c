@@ -12,7 +12,7 @@
 
 enum { MAX_PARTS = 12, POINTS = 80, MAX_BOUNDARY = 200000 };
 
-/* Of points along outlines; how far the boundary is from the nearest of them, at most. */
+/* How far points along outlines are from each other, and at most from the boundary. */
 static const double SPACING = 1e-3, TOLERANCE = 1.01e-3;
 
 /* ---- parts ---- */

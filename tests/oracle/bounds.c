@@ -34,7 +34,7 @@ static March march_new(const Product *product)
     float(*block)[4]       = calloc(slots, sizeof *block);
     NodeValue *parameters  = calloc(slots, sizeof *parameters);
     assert_true(values && block && parameters);
-    krs_state_parameters(product->frame, block);
+    krs_state_parameters(product->state, block);
     for (uint32_t i = 0; i < slots; i++)
         for (int k = 0; k < 4; k++)
             parameters[i].v[k] = block[i][k];
@@ -200,7 +200,7 @@ static void parameters_do_not_break_bounds(void **state)
             double w = (float)(moved.mirrors[i].offset + random_between(&random, -0.29, 0.29));
             snprintf(name, sizeof name, "w%d", i);
             moved.mirrors[i].offset = w;
-            assert_int_equal(krs_state_set(product.frame, name, &w, 1), KRS_OK);
+            assert_int_equal(krs_state_set(product.state, name, &w, 1), KRS_OK);
         }
         check_sequence(&product, &moved, &random, 0, &left_out);
     }

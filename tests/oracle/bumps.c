@@ -102,7 +102,7 @@ static void on_device(const Placed *placed, const Product *product)
     }
     assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering),
                      KRS_OK);
-    assert_int_equal(point_query_sample(rendering, product->frame, (const float(*)[3])points,
+    assert_int_equal(point_query_sample(rendering, product->state, (const float(*)[3])points,
                                         POINTS, NULL, found),
                      KRS_OK);
     for (int i = 0; i < POINTS; i++) {

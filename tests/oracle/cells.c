@@ -326,8 +326,8 @@ static void cells_are_alike(void **state)
     product_free(&counted);
 }
 
-/* A choice of the frame is one shape or the other, in distance and colour. */
-static void choices_of_frames(void **state)
+/* A choice of the state is one shape or the other, in distance and colour. */
+static void choices_of_states(void **state)
 {
     (void)state;
     Product             product  = product_compile("param big = 0.2 in [0, 1];\n"
@@ -339,7 +339,7 @@ static void choices_of_frames(void **state)
     for (int i = 0; i < 300; i++) {
         double value = values[i % 3];
         Vec    p     = random_in_cube(&random, 3);
-        assert_int_equal(krs_state_set(product.frame, "big", &value, 1), KRS_OK);
+        assert_int_equal(krs_state_set(product.state, "big", &value, 1), KRS_OK);
         KrsHit is     = product_probe(&product, p);
         double wanted = i % 3 == 0 ? ball(p, 1) : bar(p, vec(0.5, 1, 0.5));
         if (i % 3 == 2)
@@ -386,6 +386,6 @@ int main(void)
     }
     tests[KINDS * SOLIDS]     = (struct CMUnitTest)cmocka_unit_test(cells_are_alike);
     tests[KINDS * SOLIDS + 1] = (struct CMUnitTest)cmocka_unit_test(colors_of_cells);
-    tests[KINDS * SOLIDS + 2] = (struct CMUnitTest)cmocka_unit_test(choices_of_frames);
+    tests[KINDS * SOLIDS + 2] = (struct CMUnitTest)cmocka_unit_test(choices_of_states);
     return _cmocka_run_group_tests("cells", tests, KINDS * SOLIDS + 3, NULL, NULL);
 }

@@ -328,8 +328,8 @@ void chain_move(Chain *chain, const Product *product, const Product *other, Rand
             continue;
         number_text(chain, link, name);
         link->number = random_between(random, link->least, link->most);
-        assert_int_equal(krs_state_set(product->frame, name, &link->number, 1), KRS_OK);
-        if (other->frame)
-            assert_int_equal(krs_state_set(other->frame, name, &link->number, 1), KRS_OK);
+        assert_int_equal(krs_state_set(product->state, name, &link->number, 1), KRS_OK);
+        if (other->state)
+            assert_int_equal(krs_state_set(other->state, name, &link->number, 1), KRS_OK);
     }
 }

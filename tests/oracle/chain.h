@@ -86,7 +86,7 @@ void chain_write(const Chain *chain, SceneText *text);
 bool chain_contains(const void *chain, Vec point);
 /* The box that the compiler gives for the whole; false where it is endless. */
 bool chain_box(const Product *product, Vec *low, Vec *high);
-/* Other values of all parameters, in the chain and in both frames. */
+/* Other values of all parameters, in the chain and in both states. */
 void chain_move(Chain *chain, const Product *product, const Product *other, Random *random);
 
 #endif

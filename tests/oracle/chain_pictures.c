@@ -239,7 +239,7 @@ static void check_rays(const Chain *chain, const SceneText *text, const Product 
     }
     assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_QUESTIONS, &rendering),
                      KRS_OK);
-    assert_int_equal(krs_device_raycast(rendering, product->frame, (const double(*)[3])origins,
+    assert_int_equal(krs_device_raycast(rendering, product->state, (const double(*)[3])origins,
                                         (const double(*)[3])directions, RAYS, farthest, tolerance,
                                         hits),
                      KRS_OK);

@@ -16,7 +16,7 @@
 static const double ROUNDING = 1e-9;
 
 typedef struct Tally {
-    int      chains, frames, wrong, empty, rays, hits, unresolved, kinds[LINK_KINDS];
+    int      chains, states, wrong, empty, rays, hits, unresolved, kinds[LINK_KINDS];
     Refusals refusals;
 } Tally;
 
@@ -237,7 +237,7 @@ static void look_at(Case *c, Random *random, Tally *tally)
     check_slope(c, 20, random_bits(random));
     check_rays(c, (int)setting("RAYS", 12), random, tally);
     tally->empty += c->cloud.count == 0;
-    tally->frames++;
+    tally->states++;
     cloud_free(&c->cloud);
 }
 
@@ -254,15 +254,15 @@ static void check_chain(const Run *run, Random *random, Tally *tally)
     scene_write(&lipschitz, ".offset(0);\ncamera { eye: [0, 0, 9], target: [0, 0, 0] }\n");
     if (krs_compile_text(lipschitz.bytes, lipschitz.length, "steady.krs", NULL,
                          &c.lipschitz.scene) == KRS_OK)
-        assert_int_equal(krs_state_new(c.lipschitz.scene, &c.lipschitz.frame), KRS_OK);
+        assert_int_equal(krs_state_new(c.lipschitz.scene, &c.lipschitz.state), KRS_OK);
     c.bounded = chain_box(&c.product, &c.low, &c.high);
     if (!c.bounded)
         c.low = vec(-4, -4, -4), c.high = vec(4, 4, 4);
     Vec margin = vec_add(vec_scale(0.15, vec_sub(c.high, c.low)), vec(0.1, 0.1, 0.1));
     c.low      = vec_sub(c.low, margin);
     c.high     = vec_add(c.high, margin);
-    for (int frame = 0; frame < (run->recipe.moving ? 3 : 1); frame++) {
-        if (frame)
+    for (int k = 0; k < (run->recipe.moving ? 3 : 1); k++) {
+        if (k)
             chain_move(&c.chain, &c.product, &c.lipschitz, random);
         look_at(&c, random, tally);
     }
@@ -283,15 +283,15 @@ static void chains_are_right(void **state)
         Random random = {first * 1000000 + i};
         check_chain(run, &random, &tally);
     }
-    print_message("# %s: %d chains, %d of %d frames empty, %d of %d rays hit, %d unresolved; %d of "
+    print_message("# %s: %d chains, %d of %d states empty, %d of %d rays hit, %d unresolved; %d of "
                   "%d steps refused;",
-                  run->name, tally.chains, tally.empty, tally.frames, tally.hits, tally.rays,
+                  run->name, tally.chains, tally.empty, tally.states, tally.hits, tally.rays,
                   tally.unresolved, tally.refusals.refused, tally.refusals.tried);
     for (int k = 0; k < LINK_KINDS; k++)
         print_message(" %s %d", link_names[k], tally.kinds[k]);
     print_message("\n");
     assert_true(tally.unresolved * 1000 <= tally.rays);
-    assert_true(tally.empty * 2 < tally.frames);
+    assert_true(tally.empty * 2 < tally.states);
     assert_true(tally.refusals.refused * 2 < tally.refusals.tried);
     if (tally.wrong)
         fail_msg("%d of %d chains are wrong", tally.wrong, tally.chains);

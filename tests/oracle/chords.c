@@ -127,7 +127,7 @@ static void rods_are_those_of_the_scene(void **state)
         Shot   shot  = {.kind = kind, .wide = 2};
         Lens   lens  = twigs_lens(&shot, WIDTH, HEIGHT);
         double size  = twigs_size(scene, &lens, shot.wide);
-        assert_int_equal(krs_state_set(scene->product.frame, "size", &size, 1), KRS_OK);
+        assert_int_equal(krs_state_set(scene->product.state, "size", &size, 1), KRS_OK);
         double *enter = twigs_truth(&shot, &lens, 0.5, 0.5);
         for (int k = 0; k < PIXELS; k += 11) {
             Line ray = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);

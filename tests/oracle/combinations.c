@@ -35,7 +35,7 @@ static bool compile_quietly(const char *text, Product *product, Said *said)
     if (krs_compile_text(text, strlen(text), "combination.krs", &options, &product->scene) !=
         KRS_OK)
         return false;
-    assert_int_equal(krs_state_new(product->scene, &product->frame), KRS_OK);
+    assert_int_equal(krs_state_new(product->scene, &product->state), KRS_OK);
     return true;
 }
 

@@ -180,7 +180,7 @@ enum { WIDTH = 256, HEIGHT = 192, SIDE = WIDTH / ACROSS };
 
 enum { PATHS = 1200, SAMPLES = 2 }; /* of a block of the reference, of a pixel */
 
-/* Of red, green and blue in each block; and of all together. */
+/* Estimates of red, green and blue in each block; and of all together. */
 typedef struct Blocks {
     Estimate of[BLOCKS][3], all;
 } Blocks;

@@ -248,7 +248,7 @@ static void radii_vary_along_curves(void **state)
     }
 }
 
-/* Of a spline each point has its radius. */
+/* Each point of a spline has its radius. */
 static void splines_have_radii(void **state)
 {
     (void)state;

@@ -98,7 +98,7 @@ static Part random_part(Random &random)
     return part;
 }
 
-/* Of eighths; triangles have right angles. */
+/* Makes a part whose sizes are eighths; triangles have right angles. */
 static Part level_part(Random &random)
 {
     static const Kind kinds[] = {BOX, BOX, BOX, CYLINDER, CYLINDER, POLYGON};
@@ -219,7 +219,7 @@ Solid random_solid(uint64_t number)
     Solid  solid;
     solid.level = number % 4 == 3;
     solid.rich  = number % 4 == 1;
-    /* Of solids that are about two long: from 1/20 to 1/1000, the finest ones seldom. */
+    /* Solids are about two long: the error is from 1/20 to 1/1000 of that, the finest ones seldom. */
     solid.error = 2 /
                   std::exp(random.between(std::log(20), std::log(random.below(8) ? 200 : 1000)));
     solid.turn = random.below(2) ? random.turn() : random.quarter_turn();

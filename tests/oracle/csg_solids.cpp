@@ -28,7 +28,7 @@
 #include "tests/oracle/mesh_faults.h"
 #include "tests/oracle/truetype.h"
 
-/* Of the processor: for each mesh, and for all of CGAL beside it. */
+/* Seconds of the processor: for each mesh, and for all of CGAL beside it. */
 static const int SECONDS = 20, SECONDS_OF_CGAL = 120;
 
 /* ---- the command ---- */
@@ -229,7 +229,7 @@ static Verdict verdict_of(const Solid &solid, const Triangles &truth, Shape shap
     return AGREE;
 }
 
-/* Of letters. */
+/* Opens the font of letters. */
 static bool open_font()
 {
     char  path[1024] = "";

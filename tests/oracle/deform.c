@@ -82,7 +82,7 @@ static void rings_are_solid(void **state)
     product_free(&ring);
 }
 
-static void frames_are_safe(void **state)
+static void states_are_safe(void **state)
 {
     (void)state;
     Random random = {105};
@@ -99,8 +99,8 @@ static void frames_are_safe(void **state)
         for (int frame = 0; frame < 5; frame++) {
             double k    = frame ? random_between(&random, -most, most) : 0;
             double time = random_between(&random, -9, 9);
-            assert_int_equal(krs_state_set(product.frame, "k", &k, 1), KRS_OK);
-            assert_int_equal(krs_state_set_time(product.frame, time), KRS_OK);
+            assert_int_equal(krs_state_set(product.state, "k", &k, 1), KRS_OK);
+            assert_int_equal(krs_state_set_time(product.state, time), KRS_OK);
             deed->rate  = frame ? k * cos(time) : 1e-9; /* the formulas here divide by it */
             Trial trial = deformed_trial(&product, &chain, (uint64_t)i);
             judge_acquits(&trial, text.bytes);
@@ -129,8 +129,8 @@ static void moving_tapers_are_safe(void **state)
             double time = random_between(&random, -9, 9);
             deed->from  = random_between(&random, 0.3, 1.5);
             deed->to    = 0.9 + 0.3 * sin(deed->from + time);
-            assert_int_equal(krs_state_set(product.frame, "a", &deed->from, 1), KRS_OK);
-            assert_int_equal(krs_state_set_time(product.frame, time), KRS_OK);
+            assert_int_equal(krs_state_set(product.state, "a", &deed->from, 1), KRS_OK);
+            assert_int_equal(krs_state_set_time(product.state, time), KRS_OK);
             Trial trial = deformed_trial(&product, &chain, (uint64_t)i);
             judge_acquits(&trial, text.bytes);
         }
@@ -150,8 +150,8 @@ static void a_twist_needs_no_range(void **state)
     Product product = product_compile(text.bytes);
     for (int i = 0; i < 8; i++) {
         double k = i - 4, time = 0.7 * i;
-        assert_int_equal(krs_state_set(product.frame, "k", &k, 1), KRS_OK);
-        assert_int_equal(krs_state_set_time(product.frame, time), KRS_OK);
+        assert_int_equal(krs_state_set(product.state, "k", &k, 1), KRS_OK);
+        assert_int_equal(krs_state_set_time(product.state, time), KRS_OK);
         chain.deeds[0].rate = k + 0.3 * time;
         Trial trial         = deformed_trial(&product, &chain, (uint64_t)i);
         judge_acquits(&trial, text.bytes);
@@ -210,7 +210,7 @@ static void displacements_are_safe(void **state)
         Product product = product_compile(text.bytes);
         for (int frame = 0; frame < 3; frame++) {
             bumps.amplitude = random_between(&random, -0.5, 0.5);
-            assert_int_equal(krs_state_set(product.frame, "a", &bumps.amplitude, 1), KRS_OK);
+            assert_int_equal(krs_state_set(product.state, "a", &bumps.amplitude, 1), KRS_OK);
             Trial trial = {product_field, &product, inside_bumps, &bumps,
                            vec(0, 0, 0),  3,        250,          (uint64_t)i};
             judge_acquits(&trial, text.bytes);
@@ -245,7 +245,7 @@ static void others_are_safe(void **state)
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         Product product = product_format("show %s;", shapes[i]);
         Trial   trial   = {product_field, &product, is_negative, &product, vec(0, 0, 0), 2, 400, i};
-        assert_int_equal(krs_state_set_time(product.frame, 7), KRS_OK);
+        assert_int_equal(krs_state_set_time(product.state, 7), KRS_OK);
         judge_acquits(&trial, shapes[i]);
         product_free(&product);
     }
@@ -274,7 +274,7 @@ int main(void)
         cmocka_unit_test(sequences_are_safe),
         cmocka_unit_test(long_bends_are_safe),
         cmocka_unit_test(rings_are_solid),
-        cmocka_unit_test(frames_are_safe),
+        cmocka_unit_test(states_are_safe),
         cmocka_unit_test(moving_tapers_are_safe),
         cmocka_unit_test(a_twist_needs_no_range),
         cmocka_unit_test(displacements_are_safe),

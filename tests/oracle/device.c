@@ -55,10 +55,10 @@ static Comparison compare_scene(const char *text, double roughness, double plant
 {
     KrsOptions    options = {.diagnostic = print_diagnostic};
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     KrsStatus status = krs_rendering_new(renderer, scene, KRS_FOR_QUESTIONS, &rendering);
     if (status != KRS_OK)
         fprintf(stderr, "%s\n", krs_renderer_message(renderer));
@@ -71,11 +71,11 @@ static Comparison compare_scene(const char *text, double roughness, double plant
     KrsHit       *hits     = malloc(IDENTITIES * sizeof *hits);
     SurfacePoint *surfaces = malloc(POINTS * sizeof *surfaces);
     scatter(points, rounded);
-    status = point_query_sample(rendering, frame, (const float(*)[3])rounded, POINTS, device,
+    status = point_query_sample(rendering, state, (const float(*)[3])rounded, POINTS, device,
                                 surfaces);
     assert_int_equal(status, KRS_OK);
-    krs_distance(frame, (const double(*)[3])points, POINTS, host);
-    krs_probe(frame, (const double(*)[3])points, IDENTITIES, hits);
+    krs_distance(state, (const double(*)[3])points, POINTS, host);
+    krs_probe(state, (const double(*)[3])points, IDENTITIES, hits);
 
     Comparison result = {0};
     for (size_t i = 0; i < POINTS; i++) {
@@ -99,7 +99,7 @@ static Comparison compare_scene(const char *text, double roughness, double plant
     free(hits);
     free(surfaces);
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     return result;
 }
@@ -248,7 +248,7 @@ static void sample_sines(double scale, double *arguments, SurfacePoint *found)
 {
     char          text[200];
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     float        *distances = malloc(POINTS * sizeof *distances);
     float(*points)[3]       = calloc(POINTS, sizeof *points);
@@ -261,13 +261,13 @@ static void sample_sines(double scale, double *arguments, SurfacePoint *found)
              "show sphere(1).paint(waves);",
              scale, scale, scale);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
     assert_int_equal(
-        point_query_sample(rendering, frame, (const float(*)[3])points, POINTS, distances, found),
+        point_query_sample(rendering, state, (const float(*)[3])points, POINTS, distances, found),
         KRS_OK);
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     free(distances);
     free(points);
@@ -399,8 +399,8 @@ static void parameters_agree(void **context)
            32);
 }
 
-/* Largest difference, over what is permitted; `late`: the device is asked before a frame is set. */
-static double compare_frames(KrsRendering *rendering, KrsState *frame, bool late)
+/* Largest difference, over what is permitted; `late`: the device is asked before a state is set. */
+static double compare_states(KrsRendering *rendering, KrsState *state, bool late)
 {
     static const double times[] = {0, 0.4, -3, 25, 200, 1};
     enum { FEW = 2000 };
@@ -412,21 +412,21 @@ static double compare_frames(KrsRendering *rendering, KrsState *frame, bool late
             for (int k = 0; k < 3; k++)
                 points[i][k] = rounded[i][k] = (float)uniform(-2, 2);
         if (late)
-            krs_device_distance(rendering, frame, (const float(*)[3])rounded, FEW, device);
+            krs_device_distance(rendering, state, (const float(*)[3])rounded, FEW, device);
         double k = 2 + times[f];
-        assert_int_equal(krs_state_set(frame, "k", &k, 1), KRS_OK);
-        assert_int_equal(krs_state_set_time(frame, times[f]), KRS_OK);
+        assert_int_equal(krs_state_set(state, "k", &k, 1), KRS_OK);
+        assert_int_equal(krs_state_set_time(state, times[f]), KRS_OK);
         if (!late)
-            krs_device_distance(rendering, frame, (const float(*)[3])rounded, FEW, device);
-        krs_distance(frame, (const double(*)[3])points, FEW, host);
+            krs_device_distance(rendering, state, (const float(*)[3])rounded, FEW, device);
+        krs_distance(state, (const double(*)[3])points, FEW, host);
         for (size_t i = 0; i < FEW; i++)
             worst = fmax(worst, fabs(device[i] - host[i]) / (64 * 0x1p-23 * (7 + fabs(host[i]))));
     }
     return worst;
 }
 
-/* Slopes that the host finds for each frame reach shaders that are compiled once. */
-static void frames_agree(void **context)
+/* Slopes that the host finds for each state reach shaders that are compiled once. */
+static void states_agree(void **context)
 {
     static const char text[] =
         "param k = 2; shape w() { distance: length(p) - 1 + 0.1 * sin(x * time) }"
@@ -434,16 +434,16 @@ static void frames_agree(void **context)
         "show sphere(0.5).displace(sin(time * x + k * z), 0.1).move([1, 1, 0]);";
     (void)context;
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_state_slope_count(scene), 3);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    assert_true(compare_frames(rendering, frame, false) <= 1);
-    assert_true(compare_frames(rendering, frame, true) > 100); /* the frame before */
+    assert_true(compare_states(rendering, state, false) <= 1);
+    assert_true(compare_states(rendering, state, true) > 100); /* the state before */
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 
@@ -462,7 +462,7 @@ int main(void)
         cmocka_unit_test(functions_agree),  cmocka_unit_test(sines_are_accurate),
         cmocka_unit_test(sequences_agree),  cmocka_unit_test(fractals_agree),
         cmocka_unit_test(inversions_agree), cmocka_unit_test(parameters_agree),
-        cmocka_unit_test(frames_agree),     cmocka_unit_test(a_fault_is_found),
+        cmocka_unit_test(states_agree),     cmocka_unit_test(a_fault_is_found),
     };
     return cmocka_run_group_tests_name("device and evaluator", tests, renderer_open,
                                        renderer_close);

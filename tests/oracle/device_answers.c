@@ -22,7 +22,7 @@ Scene scene_ready(KrsStatus status, KrsScene *scene, KrsPurpose purpose)
 {
     Scene s = {.scene = scene};
     assert_int_equal(status, KRS_OK);
-    assert_int_equal(krs_state_new(scene, &s.frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &s.state), KRS_OK);
     status = krs_rendering_new(renderer, scene, purpose, &s.rendering);
     if (status != KRS_OK)
         print_message("%s\n", krs_renderer_message(renderer));
@@ -40,7 +40,7 @@ Scene scene_of(const char *text, KrsPurpose purpose)
 void scene_close(Scene s)
 {
     krs_rendering_free(s.rendering);
-    krs_state_free(s.frame);
+    krs_state_free(s.state);
     krs_scene_free(s.scene);
 }
 
@@ -58,7 +58,7 @@ static KrsHit wanted[MOST];
 #define AIMS   ((const double(*)[3])aims)
 void probe_device(Scene s, size_t count)
 {
-    KrsStatus status = krs_device_probe(s.rendering, s.frame, POINTS, count, found);
+    KrsStatus status = krs_device_probe(s.rendering, s.state, POINTS, count, found);
     if (status != KRS_OK)
         print_message("%s\n", krs_renderer_message(renderer));
     assert_int_equal(status, KRS_OK);
@@ -66,7 +66,7 @@ void probe_device(Scene s, size_t count)
 
 void cast_device(Scene s, size_t count, double farthest, double tolerance)
 {
-    KrsStatus status = krs_device_raycast(s.rendering, s.frame, POINTS, AIMS, count, farthest,
+    KrsStatus status = krs_device_raycast(s.rendering, s.state, POINTS, AIMS, count, farthest,
                                           tolerance, found);
     if (status != KRS_OK)
         print_message("%s\n", krs_renderer_message(renderer));
@@ -84,7 +84,7 @@ void points_agree(Scene s, size_t count, double size, double roughness)
             points[i][k] = (float)points[i][k];
     }
     probe_device(s, count);
-    assert_int_equal(krs_probe(s.frame, POINTS, count, wanted), KRS_OK);
+    assert_int_equal(krs_probe(s.state, POINTS, count, wanted), KRS_OK);
     for (size_t i = 0; i < count; i++) {
         double allowed = roughness * 0x1p-23 * (1 + length3(points[i]) + fabs(wanted[i].distance));
         assert_true(fabs(found[i].distance - wanted[i].distance) <= allowed);
@@ -116,7 +116,7 @@ static double contradiction(Scene s, size_t i, double farthest)
     for (int p = 0; p <= PLACES; p++)
         for (int k = 0; k < 3; k++)
             places[p][k] = points[i][k] + t * p / PLACES * unit[k];
-    assert_int_equal(krs_distance(s.frame, (const double(*)[3])places, PLACES + 1, there), KRS_OK);
+    assert_int_equal(krs_distance(s.state, (const double(*)[3])places, PLACES + 1, there), KRS_OK);
     for (int p = 0; p < PLACES; p++)
         worst = fmax(worst, -there[p]);
     if (found[i].hit)
@@ -131,7 +131,7 @@ static void aim_rays(Scene s, size_t count, double size)
         double target[3], distance;
         random_vector(&chance, size, points[i]);
         random_vector(&chance, 0.7 * size, target);
-        assert_int_equal(krs_distance(s.frame, POINTS + i, 1, &distance), KRS_OK);
+        assert_int_equal(krs_distance(s.state, POINTS + i, 1, &distance), KRS_OK);
         if (distance < 0.02)
             continue;
         for (int k = 0; k < 3; k++)

@@ -13,7 +13,7 @@
 
 typedef struct Scene {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
 } Scene;
 

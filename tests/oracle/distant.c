@@ -145,14 +145,14 @@ static double angle(Vec a, Vec b)
 }
 
 /* Sets the zone of the caller. */
-static void set_zone(const struct Form *form, KrsState *frame, double size, Vec middle)
+static void set_zone(const struct Form *form, KrsState *state, double size, Vec middle)
 {
     for (size_t i = 0; i < sizeof zones / sizeof *zones; i++) {
         const double *ball       = zones[i].ball;
         const double  zone[1][4] = {{middle.x + size * ball[0], middle.y + size * ball[1],
                                      middle.z + size * ball[2], size * ball[3]}};
         if (strcmp(zones[i].form, form->name) == 0)
-            assert_int_equal(krs_state_set_zones(frame, zone, 1), KRS_OK);
+            assert_int_equal(krs_state_set_zones(state, zone, 1), KRS_OK);
     }
 }
 
@@ -174,8 +174,8 @@ static void cast_rays(const struct Form *form, const Shot *shot, KrsHit *hits)
         memcpy(origins[i], &ray.origin, sizeof origins[i]);
         memcpy(directions[i], &ray.direction, sizeof directions[i]);
     }
-    set_zone(form, product.frame, 1, vec(0, 0, 0));
-    assert_int_equal(krs_raycast(product.frame, (const double(*)[3])origins,
+    set_zone(form, product.state, 1, vec(0, 0, 0));
+    assert_int_equal(krs_raycast(product.state, (const double(*)[3])origins,
                                  (const double(*)[3])directions, RAYS * PIXELS, HUGE_VAL, 1e-7,
                                  hits),
                      KRS_OK);
@@ -229,13 +229,13 @@ static KrsPicture *render(const Subject *subject, const Shot *shot, bool literal
                  away[]       = {shot->away.x, shot->away.y, shot->away.z};
     options.width             = width;
     if (!literal) {
-        assert_int_equal(krs_state_set(subject->product.frame, "s", &shot->size, 1), KRS_OK);
-        assert_int_equal(krs_state_set(subject->product.frame, "o", middle, 3), KRS_OK);
-        assert_int_equal(krs_state_set(subject->product.frame, "e", away, 3), KRS_OK);
-        assert_int_equal(krs_state_set(subject->product.frame, "f", &shot->fov, 1), KRS_OK);
+        assert_int_equal(krs_state_set(subject->product.state, "s", &shot->size, 1), KRS_OK);
+        assert_int_equal(krs_state_set(subject->product.state, "o", middle, 3), KRS_OK);
+        assert_int_equal(krs_state_set(subject->product.state, "e", away, 3), KRS_OK);
+        assert_int_equal(krs_state_set(subject->product.state, "f", &shot->fov, 1), KRS_OK);
     }
-    set_zone(subject->form, subject->product.frame, shot->size, shot->middle);
-    if (krs_render(subject->rendering, subject->product.frame, &options, &picture) != KRS_OK)
+    set_zone(subject->form, subject->product.state, shot->size, shot->middle);
+    if (krs_render(subject->rendering, subject->product.state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;
 }
@@ -282,10 +282,10 @@ static void ask_device(const Subject *subject, const Shot *shot, KrsHit *answers
         memcpy(origins[i], &eye, sizeof origins[i]);
         memcpy(directions[i], &ray.direction, sizeof directions[i]);
     }
-    assert_int_equal(krs_state_set(subject->product.frame, "s", &shot->size, 1), KRS_OK);
-    assert_int_equal(krs_state_set(subject->product.frame, "o", middle, 3), KRS_OK);
-    set_zone(subject->form, subject->product.frame, shot->size, shot->middle);
-    if (krs_device_raycast(subject->rendering, subject->product.frame, (const double(*)[3])origins,
+    assert_int_equal(krs_state_set(subject->product.state, "s", &shot->size, 1), KRS_OK);
+    assert_int_equal(krs_state_set(subject->product.state, "o", middle, 3), KRS_OK);
+    set_zone(subject->form, subject->product.state, shot->size, shot->middle);
+    if (krs_device_raycast(subject->rendering, subject->product.state, (const double(*)[3])origins,
                            (const double(*)[3])directions, PIXELS, HUGE_VAL, 0, answers) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
 }

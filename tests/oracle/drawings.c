@@ -139,7 +139,7 @@ static double distance_to(const Outline *outline, const double p[2])
     return nearest;
 }
 
-/* Of points that are not within `more` of the outline, how many are on the wrong side. */
+/* Counts the points on the wrong side, of those that are not within `more` of the outline. */
 static int count_wrong(const Drawn *of, const SvgFigure *figure, double more, Bench *bench)
 {
     Outline outline;

@@ -51,14 +51,14 @@ static KrsPicture *render_on(KrsRenderer *on, const KrsScene *scene)
         .samples    = 1,
         .integrator = KRS_INTEGRATOR_PREVIEW}; /* the planes are those of any */
     KrsRendering *rendering;
-    KrsState     *frame;
+    KrsState     *state;
     KrsPicture   *picture = NULL;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     if (krs_rendering_new(on, scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
-        krs_render(rendering, frame, &options, &picture) != KRS_OK)
+        krs_render(rendering, state, &options, &picture) != KRS_OK)
         print_message("# %s: %s\n", krs_renderer_device(on).name, krs_renderer_message(on));
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     assert_non_null(picture);
     return picture;
 }

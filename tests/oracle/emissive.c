@@ -158,9 +158,9 @@ static void a_ball_may_be_anywhere(void **state)
     path_fixture_set_all(&fixture, "at", -1, 1.5, 2);
     wrong += !is_lit_by("tiny", 50, sent_by_ball(-1, 1.5, 2, 0.02), "a ball elsewhere");
     path_fixture_set_all(&fixture, "at", 0.4, 2.2, 0.3);
-    assert_int_equal(krs_state_set_time(fixture.product.frame, 2.5), KRS_OK);
+    assert_int_equal(krs_state_set_time(fixture.product.state, 2.5), KRS_OK);
     wrong += !is_lit_by("late", 50, sent_by_ball(0, 1.5, 2.5, 0.02), "a ball at another time");
-    assert_int_equal(krs_state_set_time(fixture.product.frame, 0), KRS_OK);
+    assert_int_equal(krs_state_set_time(fixture.product.state, 0), KRS_OK);
     assert_int_equal(wrong, 0);
 }
 

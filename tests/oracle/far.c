@@ -145,12 +145,12 @@ static void rays_end_at_roots(void **state)
     KrsRendering      *rendering;
     static KrsHit      hits[RAYS];
     draw_rays(form, &random);
-    assert_int_equal(krs_raycast(product.frame, FROM, DIRECTIONS, RAYS, 1e6, 1e-3, hits), KRS_OK);
+    assert_int_equal(krs_raycast(product.state, FROM, DIRECTIONS, RAYS, 1e6, 1e-3, hits), KRS_OK);
     assert_int_equal(count_wrong(form, hits, "the host"), 0);
     assert_int_equal(krs_rendering_new(renderer, product.scene, KRS_FOR_QUESTIONS, &rendering),
                      KRS_OK);
     assert_int_equal(
-        krs_device_raycast(rendering, product.frame, FROM, DIRECTIONS, RAYS, 1e6, 1e-3, hits),
+        krs_device_raycast(rendering, product.state, FROM, DIRECTIONS, RAYS, 1e6, 1e-3, hits),
         KRS_OK);
     assert_int_equal(count_wrong(form, hits, "the device"), 0);
     krs_rendering_free(rendering);
@@ -199,7 +199,7 @@ static void floors_are_plain(void **state)
     KrsPicture      *picture = NULL;
     int              floors = 0, strange = 0, dark = 0, tilted = 0, shaded = 0;
     if (krs_rendering_new(renderer, product.scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
-        krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
+        krs_render(rendering, product.state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int k = 0; k < WIDTH * HEIGHT; k++) {
         Line         ray   = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);

@@ -217,7 +217,7 @@ static double first_root(const Solid *solid, Vec origin, Vec direction)
     return INFINITY;
 }
 
-/* Of rays that pass the solid by less than its smallest features nothing is said. */
+/* Nothing is said of rays that pass the solid by less than its smallest features. */
 static void rays_end_at_roots(void **state)
 {
     const double TOLERANCE = 1e-5;

@@ -17,7 +17,7 @@ static KrsMesh *mesh_of_text(const char *text, bool even)
     Product        product = product_compile(text);
     KrsMeshOptions options = {.even = even};
     KrsMesh       *mesh;
-    assert_int_equal(krs_mesh(product.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(product.state, &options, &mesh), KRS_OK);
     product_free(&product);
     check_closed(mesh);
     return mesh;

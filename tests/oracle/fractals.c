@@ -341,15 +341,15 @@ static void far_away_is_far(void **state)
     }
 }
 
-/* ---- what frames may change ---- */
+/* ---- what states may change ---- */
 
 static void set_parameter(Product *product, const char *name, const double *values, size_t count)
 {
-    assert_int_equal(krs_state_set(product->frame, name, values, count), KRS_OK);
+    assert_int_equal(krs_state_set(product->state, name, values, count), KRS_OK);
 }
 
 /* Iterations and c of frame time give the same solid as constants. */
-static void frames_may_change_them(void **state)
+static void states_may_change_them(void **state)
 {
     (void)state;
     Random  random = {.state = 5};
@@ -387,7 +387,7 @@ static void color_at(const Product *product, Vec p, double color[3])
 {
     double point[1][3] = {{p.x, p.y, p.z}};
     KrsHit hit;
-    assert_int_equal(krs_probe(product->frame, (const double(*)[3])point, 1, &hit), KRS_OK);
+    assert_int_equal(krs_probe(product->state, (const double(*)[3])point, 1, &hit), KRS_OK);
     memcpy(color, hit.color, sizeof hit.color);
 }
 
@@ -483,7 +483,7 @@ int main(void)
         cmocka_unit_test(julia_bounds_are_not_steep),
         cmocka_unit_test(mandelbulbs_are_measured),
         cmocka_unit_test(far_away_is_far),
-        cmocka_unit_test(frames_may_change_them),
+        cmocka_unit_test(states_may_change_them),
         cmocka_unit_test(palettes_mix),
         cmocka_unit_test(traps_are_traps),
         cmocka_unit_test(fractals_can_be_cut),

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of float32, and of the sums here. */
+/* The rounding of float32, and of the sums here. */
 static const double ROUNDING = 1e-6;
 
 /* ---- all samples of a grid ---- */
@@ -74,7 +74,7 @@ static Samples take_samples(const Product *product, const KrsGridOptions *option
     KrsGridOptions first   = *options;
     first.aligned          = false;
     first.band             = options->aligned ? 7 : options->band; /* set below */
-    assert_int_equal(krs_grid_new(product->frame, &first, &grid), KRS_OK);
+    assert_int_equal(krs_grid_new(product->state, &first, &grid), KRS_OK);
     if (options->aligned)
         assert_int_equal(krs_grid_set_band(grid, options->band, true), KRS_OK);
     samples.shape = krs_grid_shape(grid);
@@ -318,7 +318,7 @@ static void judge_by_product(const Samples *samples, size_t number, Vec place, v
         assert_true(fabs(distance) >= band);
 }
 
-/* Of random solids, whose insides are known by the meaning of their words alone. */
+/* Random solids are compared, whose insides are known by the meaning of their words alone. */
 static void all_samples_are_those_of_single_points(void **state)
 {
     Random random = {7};
@@ -534,20 +534,20 @@ static void nonsense_is_refused(void **state)
                                 {.cell = 0.1, .exact = true, .error = 1e-12}};
     KrsGrid       *grid;
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
-        assert_int_equal(krs_grid_new(product.frame, &options[i], &grid), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_grid_new(product.state, &options[i], &grid), KRS_BAD_ARGUMENT);
         assert_null(grid);
     }
     KrsGridOptions usual = {.cell = 0.1};
-    assert_int_equal(krs_grid_new(endless.frame, &usual, &grid), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_grid_new(endless.state, &usual, &grid), KRS_BAD_ARGUMENT);
     usual = (KrsGridOptions){.cell = 0.1, .within = true, .low = {-1, -1, -1}, .high = {1, 1, 1}};
-    assert_int_equal(krs_grid_new(endless.frame, &usual, &grid), KRS_OK);
+    assert_int_equal(krs_grid_new(endless.state, &usual, &grid), KRS_OK);
     assert_int_equal(krs_grid_set_band(grid, NAN, false), KRS_BAD_ARGUMENT);
     krs_grid_free(grid);
     usual = (KrsGridOptions){.cell = 0.001, .memory_limit = 100000};
-    assert_int_equal(krs_grid_new(product.frame, &usual, &grid), KRS_OUT_OF_MEMORY);
+    assert_int_equal(krs_grid_new(product.state, &usual, &grid), KRS_OUT_OF_MEMORY);
     usual.cell         = 100;
     usual.memory_limit = 0;
-    assert_int_equal(krs_grid_new(product.frame, &usual, &grid), KRS_OK);
+    assert_int_equal(krs_grid_new(product.state, &usual, &grid), KRS_OK);
     krs_grid_free(grid);
     krs_grid_free(NULL);
     product_free(&product);

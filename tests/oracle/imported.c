@@ -65,10 +65,10 @@ void imported_distances(const char *path, const char *text, double (*points)[3],
 {
     Imported  result = imported(path, text);
     KrsScene *scene  = compiled(path, text, &result);
-    KrsState *frame;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_distance(frame, (const double(*)[3])points, count, distances), KRS_OK);
-    krs_state_free(frame);
+    KrsState *state;
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_distance(state, (const double(*)[3])points, count, distances), KRS_OK);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 
@@ -77,12 +77,12 @@ void imported_hits(const char *path, const char   *text, double (*origins)[3],
 {
     Imported  result = imported(path, text);
     KrsScene *scene  = compiled(path, text, &result);
-    KrsState *frame;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions,
+    KrsState *state;
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_raycast(state, (const double(*)[3])origins, (const double(*)[3])directions,
                                  count, farthest, 1e-9, hits),
                      KRS_OK);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 

@@ -373,7 +373,7 @@ static void what_cannot_be_translated_is_said_with_its_line(void **state)
                    "a.csg:1: its transform flattens");
 }
 
-/* Of three parts two are left; the scene and the words about it name the third. */
+/* Two of three parts are left; the scene and the words about it name the third. */
 static void what_is_left_out_is_named(void **state)
 {
     static const char parts[] =

@@ -125,16 +125,16 @@ static double seen_at(const char *pov, const double eye[3], const double towards
     Imported   result  = imported("view.pov", pov);
     KrsOptions options = {0};
     KrsScene  *scene   = NULL;
-    KrsState  *frame   = NULL;
+    KrsState  *state   = NULL;
     KrsHit     hit;
     if (result.status != KRS_OK || krs_compile_text(result.scene, strlen(result.scene), "view.krs",
                                                     &options, &scene) != KRS_OK)
         fail_msg("%s\n%s", result.refusal, result.scene);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_raycast(frame, (const double(*)[3])eye, (const double(*)[3])towards, 1,
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_raycast(state, (const double(*)[3])eye, (const double(*)[3])towards, 1,
                                  1000, 1e-6, &hit),
                      KRS_OK);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     return hit.hit ? hit.t : INFINITY;
 }

@@ -94,7 +94,7 @@ static Vec mirrored(Half mirror, Vec p)
     return vec_sub(p, vec_scale(2 * half_excess(mirror, p), mirror.normal));
 }
 
-/* Of the set after so many mirrors: what the last one keeps, and its image. */
+/* Returns the value of the set after so many mirrors: what the last one keeps, and its image. */
 static double value_of_sequence(const KnownSolid *solid, int mirrors, Vec p)
 {
     if (mirrors == 0)

@@ -20,7 +20,7 @@ void        known_solid_free(KnownSolid *solid);
 
 /* Its expression. */
 void known_solid_write(const KnownSolid *solid, SceneText *text);
-/* Of `user`, a KnownSolid: below 0 inside. */
+/* Returns the value of `user`, a KnownSolid: below 0 inside. */
 double known_solid_value(const void *user, Vec point);
 
 #endif

@@ -122,13 +122,13 @@ static void close_fixture(Fixture *fixture)
 static void set_numbers(Fixture *fixture, const Setting *setting)
 {
     const Room *room  = setting->room;
-    KrsState   *frame = fixture->product.frame;
+    KrsState   *state = fixture->product.state;
     Vec         at    = setting->light;
     for (int i = 0; i < ROOM_NUMBERS && room->numbers[i].high > room->numbers[i].low; i++)
         assert_int_equal(
-            krs_state_set(frame, (char[]){(char)('a' + i), 0}, &setting->numbers[i], 1), KRS_OK);
-    assert_int_equal(krs_state_set(frame, "at", (double[]){at.x, at.y, at.z}, 3), KRS_OK);
-    assert_int_equal(krs_state_set(frame, "wide", &setting->wide, 1), KRS_OK);
+            krs_state_set(state, (char[]){(char)('a' + i), 0}, &setting->numbers[i], 1), KRS_OK);
+    assert_int_equal(krs_state_set(state, "at", (double[]){at.x, at.y, at.z}, 3), KRS_OK);
+    assert_int_equal(krs_state_set(state, "wide", &setting->wide, 1), KRS_OK);
 }
 
 static KrsPicture *take_picture(Fixture *fixture, KrsShadows shadows, uint32_t samples)
@@ -139,7 +139,7 @@ static KrsPicture *take_picture(Fixture *fixture, KrsShadows shadows, uint32_t s
                                 .shadows      = shadows,
                                 .no_occlusion = true};
     KrsPicture      *picture;
-    if (krs_render(fixture->rendering, fixture->product.frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->product.state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
     return picture;
@@ -163,7 +163,7 @@ static bool is_inside(int k)
     return x >= edge && y >= edge && x < WIDTH - edge && y < HEIGHT - edge;
 }
 
-/* Of means of 5x5 pixels, in parts of the mean light. */
+/* Returns how wrong means of 5x5 pixels are, in parts of the mean light. */
 static double mean_wrong(const KrsPicture *picture, int channel, const double *right, double mean)
 {
     double off[PIXELS], sum = 0;

@@ -199,7 +199,7 @@ static const Map *letter_map(const Elementary *l)
     }
 }
 
-/* Of letters from..to - 1, put together in any order of brackets. */
+/* Multiplies the letters from..to - 1, put together in any order of brackets. */
 static const Map *word_map(const Word *word, int from, int to)
 {
     if (to - from == 1)

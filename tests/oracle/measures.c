@@ -15,7 +15,7 @@
 static KrsMeasures *measure_with(const Product *product, KrsMeasureOptions options)
 {
     KrsMeasures *measures;
-    assert_int_equal(krs_measure(product->frame, &options, &measures), KRS_OK);
+    assert_int_equal(krs_measure(product->state, &options, &measures), KRS_OK);
     return measures;
 }
 
@@ -300,7 +300,7 @@ static void solids_hold_as_many_points(void **state)
         for (int p = 0; p < POINTS; p++)
             for (int k = 0; k < 3; k++)
                 points[p][k] = random_between(&random, m->low[k], m->high[k]);
-        krs_distance(product.frame, (const double(*)[3])points, POINTS, distances);
+        krs_distance(product.state, (const double(*)[3])points, POINTS, distances);
         for (int p = 0; p < POINTS; p++)
             if (distances[p] <= 0) {
                 inside++;
@@ -329,7 +329,7 @@ static void options_are_kept(void **state)
         ".move([5, 0, 0]); show cube; show half_space([0, 1, 0], -1);");
     KrsMeasures *m;
     (void)state;
-    assert_int_equal(krs_measure(product.frame, NULL, &m), KRS_BAD_ARGUMENT); /* it has no end */
+    assert_int_equal(krs_measure(product.state, NULL, &m), KRS_BAD_ARGUMENT); /* it has no end */
     assert_null(m);
     m = measure_with(&product, (KrsMeasureOptions){.component = 2});
     is_near(m->volume, 8, 1e-9, "of a component");
@@ -347,7 +347,7 @@ static void options_are_kept(void **state)
                                  {.component = 1, .up = {NAN, 0, 0}},
                                  {.component = 1, .error = -1}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-        assert_int_equal(krs_measure(product.frame, &wrong[i], &m), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_measure(product.state, &wrong[i], &m), KRS_BAD_ARGUMENT);
     product_free(&product);
     product = product_compile("show intersection(sphere(1), sphere(1).move([9, 0, 0]));");
     m       = measure_with(&product, (KrsMeasureOptions){0});
@@ -369,7 +369,7 @@ static void work_can_be_stopped(void **state)
     (void)state;
     for (double part = 0; part < 1; part += 0.24) {
         KrsMeasures *m;
-        assert_int_equal(krs_measure(product.frame,
+        assert_int_equal(krs_measure(product.state,
                                      &(KrsMeasureOptions){.progress = stop_later, .user = &part},
                                      &m),
                          KRS_INTERRUPTED);

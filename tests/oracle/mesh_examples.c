@@ -81,18 +81,18 @@ static Example open_example(const char *path, const Row *row)
     e.options.within = true;
     e.options.error  = row->error;
     assert_int_equal(krs_compile_file(path, NULL, &e.product.scene), KRS_OK);
-    assert_int_equal(krs_state_new(e.product.scene, &e.product.frame), KRS_OK);
+    assert_int_equal(krs_state_new(e.product.scene, &e.product.state), KRS_OK);
     look_at_components(&e);
     return e;
 }
 
-/* Of what has no end there is no mesh without a box. */
+/* What has no end has no mesh without a box. */
 static void check_refusal(const Example *e)
 {
     KrsMeshOptions options = {.error = e->options.error};
     KrsMesh       *mesh;
     if (e->endless)
-        assert_int_equal(krs_mesh(e->product.frame, &options, &mesh), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_mesh(e->product.state, &options, &mesh), KRS_BAD_ARGUMENT);
 }
 
 static void judge(const Row *row, const Example *e, const KrsMesh *mesh)
@@ -139,7 +139,7 @@ static void try_example(const char *path)
     KrsMesh   *mesh;
     e.options.progress = report_progress;
     e.options.user     = &e;
-    assert_int_equal(krs_mesh(e.product.frame, &e.options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(e.product.state, &e.options, &mesh), KRS_OK);
     e.seconds = now() - e.start;
     check_refusal(&e);
     judge(row, &e, mesh);

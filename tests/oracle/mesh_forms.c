@@ -68,7 +68,8 @@ static double value_of_gyroid(const void *user, Vec p)
                 fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))) - 0.5);
 }
 
-/* Of n levels: no two of the first n digits to base 3 at a place are 1.  Twenty of 27 cubes are left each time. */
+/* Returns the value of a sponge of n levels: no two of the first n digits to base 3 at a place are 1.  Twenty
+   of 27 cubes are left each time. */
 static double value_of_sponge(Vec p, int levels)
 {
     double at[3] = {p.x + 0.5, p.y + 0.5, p.z + 0.5};
@@ -123,7 +124,7 @@ static void check_form(const Form *form, bool even)
     Product        product = product_compile(form->text);
     KrsMeshOptions options = {.error = form->error, .even = even};
     KrsMesh       *mesh;
-    assert_int_equal(krs_mesh(product.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(product.state, &options, &mesh), KRS_OK);
     check_closed(mesh);
     if (!even)
         leave_mesh(mesh, form->name);

@@ -31,7 +31,7 @@ static KrsMesh *mesh_by(const Product *product, double error, bool draft)
                               .low    = {-SIDE, -SIDE, -SIDE},
                               .high   = {SIDE, SIDE, SIDE}};
     KrsMesh       *mesh;
-    assert_int_equal(krs_mesh(product->frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(product->state, &options, &mesh), KRS_OK);
     return mesh;
 }
 
@@ -189,7 +189,7 @@ static bool open_scene(const SceneText *text, Product *product)
     *product = (Product){0};
     if (krs_compile_text(text->bytes, text->length, "oracle.krs", NULL, &product->scene) != KRS_OK)
         return false;
-    assert_int_equal(krs_state_new(product->scene, &product->frame), KRS_OK);
+    assert_int_equal(krs_state_new(product->scene, &product->state), KRS_OK);
     return true;
 }
 

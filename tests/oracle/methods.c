@@ -263,7 +263,7 @@ const Method methods[] = {
      "; mobius invert([-0.3, -2.4, 0.2], 1.6) * rotate([0, 1, 0], 0.5);"
      " reflect plane([1, 0, 0], 0.1); }",
      undo_mobius, 0, false, INVERTS},
-    /* Of figures only, or no shapes. */
+    /* These are methods of figures only, or make no shapes. */
     {"extrude", NULL, NULL, NULL, 0, false, ""},
     {"revolve", NULL, NULL, NULL, 0, false, ""},
     {"distance", NULL, NULL, NULL, 0, false, ""},

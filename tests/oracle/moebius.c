@@ -284,7 +284,7 @@ static void parameters_move_poles(void **state)
         double t     = fmin(-0.5 + 0.05 * i, 0.9);
         Chain  chain = moving_chain(t);
         Cloud  cloud = chain_cloud(&chain, 2000, &random);
-        assert_int_equal(krs_state_set(product.frame, "t", &t, 1), KRS_OK);
+        assert_int_equal(krs_state_set(product.state, "t", &t, 1), KRS_OK);
         check_box(&product, &cloud, &tally);
         for (int k = 0; k < 200; k++)
             check_point(&product, &chain, &cloud,
@@ -308,7 +308,7 @@ static void pole_leaves_the_set(void **state)
     (void)state;
     for (int i = 0; i <= 29; i++) {
         double t = fmin(0.1 + 0.1 * i, 3), d = t * t - 0.25;
-        assert_int_equal(krs_state_set(product.frame, "t", &t, 1), KRS_OK);
+        assert_int_equal(krs_state_set(product.state, "t", &t, 1), KRS_OK);
         for (int k = 0; k < 300 && fabs(d) > 1e-6; k++) {
             Vec    p        = k ? random_in_cube(&random, k % 2 ? 5 : 1) : vec(t, 0, 0);
             double truth    = vec_distance(p, vec(t - t / d, 0, 0)) - 0.5 / fabs(d);

@@ -29,7 +29,7 @@ typedef struct Seen {
     double visible; /* the part of the light that is seen */
 } Seen;
 
-/* Of a random choice of numbers. */
+/* Chooses a setting at random. */
 Setting setting_choose(const Room *room, Random *random);
 
 /* With `rays` to points of the light, which divide its disc evenly, turned at random. */

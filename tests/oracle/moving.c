@@ -2,11 +2,11 @@
  * Expressions that change ever faster with time, or with a parameter without limits, against
  * themselves.
  *
- * No constant bounds the slope of sin(time * x), so the host finds it for each frame.  Each solid
+ * No constant bounds the slope of sin(time * x), so the host finds it for each state.  Each solid
  * is a formula written twice, as a scene and as C: the judge tries to refute its distance at many
  * times, slow and fast, and the slope in the parameter block is held against the largest
  * difference quotient of the C formula: never below it and, unless time flies, not far above.
- * The same distances over the slope of another frame are refuted: a slot that is not refreshed
+ * The same distances over the slope of another state are refuted: a slot that is not refreshed
  * would be noticed.
  */
 #include "tests/oracle/judge.h"
@@ -14,14 +14,15 @@
 
 #include <stdio.h>
 
-typedef struct Frame {
+typedef struct Moment {
     double time, k;
-} Frame;
-static const Frame frames[] = {{0, 1}, {0.3, -2}, {1, 0}, {-7, 1.5}, {40, 9}, {1e3, -30}, {1e5, 2}};
-enum { FRAMES = sizeof frames / sizeof *frames, FAST = 4 };
+} Moment;
+static const Moment moments[] = {{0, 1},  {0.3, -2},  {1, 0},  {-7, 1.5},
+                                 {40, 9}, {1e3, -30}, {1e5, 2}};
+enum { MOMENTS = sizeof moments / sizeof *moments, FAST = 4 };
 
 /* The expression of which the slot has the slope. */
-typedef double Formula(Vec p, Frame f);
+typedef double Formula(Vec p, Moment f);
 
 typedef struct Solid {
     const char *name, *text;
@@ -31,21 +32,21 @@ typedef struct Solid {
     double      slope_factor;    /* how many times too large the slope may be, up to FAST */
 } Solid;
 
-static double wobble(Vec p, Frame f) { return vec_length(p) - 1 + 0.1 * sin(p.x * f.time); }
-static double sheet(Vec p, Frame f) { return p.y - 0.2 * sin(f.time * p.x) * cos(p.z); }
-static double product_wave(Vec p, Frame f) { return p.z + 0.3 * sin(p.x * p.y * f.time); }
-static double rod(Vec p, Frame f)
+static double wobble(Vec p, Moment f) { return vec_length(p) - 1 + 0.1 * sin(p.x * f.time); }
+static double sheet(Vec p, Moment f) { return p.y - 0.2 * sin(f.time * p.x) * cos(p.z); }
+static double product_wave(Vec p, Moment f) { return p.z + 0.3 * sin(p.x * p.y * f.time); }
+static double rod(Vec p, Moment f)
 {
     return hypot(p.x, p.y) - 0.7 + 0.2 * sin(f.k * f.k * p.z + f.time);
 }
-static double bowl(Vec p, Frame f)
+static double bowl(Vec p, Moment f)
 {
     double side = fmax(fmax(fabs(p.x), fabs(p.y)), fabs(p.z)) - 0.9;
     return fmax(p.y - f.time * p.x * p.x, side);
 }
-static double bump(Vec p, Frame f) { return sin(f.time * p.x) + cos(f.k * p.z); }
-static double bumpy(Vec p, Frame f) { return vec_length(p) - 1 - 0.15 * bump(p, f); }
-static double mirrored(Vec p, Frame f)
+static double bump(Vec p, Moment f) { return sin(f.time * p.x) + cos(f.k * p.z); }
+static double bumpy(Vec p, Moment f) { return vec_length(p) - 1 - 0.15 * bump(p, f); }
+static double mirrored(Vec p, Moment f)
 {
     return wobble(vec(p.x > 0.5 ? 1 - p.x : p.x, p.y, p.z), f);
 }
@@ -72,7 +73,7 @@ enum { SOLIDS = sizeof solids / sizeof *solids };
 
 typedef struct Asked {
     const Solid *solid;
-    Frame        frame;
+    Moment       moment;
 } Asked;
 
 static bool inside(const void *user, Vec p)
@@ -80,16 +81,16 @@ static bool inside(const void *user, Vec p)
     const Asked *asked = user;
     const Solid *solid = asked->solid;
     double       side  = fmax(fmax(fabs(p.x), fabs(p.y)), fabs(p.z)) - solid->cut;
-    double       value = (solid->solid ? solid->solid : solid->formula)(p, asked->frame);
+    double       value = (solid->solid ? solid->solid : solid->formula)(p, asked->moment);
     return value <= 0 && (solid->cut == 0 || side <= 0);
 }
 
-static void set_frame(const Product *product, Frame frame)
+static void set_moment(const Product *product, Moment moment)
 {
     KrsParameter k;
     if (krs_parameter(product->scene, 0, &k) == KRS_OK)
-        assert_int_equal(krs_state_set(product->frame, "k", &frame.k, 1), KRS_OK);
-    assert_int_equal(krs_state_set_time(product->frame, frame.time), KRS_OK);
+        assert_int_equal(krs_state_set(product->state, "k", &moment.k, 1), KRS_OK);
+    assert_int_equal(krs_state_set_time(product->state, moment.time), KRS_OK);
 }
 
 /* What the host has found; there is one in each scene. */
@@ -100,7 +101,7 @@ static double slope_in_block(const Product *product)
     assert_int_equal(krs_state_slope_count(product->scene), 1);
     assert_int_equal(krs_state_slope(product->scene, 0, &slope), KRS_OK);
     assert_in_range(krs_parameter_slots(product->scene), slope.slot + 1, 8);
-    krs_state_parameters(product->frame, block);
+    krs_state_parameters(product->state, block);
     return block[slope.slot][0];
 }
 
@@ -108,63 +109,64 @@ static void is_safe(void **state)
 {
     const Solid *solid   = *state;
     Product      product = product_compile(solid->text);
-    for (int i = 0; i < FRAMES; i++) {
-        Asked asked = {solid, frames[i]};
+    for (int i = 0; i < MOMENTS; i++) {
+        Asked asked = {solid, moments[i]};
         Trial trial = {product_field, &product, inside, &asked, vec(0, 0, 0), solid->half, 200, 17};
-        set_frame(&product, frames[i]);
+        set_moment(&product, moments[i]);
         judge_acquits(&trial, solid->name);
     }
     product_free(&product);
 }
 
-/* Largest difference quotient, over steps that are short for the frame, where the expression
+/* Largest difference quotient, over steps that are short for the moment, where the expression
    counts. */
-static double steepest(const Solid *solid, Frame frame, double half)
+static double steepest(const Solid *solid, Moment moment, double half)
 {
     Random random = {31};
-    double most = 0, step = 1e-5 / (1 + fabs(frame.time) + frame.k * frame.k);
+    double most = 0, step = 1e-5 / (1 + fabs(moment.time) + moment.k * moment.k);
     for (int i = 0; i < 4000; i++) {
         Vec    p = random_in_cube(&random, half), direction = vec_scale(step, random_unit(&random));
         Vec    gradient;
-        double at = solid->formula(p, frame);
+        double at = solid->formula(p, moment);
         if (i % 2) { /* up the gradient */
-            gradient = vec(solid->formula(vec(p.x + step, p.y, p.z), frame) - at,
-                           solid->formula(vec(p.x, p.y + step, p.z), frame) - at,
-                           solid->formula(vec(p.x, p.y, p.z + step), frame) - at);
+            gradient = vec(solid->formula(vec(p.x + step, p.y, p.z), moment) - at,
+                           solid->formula(vec(p.x, p.y + step, p.z), moment) - at,
+                           solid->formula(vec(p.x, p.y, p.z + step), moment) - at);
             if (vec_length(gradient) > 0)
                 direction = vec_scale(step, vec_unit(gradient));
         }
-        most = fmax(most, fabs(solid->formula(vec_add(p, direction), frame) - at) /
+        most = fmax(most, fabs(solid->formula(vec_add(p, direction), moment) - at) /
                               vec_length(direction));
     }
     return most;
 }
 
-static void slopes_are_those_of_the_frame(void **state)
+static void slopes_are_those_of_the_state(void **state)
 {
     const Solid *solid   = *state;
     Product      product = product_compile(solid->text);
-    for (int i = 0; i < FRAMES; i++) {
-        set_frame(&product, frames[i]);
+    for (int i = 0; i < MOMENTS; i++) {
+        set_moment(&product, moments[i]);
         double half  = solid->cut > 0 ? solid->cut : fmin(solid->half, 1);
-        double found = slope_in_block(&product), least = steepest(solid, frames[i], half);
+        double found = slope_in_block(&product), least = steepest(solid, moments[i], half);
         bool   tight = i > FAST || found <= solid->slope_factor * least + 1e-4;
         if (!(found >= least * (1 - 1e-4) && tight))
-            fail_msg("%s at time %g: slope %g, seen %g", solid->name, frames[i].time, found, least);
+            fail_msg("%s at time %g: slope %g, seen %g", solid->name, moments[i].time, found,
+                     least);
     }
     product_free(&product);
 }
 
-/* Distances of one frame, divided by the slope of another. */
+/* Distances of one moment, divided by the slope of another. */
 static void stale_slopes_are_refuted(void **state)
 {
     const Solid *solid   = *state;
     Product      product = product_compile(solid->text);
-    set_frame(&product, frames[0]);
+    set_moment(&product, moments[0]);
     double stale = fmax(slope_in_block(&product), 1);
-    set_frame(&product, frames[FAST]);
+    set_moment(&product, moments[FAST]);
     double fresh = fmax(slope_in_block(&product), 1);
-    Asked  asked = {solid, frames[FAST]};
+    Asked  asked = {solid, moments[FAST]};
     /* What is displaced is divided by the sum of both slopes. */
     double       factor = solid->formula == bump ? (1 + 0.15 * fresh) / (1 + 0.15 * stale)
                                                  : fresh / stale;
@@ -183,7 +185,7 @@ int main(void)
         const char        *what;
         CMUnitTestFunction test;
     } kinds[] = {{"is safe", is_safe},
-                 {"has the slope of the frame", slopes_are_those_of_the_frame},
+                 {"has the slope of the moment", slopes_are_those_of_the_state},
                  {"would show a stale slope", stale_slopes_are_refuted}};
     enum { KINDS = sizeof kinds / sizeof *kinds };
     struct CMUnitTest tests[KINDS * SOLIDS];
@@ -194,5 +196,5 @@ int main(void)
         tests[i] = (struct CMUnitTest){names[i], kinds[i % KINDS].test, NULL, NULL,
                                        (void *)(uintptr_t)solid};
     }
-    return _cmocka_run_group_tests("slopes of frames", tests, KINDS * SOLIDS, NULL, NULL);
+    return _cmocka_run_group_tests("slopes of states", tests, KINDS * SOLIDS, NULL, NULL);
 }

@@ -159,7 +159,7 @@ static void judge_picture(const char *name, const Case *c, const Product *produc
     KrsPicture      *picture = NULL;
     Verdict          v       = {0};
     if (krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
-        krs_render(rendering, product->frame, &options, &picture) != KRS_OK)
+        krs_render(rendering, product->state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int k = 0; k < PIXELS; k++) {
         const float *at = &picture->position[3 * k], *n = &picture->normal[3 * k];
@@ -187,11 +187,11 @@ static void judge_questions(const char *name, const Case *c, const Product *prod
         }
     const double(*from)[3]    = (const double(*)[3])origins,
           (*ray_direction)[3] = (const double(*)[3])directions;
-    assert_int_equal(krs_raycast(product->frame, from, ray_direction, PIXELS, 1e3, 0, hits[0]),
+    assert_int_equal(krs_raycast(product->state, from, ray_direction, PIXELS, 1e3, 0, hits[0]),
                      KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_QUESTIONS, &rendering),
                      KRS_OK);
-    assert_int_equal(krs_device_raycast(rendering, product->frame, from, ray_direction, PIXELS, 1e3,
+    assert_int_equal(krs_device_raycast(rendering, product->state, from, ray_direction, PIXELS, 1e3,
                                         1e-3 * c->radius, hits[1]),
                      KRS_OK);
     krs_rendering_free(rendering);
@@ -252,7 +252,7 @@ static void open_surfaces_cast_shadows(void **state)
     int              dark = 0, wrong = 0, edge = 0;
     bool             before = false;
     if (krs_rendering_new(renderer, product.scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
-        krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
+        krs_render(rendering, product.state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int k = 0; k < PIXELS; k++) {
         const float *color = &picture->color[4 * k];
@@ -306,7 +306,7 @@ static void mirrors_show_the_side(void **state)
         if (krs_rendering_new(renderer, product.scene,
                               integrator == 0 ? KRS_FOR_PICTURES : KRS_FOR_PATHS,
                               &rendering) != KRS_OK ||
-            krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
+            krs_render(rendering, product.state, &options, &picture) != KRS_OK)
             fail_msg("%s", krs_renderer_message(renderer));
         for (int k = 0; k < PIXELS; k++) {
             const float *color = &picture->color[4 * k];
@@ -426,9 +426,9 @@ static void sides_follow_the_open_surface(void **state)
         const double  way[1][3] = {{rows[i].direction.x, rows[i].direction.y, rows[i].direction.z}};
         assert_int_equal(krs_rendering_new(renderer, product.scene, KRS_FOR_QUESTIONS, &rendering),
                          KRS_OK);
-        assert_int_equal(krs_raycast(product.frame, origin, way, 1, 100, 1e-6, &hits[0]), KRS_OK);
+        assert_int_equal(krs_raycast(product.state, origin, way, 1, 100, 1e-6, &hits[0]), KRS_OK);
         assert_int_equal(
-            krs_device_raycast(rendering, product.frame, origin, way, 1, 100, 1e-4, &hits[1]),
+            krs_device_raycast(rendering, product.state, origin, way, 1, 100, 1e-4, &hits[1]),
             KRS_OK);
         for (int device = 0; device < 2; device++)
             if (!hits[device].hit || (hits[device].color[0] > 0.5) != rows[i].front)

@@ -317,7 +317,7 @@ static void blends_are_quadratic_by_default(void **state)
 /* ---- parameters and time ---- */
 
 /* Setting a parameter or the time is the same as writing the number. */
-static void frames_are_scenes(void **state)
+static void states_are_scenes(void **state)
 {
     (void)state;
     Product moving = product_format("%sparam r = 0.1 in [0.05, 0.6]; param shift = [0, 0, 0];\n"
@@ -328,10 +328,10 @@ static void frames_are_scenes(void **state)
     for (int set = 0; set < 6; set++) {
         double r = random_between(&random, 0.05, 0.6), time = random_between(&random, -4, 4);
         Vec    v = random_in_cube(&random, 1);
-        assert_int_equal(krs_state_set(moving.frame, "r", &r, 1), KRS_OK);
+        assert_int_equal(krs_state_set(moving.state, "r", &r, 1), KRS_OK);
         const double shift[3] = {v.x, v.y, v.z};
-        assert_int_equal(krs_state_set(moving.frame, "shift", shift, 3), KRS_OK);
-        assert_int_equal(krs_state_set_time(moving.frame, time), KRS_OK);
+        assert_int_equal(krs_state_set(moving.state, "shift", shift, 3), KRS_OK);
+        assert_int_equal(krs_state_set_time(moving.state, time), KRS_OK);
         Product still = product_format("%sshow union(a.move([%.17g, %.17g, %.17g]),"
                                        " b.rotate([0, 1, 0], %.17g), blend: %.17g);",
                                        prelude, v.x, v.y, v.z, time, r);
@@ -343,8 +343,8 @@ static void frames_are_scenes(void **state)
         product_free(&still);
     }
     double too_large = 0.7;
-    assert_int_equal(krs_state_set(moving.frame, "r", &too_large, 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_state_set(moving.frame, "s", &too_large, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(moving.state, "r", &too_large, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set(moving.state, "s", &too_large, 1), KRS_BAD_ARGUMENT);
     product_free(&moving);
 }
 
@@ -439,9 +439,9 @@ static void normals_are_gradients(void **state)
 
 static bool is_negative(const void *product, Vec p) { return product_distance(product, p) <= 0; }
 
-/* Of copies, the nearer ones are looked at; which those are changes in the middles of cells and at
-   their walls.  Where a distance is far below the true one on one side only, it must not jump
-   there: an offset would have a wall. */
+/* Copies are compared with the nearer ones; which those are changes in the middles of cells and at their walls.
+   Where a distance is far below the true one on one side only, it must not jump there: an offset would have a
+   wall. */
 static void copies_of_bounds_are_steady(void **state)
 {
     static const char *const shapes[] = {
@@ -483,7 +483,7 @@ int main(void)
         tests[count++] = (struct CMUnitTest){blends[i].kind, blend_follows_its_formula, NULL, NULL,
                                              (void *)(uintptr_t)&blends[i]};
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(blends_are_quadratic_by_default);
-    tests[count++] = (struct CMUnitTest)cmocka_unit_test(frames_are_scenes);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(states_are_scenes);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(components_are_joined);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(normals_are_gradients);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(boxes_hold_what_is_grown);

@@ -347,7 +347,7 @@ typedef struct Fixture {
 static void sample_figure(Fixture *fixture, Bench *bench, OutlineShape *shape)
 {
     static const char text[] = "show sphere(1);";
-    KrsState         *frame;
+    KrsState         *state;
     KrsRendering     *rendering;
     bool              is_new;
     assert_int_equal(krs_compile_text(text, strlen(text), "outline.krs", NULL, &fixture->scene),
@@ -359,14 +359,14 @@ static void sample_figure(Fixture *fixture, Bench *bench, OutlineShape *shape)
     fixture->scene->program.table_rows                      = sizes.rows;
     fixture->scene->program.table_cells                     = sizes.cells;
     surface_roots(&fixture->scene->roots, 0)[ROOT_DISTANCE] = root;
-    assert_int_equal(krs_state_new(fixture->scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture->scene, &state), KRS_OK);
     assert_int_equal(
         krs_rendering_new(fixture->renderer, fixture->scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    assert_int_equal(krs_device_distance(rendering, frame, (const float(*)[3])fixture->points,
+    assert_int_equal(krs_device_distance(rendering, state, (const float(*)[3])fixture->points,
                                          DEVICE_POINTS, fixture->found),
                      KRS_OK);
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
 }
 
 /* Single precision: a thousandth of a thousandth, and points beside a thin part are not counted. */

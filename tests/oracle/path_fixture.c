@@ -26,18 +26,18 @@ void path_fixture_close(PathFixture *fixture)
 
 void path_fixture_set(PathFixture *fixture, const char *name, double number)
 {
-    assert_int_equal(krs_state_set(fixture->product.frame, name, &number, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->product.state, name, &number, 1), KRS_OK);
 }
 
 void path_fixture_set_all(PathFixture *fixture, const char *name, double x, double y, double z)
 {
-    assert_int_equal(krs_state_set(fixture->product.frame, name, (double[]){x, y, z}, 3), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->product.state, name, (double[]){x, y, z}, 3), KRS_OK);
 }
 
 KrsPicture *path_fixture_render(const PathFixture *fixture, const KrsRenderOptions *options)
 {
     KrsPicture *picture;
-    if (krs_render(fixture->rendering, fixture->product.frame, options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->product.state, options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
     return picture;

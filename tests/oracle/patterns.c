@@ -223,7 +223,7 @@ static void show_three(const Product *product, int view, KrsIntegrator integrato
     KrsPicture      *picture;
     assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering),
                      KRS_OK);
-    assert_int_equal(krs_render(rendering, product->frame, &options, &picture), KRS_OK);
+    assert_int_equal(krs_render(rendering, product->state, &options, &picture), KRS_OK);
     for (int k = 0; k < 3; k++)
         judge(&patterns[first + k], wrong_in(picture, k, &views[view], &patterns[first + k]));
     krs_picture_free(picture);
@@ -251,16 +251,16 @@ static void show_all(bool sharp, int view_count, Judge *judge)
     }
 }
 
-static void pixels_show_the_mean_of_a_pattern(void **state)
+static void pixels_show_the_mean_of_a_pattern(void **context)
 {
-    (void)state;
+    (void)context;
     show_all(false, VIEWS, is_right);
 }
 
 /* Whatever the integrator is. */
-static void paths_show_the_mean_of_a_pattern(void **state)
+static void paths_show_the_mean_of_a_pattern(void **context)
 {
-    (void)state;
+    (void)context;
     write_picture(7);
     Product product = scene_of(0, false);
     show_three(&product, 0, KRS_INTEGRATOR_PATH, 0, is_right);
@@ -268,9 +268,9 @@ static void paths_show_the_mean_of_a_pattern(void **state)
 }
 
 /* What is not filtered is found to be wrong. */
-static void without_a_filter_there_is_moire(void **state)
+static void without_a_filter_there_is_moire(void **context)
 {
-    (void)state;
+    (void)context;
     show_all(true, 1, has_moire);
 }
 
@@ -319,7 +319,7 @@ static void compare_at_points(const Product *product)
             points[i][k] = (float)random_between(&random, -2.5, 2.5);
     assert_int_equal(krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering),
                      KRS_OK);
-    assert_int_equal(point_query_sample(rendering, product->frame, (const float(*)[3])points,
+    assert_int_equal(point_query_sample(rendering, product->state, (const float(*)[3])points,
                                         POINTS, NULL, surfaces),
                      KRS_OK);
     for (int i = 0; i < POINTS; i++) {
@@ -331,10 +331,10 @@ static void compare_at_points(const Product *product)
     krs_rendering_free(rendering);
 }
 
-static void devices_read_what_the_host_reads(void **state)
+static void devices_read_what_the_host_reads(void **context)
 {
     static const char *const wraps[] = {"repeat", "clamp", "mirror"};
-    (void)state;
+    (void)context;
     write_picture(7);
     write_color();
     for (int w = 0; w < 3; w++) {
@@ -346,28 +346,28 @@ static void devices_read_what_the_host_reads(void **state)
 
 /* ---- other pictures ---- */
 
-static void color_is(KrsRendering *rendering, KrsState *frame, double wanted)
+static void color_is(KrsRendering *rendering, KrsState *state, double wanted)
 {
     SurfacePoint found;
     const float  point[1][3] = {{0.5f / SIDE, 0, 0.5f / SIDE}};
-    assert_int_equal(point_query_sample(rendering, frame, point, 1, NULL, &found), KRS_OK);
+    assert_int_equal(point_query_sample(rendering, state, point, 1, NULL, &found), KRS_OK);
     assert_true(fabs((double)found.color[0] - wanted) < 1e-3);
 }
 
 /* Another picture of the same size is another number: no kernel is compiled. */
-static void an_edited_picture_is_read_again(void **state)
+static void an_edited_picture_is_read_again(void **context)
 {
     static const char text[] = "let t = texture(\"gray.png\", space: \"linear\");"
                                "camera { eye: [0, 2, 5] } show plane([0, 1, 0], 0).paint(t(x, z));";
     KrsScene         *edited;
     KrsChanges        changes;
     KrsRendering     *rendering;
-    (void)state;
+    (void)context;
     write_picture(7);
     Product product = product_compile(text);
     assert_int_equal(krs_rendering_new(renderer, product.scene, KRS_FOR_PICTURES, &rendering),
                      KRS_OK);
-    color_is(rendering, product.frame, texel(0, 0));
+    color_is(rendering, product.state, texel(0, 0));
     assert_int_equal(krs_scene_update(product.scene, text, strlen(text), &edited, &changes),
                      KRS_OK);
     assert_int_equal(changes.kind, KRS_CHANGE_NOTHING);
@@ -378,9 +378,9 @@ static void an_edited_picture_is_read_again(void **state)
     assert_int_equal(krs_scene_update(product.scene, text, strlen(text), &edited, &changes),
                      KRS_OK);
     assert_int_equal(changes.kind, KRS_CHANGE_VALUES);
-    assert_int_equal(krs_state_update(product.frame, edited), KRS_OK);
+    assert_int_equal(krs_state_update(product.state, edited), KRS_OK);
     assert_int_equal(krs_rendering_update(rendering, edited), KRS_OK);
-    color_is(rendering, product.frame, texel(0, 0));
+    color_is(rendering, product.state, texel(0, 0));
     krs_rendering_free(rendering);
     krs_scene_free(product.scene);
     product.scene = edited;
@@ -409,9 +409,9 @@ static Vec in_kernel(Vec at)
     return vec(c * q.x - s * q.z, q.y, s * q.x + c * q.z);
 }
 
-static void kernels_carry_their_texture(void **state)
+static void kernels_carry_their_texture(void **context)
 {
-    (void)state;
+    (void)context;
     write_picture(7);
     Product product = product_compile(balls);
     Random  random  = {5};
@@ -428,9 +428,9 @@ static void kernels_carry_their_texture(void **state)
 }
 
 /* What the footprint is behind mirrors, too: the picture is its own mirror image. */
-static void pictures_of_mirror_images_are_mirrored(void **state)
+static void pictures_of_mirror_images_are_mirrored(void **context)
 {
-    (void)state;
+    (void)context;
     write_picture(7);
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
     KrsPicture      *picture = picture_of(balls, &options);

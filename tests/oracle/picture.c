@@ -117,23 +117,23 @@ static Verdict judge(const KrsPicture *picture, const KrsHit *hits, double pixel
 static Verdict compare(const char *text, double planted)
 {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     KrsPicture   *picture;
     KrsView       view;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, frame, &plain, &picture), KRS_OK);
+    assert_int_equal(krs_render(rendering, state, &plain, &picture), KRS_OK);
     assert_int_equal(picture->stats.unresolved, 0);
-    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(state, 0, &view), KRS_OK);
 
     double(*origins)[3]    = malloc(PIXELS * sizeof *origins);
     double(*directions)[3] = malloc(PIXELS * sizeof *directions);
     KrsHit *hits           = malloc(PIXELS * sizeof *hits);
     view.camera.eye[0] += planted;
     double pixel = make_rays(&view.camera, origins, directions);
-    krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions, PIXELS, 1e3,
+    krs_raycast(state, (const double(*)[3])origins, (const double(*)[3])directions, PIXELS, 1e3,
                 1e-8, hits);
     Verdict verdict = judge(picture, hits, pixel);
     free(origins);
@@ -141,7 +141,7 @@ static Verdict compare(const char *text, double planted)
     free(hits);
     krs_picture_free(picture);
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     return verdict;
 }

@@ -54,7 +54,7 @@ Product product_compile(const char *text)
     KrsStatus status = compile(text, &options, &product.scene);
     if (status != KRS_OK)
         fail_msg("status %d for the scene:\n%s", (int)status, text);
-    assert_int_equal(krs_state_new(product.scene, &product.frame), KRS_OK);
+    assert_int_equal(krs_state_new(product.scene, &product.state), KRS_OK);
     return product;
 }
 
@@ -71,7 +71,7 @@ Product product_format(const char *format, ...)
 
 void product_free(Product *product)
 {
-    krs_state_free(product->frame);
+    krs_state_free(product->state);
     krs_scene_free(product->scene);
     *product = (Product){0};
 }
@@ -79,7 +79,7 @@ void product_free(Product *product)
 double product_distance(const Product *product, Vec point)
 {
     double distance, points[1][3] = {{point.x, point.y, point.z}};
-    krs_distance(product->frame, (const double(*)[3])points, 1, &distance);
+    krs_distance(product->state, (const double(*)[3])points, 1, &distance);
     return distance;
 }
 
@@ -89,7 +89,7 @@ KrsHit product_probe(const Product *product, Vec point)
 {
     KrsHit hit;
     double points[1][3] = {{point.x, point.y, point.z}};
-    krs_probe(product->frame, (const double(*)[3])points, 1, &hit);
+    krs_probe(product->state, (const double(*)[3])points, 1, &hit);
     return hit;
 }
 
@@ -99,7 +99,7 @@ KrsHit product_raycast(const Product *product, Vec origin, Vec direction, double
     KrsHit hit;
     double origins[1][3]    = {{origin.x, origin.y, origin.z}};
     double directions[1][3] = {{direction.x, direction.y, direction.z}};
-    krs_raycast(product->frame, (const double(*)[3])origins, (const double(*)[3])directions, 1,
+    krs_raycast(product->state, (const double(*)[3])origins, (const double(*)[3])directions, 1,
                 farthest, tolerance, &hit);
     return hit;
 }

@@ -12,10 +12,10 @@
 #include "krs/krs.h"
 #include "tests/oracle/brute.h"
 
-/* A scene and its frame at default parameters. */
+/* A scene and its state at default parameters. */
 typedef struct Product {
     KrsScene *scene;
-    KrsState *frame;
+    KrsState *state;
 } Product;
 
 /* A scene written piece by piece; too long a text fails the test. */

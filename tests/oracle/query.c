@@ -106,7 +106,7 @@ static void zones_come_and_go(void **context)
         }
         const ShaderEntry *newest = s.rendering->shaders.first;
         const size_t       room   = s.rendering->max_zone_slots;
-        assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])zones, count), KRS_OK);
+        assert_int_equal(krs_state_set_zones(s.state, (const double(*)[4])zones, count), KRS_OK);
         points_agree(s, 2000, 1.5, 16);
         for (size_t i = 0; i < 2000; i++)
             assert_true(fabs(found[i].distance -
@@ -136,7 +136,7 @@ static KrsPicture *shoot(Scene s)
 {
     KrsRenderOptions options = {.width = 160, .height = 120, .error = 0.05};
     KrsPicture      *picture;
-    KrsStatus        status = krs_render(s.rendering, s.frame, &options, &picture);
+    KrsStatus        status = krs_render(s.rendering, s.state, &options, &picture);
     if (status != KRS_OK)
         print_message("%s\n", krs_renderer_message(renderer));
     assert_int_equal(status, KRS_OK);
@@ -160,15 +160,15 @@ static void a_zone_looks_like_a_difference(void **context)
     Scene       by_caller   = scene_of(bare, KRS_FOR_PICTURES);
     Scene       by_hand     = scene_of(difference, KRS_FOR_PICTURES);
     KrsPicture *whole       = shoot(by_caller);
-    assert_int_equal(krs_state_set_zones(by_caller.frame, zone, 1), KRS_OK);
+    assert_int_equal(krs_state_set_zones(by_caller.state, zone, 1), KRS_OK);
     KrsPicture *a = shoot(by_language), *b = shoot(by_caller), *c = shoot(by_hand);
     assert_true(same_pictures(a, b));
     assert_true(same_pictures(a, c));
     assert_false(same_pictures(a, whole));
-    assert_int_equal(krs_state_set_zones(by_caller.frame, nearer, 1), KRS_OK);
+    assert_int_equal(krs_state_set_zones(by_caller.state, nearer, 1), KRS_OK);
     KrsPicture *smaller = shoot(by_caller);
     assert_false(same_pictures(a, smaller));
-    assert_int_equal(krs_state_set_zones(by_caller.frame, NULL, 0), KRS_OK);
+    assert_int_equal(krs_state_set_zones(by_caller.state, NULL, 0), KRS_OK);
     KrsPicture *again = shoot(by_caller);
     assert_true(same_pictures(again, whole));
     KrsPicture *all[] = {whole, a, b, c, smaller, again};

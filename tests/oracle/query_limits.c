@@ -156,7 +156,7 @@ static void wrong_questions_are_refused(void **context)
     (void)context;
     Scene         s = scene_of("show sphere(1);", KRS_FOR_QUESTIONS);
     KrsRendering *r = s.rendering;
-    KrsState     *f = s.frame;
+    KrsState     *f = s.state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         assert_int_equal(krs_device_probe(r, f, &wrong[i], 1, found), KRS_BAD_ARGUMENT);
         assert_true(strlen(krs_renderer_message(renderer)) > 0);
@@ -212,11 +212,11 @@ static void memory_may_run_out(void **context)
     for (int64_t failing = 1; failing <= 200; failing++) {
         Scene s = scene_of("show sphere(1);", KRS_FOR_QUESTIONS);
         if (failing % 2)
-            assert_int_equal(krs_state_set_zones(s.frame, zone, 1), KRS_OK);
+            assert_int_equal(krs_state_set_zones(s.state, zone, 1), KRS_OK);
         memcpy(points[0], (double[]){0, 0, 5}, sizeof *points);
         memcpy(aims[0], (double[]){0, 0, -1}, sizeof *aims);
         scarce.failing    = scarce.made + (failing + 1) / 2;
-        KrsStatus status  = krs_device_raycast(s.rendering, s.frame, POINTS, AIMS, 1, 9, 0, found);
+        KrsStatus status  = krs_device_raycast(s.rendering, s.state, POINTS, AIMS, 1, 9, 0, found);
         bool      reached = scarce.made >= scarce.failing;
         scarce.failing    = 0;
         assert_int_equal(status, reached ? KRS_OUT_OF_MEMORY : KRS_OK);

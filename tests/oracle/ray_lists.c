@@ -25,14 +25,14 @@ enum { ASKED = 400 }; /* rays that the host casts, too */
 
 typedef struct Fixture {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
 } Fixture;
 
 static void fixture_prepare(Fixture *fixture, KrsStatus status)
 {
     assert_int_equal(status, KRS_OK);
-    assert_int_equal(krs_state_new(fixture->scene, &fixture->frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture->scene, &fixture->state), KRS_OK);
     if (krs_rendering_new(renderer, fixture->scene, KRS_FOR_PICTURES, &fixture->rendering) !=
         KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
@@ -49,7 +49,7 @@ static Fixture fixture_of_text(const char *text)
 static void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
 }
 
@@ -74,7 +74,7 @@ static KrsPicture *picture_of_rays(Fixture *fixture, const KrsRays *rays,
     options.width  = WIDTH;
     options.height = HEIGHT;
     if (krs_film_new(fixture->rendering, &options, &film) != KRS_OK ||
-        krs_film_add_rays(film, fixture->frame, rays) != KRS_OK ||
+        krs_film_add_rays(film, fixture->state, rays) != KRS_OK ||
         krs_film_read(film, 0, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     krs_film_free(film);
@@ -104,7 +104,7 @@ static double disagreement(Fixture *fixture, const KrsPicture *picture, const Li
 {
     KrsHit hits[ASKED];
     int    wrong = 0;
-    assert_int_equal(krs_raycast(fixture->frame, (const double(*)[3])list->origins,
+    assert_int_equal(krs_raycast(fixture->state, (const double(*)[3])list->origins,
                                  (const double(*)[3])list->directions, ASKED, HUGE_VAL, 1e-6, hits),
                      KRS_OK);
     for (int k = 0; k < ASKED; k++) {
@@ -135,14 +135,14 @@ static void box_of(const KrsScene *scene, double low[3], double high[3])
     }
 }
 
-static void examples_are_met(void **state)
+static void examples_are_met(void **context)
 {
     static const char *const paths[] = {"examples/03-machined-part.krs",
                                         "examples/14-inversion.krs", "examples/21-sextic.krs"};
     static List              list, turned;
     Random                   random = {5};
     const double             spread = 2e-3;
-    (void)state;
+    (void)context;
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
         double  low[3], high[3];
         Fixture fixture;
@@ -185,7 +185,7 @@ static double sphere_t(const double origin[3], const double unit[3], const doubl
 }
 
 /* A ball far from the origin, in whose middle half of the rays begin. */
-static void spheres_have_a_closed_form(void **state)
+static void spheres_have_a_closed_form(void **context)
 {
     static List  list;
     const double centre[3] = {40000, -20000, 30000}, low[3] = {39998, -20002, 29998},
@@ -193,7 +193,7 @@ static void spheres_have_a_closed_form(void **state)
     Fixture fixture      = fixture_of_text("show sphere(1).move([40000, -20000, 30000]);");
     Random  random       = {9};
     int     inside = 0, outside = 0;
-    (void)state;
+    (void)context;
     draw_rays(&list, low, high, &random);
     for (int k = 0; k < PIXELS / 2; k++)
         for (int i = 0; i < 3; i++)
@@ -274,7 +274,7 @@ static double color_difference(const KrsPicture *a, const KrsPicture *b)
     return sum / size;
 }
 
-static void cameras_are_lists(void **state)
+static void cameras_are_lists(void **context)
 {
     static const char text[] =
         "camera { eye: [3, 2, 5], target: [0, 0.7, 0], fov: 40deg }"
@@ -286,8 +286,8 @@ static void cameras_are_lists(void **state)
     Fixture     fixture = fixture_of_text(text);
     KrsCamera   camera;
     double      spread;
-    (void)state;
-    assert_int_equal(krs_state_camera(fixture.frame, 0, &camera), KRS_OK);
+    (void)context;
+    assert_int_equal(krs_state_camera(fixture.state, 0, &camera), KRS_OK);
     list_camera(&camera, &list, &spread);
     KrsRays rays                     = rays_of(&list, spread);
     rays.width                       = 0;
@@ -300,7 +300,7 @@ static void cameras_are_lists(void **state)
          .methods.steps_at_once = 3},
     };
     KrsPicture *seen, *whole = picture_of_rays(&fixture, &rays, &choices[0]);
-    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &choices[0], &seen), KRS_OK);
+    assert_int_equal(krs_render(fixture.rendering, fixture.state, &choices[0], &seen), KRS_OK);
     int same = 0;
     for (int k = 0; k < PIXELS; k++) {
         const double *d = list.directions[k]; /* 1 along the view */
@@ -333,14 +333,14 @@ static void cameras_are_lists(void **state)
 
 /* ---- What else is promised ---- */
 
-static void rays_end_where_they_are_told(void **state)
+static void rays_end_where_they_are_told(void **context)
 {
     static List  list;
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
     Fixture      fixture = fixture_of_text("show sphere(1);");
     Random       random  = {2};
     int          nearer  = 0;
-    (void)state;
+    (void)context;
     draw_rays(&list, low, high, &random);
     KrsRays     rays = rays_of(&list, 1e-3);
     KrsPicture *far  = picture_of_rays(&fixture, &rays, NULL);
@@ -359,7 +359,7 @@ static void rays_end_where_they_are_told(void **state)
 }
 
 /* A camera and lists by turns: each has its own kernels, and samples add up. */
-static void lists_and_cameras_take_turns(void **state)
+static void lists_and_cameras_take_turns(void **context)
 {
     static List            list;
     const KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 2};
@@ -368,17 +368,17 @@ static void lists_and_cameras_take_turns(void **state)
     double      spread;
     KrsFilm    *film;
     KrsPicture *picture, *before, *after;
-    (void)state;
-    assert_int_equal(krs_state_camera(fixture.frame, 0, &camera), KRS_OK);
+    (void)context;
+    assert_int_equal(krs_state_camera(fixture.state, 0, &camera), KRS_OK);
     list_camera(&camera, &list, &spread);
     const KrsRays rays = rays_of(&list, spread);
-    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &before), KRS_OK);
+    assert_int_equal(krs_render(fixture.rendering, fixture.state, &options, &before), KRS_OK);
     assert_int_equal(krs_film_new(fixture.rendering, &options, &film), KRS_OK);
-    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_OK);
-    assert_int_equal(krs_film_add(film, fixture.frame, NULL, 1), KRS_OK);
-    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_OK);
+    assert_int_equal(krs_film_add_rays(film, fixture.state, &rays), KRS_OK);
+    assert_int_equal(krs_film_add(film, fixture.state, NULL, 1), KRS_OK);
+    assert_int_equal(krs_film_add_rays(film, fixture.state, &rays), KRS_OK);
     assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
-    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &after), KRS_OK);
+    assert_int_equal(krs_render(fixture.rendering, fixture.state, &options, &after), KRS_OK);
     assert_memory_equal(before->color, after->color, PIXELS * 4 * sizeof(float));
     for (int k = 0; k < PIXELS; k++)
         assert_true(fabsf(3 * picture->color[4 * k + 3] - roundf(3 * picture->color[4 * k + 3])) <
@@ -390,7 +390,7 @@ static void lists_and_cameras_take_turns(void **state)
     fixture_close(&fixture);
 }
 
-static void wrong_rays_are_refused(void **state)
+static void wrong_rays_are_refused(void **context)
 {
     static List            list;
     const double           low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
@@ -398,7 +398,7 @@ static void wrong_rays_are_refused(void **state)
     Fixture                fixture = fixture_of_text("show sphere(1);");
     Random                 random  = {3};
     KrsFilm               *film;
-    (void)state;
+    (void)context;
     draw_rays(&list, low, high, &random);
     assert_int_equal(krs_film_new(fixture.rendering, &options, &film), KRS_OK);
     const struct {
@@ -406,20 +406,20 @@ static void wrong_rays_are_refused(void **state)
     } wrong[]    = {{&list.origins[PIXELS - 1][2], NAN}, {&list.directions[7][0], INFINITY}};
     KrsRays rays = rays_of(&list, 0);
     rays.width   = 0;
-    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add_rays(film, fixture.state, &rays), KRS_BAD_ARGUMENT);
     rays.width = -1;
-    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add_rays(film, fixture.state, &rays), KRS_BAD_ARGUMENT);
     rays.width = 1e-3;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         const double right = *wrong[i].number;
         *wrong[i].number   = wrong[i].value;
-        assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_film_add_rays(film, fixture.state, &rays), KRS_BAD_ARGUMENT);
         *wrong[i].number = right;
     }
     memset(list.directions[5], 0, sizeof list.directions[5]);
-    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add_rays(film, fixture.state, &rays), KRS_BAD_ARGUMENT);
     list.directions[5][0] = 1;
-    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_OK);
+    assert_int_equal(krs_film_add_rays(film, fixture.state, &rays), KRS_OK);
     krs_film_free(film);
     fixture_close(&fixture);
 }

@@ -41,16 +41,16 @@ static Steps steps_new(Product product, Method method)
                                            : research_roots(&scene->roots, RESEARCH_ROOT_FREE);
     Steps       steps = {product, method, root[0], {0}};
     steps.tape        = tape_new(scene->graph, &steps.root, 1, &scene->arena);
-    state_refresh(product.frame);
-    tape_run_frame(&steps.tape, product.frame->parameters, product.frame->values);
+    state_refresh(product.state);
+    tape_run_frame(&steps.tape, product.state->parameters, product.state->values);
     return steps;
 }
 
 static double step_at(const Steps *steps, Vec p, Vec direction)
 {
     double at[3] = {p.x, p.y, p.z}, v[3] = {direction.x, direction.y, direction.z};
-    tape_run_surface(&steps->tape, at, v, 0, steps->product.frame->values);
-    return steps->product.frame->values[steps->root].v[0];
+    tape_run_surface(&steps->tape, at, v, 0, steps->product.state->values);
+    return steps->product.state->values[steps->root].v[0];
 }
 
 /* One ray against what is known of it; returns the number of steps. */

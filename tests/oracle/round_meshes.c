@@ -21,7 +21,7 @@ static KrsMesh *mesh_of_text(const char *text, double error)
     Product        product = product_compile(text);
     KrsMeshOptions options = {.error = error};
     KrsMesh       *mesh;
-    assert_int_equal(krs_mesh(product.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(product.state, &options, &mesh), KRS_OK);
     product_free(&product);
     check_closed(mesh);
     return mesh;

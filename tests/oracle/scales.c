@@ -22,7 +22,7 @@
 #include "tests/oracle/product.h"
 #include "tests/support/renderer.h"
 
-/* Of a pixel: what a march leaves open, and as much again for rounding (compiler/passes/precision.c). */
+/* Parts of a pixel: what a march leaves open, and as much again for rounding (compiler/passes/precision.c). */
 #define SLACK (2.0 / 64)
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
@@ -74,7 +74,7 @@ typedef struct Shot {
 static void set_vector(const Scene *scene, const char *name, Vec v)
 {
     const double values[3] = {v.x, v.y, v.z};
-    assert_int_equal(krs_state_set(scene->product.frame, name, values, 3), KRS_OK);
+    assert_int_equal(krs_state_set(scene->product.state, name, values, 3), KRS_OK);
 }
 
 static KrsPicture *shot_render(const Shot *shot)
@@ -88,10 +88,10 @@ static KrsPicture *shot_render(const Shot *shot)
     if (shot->kind == BLOCK) {
         set_vector(scene, "sides", shot->sides);
         set_vector(scene, "axis", shot->axis);
-        krs_state_set(scene->product.frame, "angle", &shot->angle, 1);
+        krs_state_set(scene->product.state, "angle", &shot->angle, 1);
     } else
-        krs_state_set(scene->product.frame, "size", &shot->size, 1);
-    if (krs_render(scene->rendering, scene->product.frame, &options, &picture) != KRS_OK)
+        krs_state_set(scene->product.state, "size", &shot->size, 1);
+    if (krs_render(scene->rendering, scene->product.state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;
 }
@@ -106,7 +106,7 @@ static bool is_met(const Shot *shot, Line ray, double more)
     }
     Line turned = {vec_rotate(ray.origin, shot->axis, -shot->angle),
                    vec_rotate(ray.direction, shot->axis, -shot->angle)};
-    /* Of what is thinner than a pixel a tenth may be missing. */
+    /* A tenth of what is thinner than a pixel may be missing. */
     double half[3] = {shot->sides.x / 2, shot->sides.y / 2, shot->sides.z / 2};
     for (int i = 0; i < 3; i++)
         half[i] += fmax(more, -0.1 * half[i]);

@@ -141,13 +141,13 @@ Fixture *use_fixture(FixtureKind kind)
 static void set_parameter(const Fixture *fixture, const char *name, const double *values,
                           size_t count)
 {
-    assert_int_equal(krs_state_set(fixture->product.frame, name, values, count), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->product.state, name, values, count), KRS_OK);
 }
 
-KrsPicture *take_picture(KrsRendering *rendering, KrsState *frame, KrsRenderOptions options)
+KrsPicture *take_picture(KrsRendering *rendering, KrsState *state, KrsRenderOptions options)
 {
     KrsPicture *picture;
-    if (krs_render(rendering, frame, &options, &picture) != KRS_OK)
+    if (krs_render(rendering, state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
     return picture;
@@ -166,7 +166,7 @@ KrsPicture *shoot(const Shot *shot)
 {
     const Fixture *fixture = use_fixture(shot->fixture);
     set_lighting(shot);
-    return take_picture(fixture->rendering, fixture->product.frame, shot->options);
+    return take_picture(fixture->rendering, fixture->product.state, shot->options);
 }
 
 Lens shot_lens(const Shot *shot)

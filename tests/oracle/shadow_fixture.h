@@ -77,9 +77,9 @@ typedef struct Shot {
     int              without; /* in truth this solid is not there, counted from 1; 0: all are */
 } Shot;
 
-/* Gives the frame of the shot's fixture its light, and the size of twigs. */
+/* Gives the state of the shot's fixture its light, and the size of twigs. */
 void        set_lighting(const Shot *shot);
-KrsPicture *take_picture(KrsRendering *rendering, KrsState *frame, KrsRenderOptions options);
+KrsPicture *take_picture(KrsRendering *rendering, KrsState *state, KrsRenderOptions options);
 KrsPicture *shoot(const Shot *shot);
 Lens        shot_lens(const Shot *shot);
 /* How much of the light a pixel of the window sees; -1 where it is not ground in the light. */

@@ -126,7 +126,7 @@ static void dull_planes_see_the_mean(void **state)
     assert_int_equal(wrong, 0);
 }
 
-/* Of each roughness the root of the mean square of what previews are off by. */
+/* For each roughness this is the root of the mean square of what previews are off by. */
 static void rough_metal_mirrors_what_paths_find(void **state)
 {
     (void)state;

@@ -13,7 +13,7 @@ static KrsSlicer *open_slicer(const Product *product, double error, bool arcs)
 {
     KrsSliceOptions options = {.error = error, .arcs = arcs};
     KrsSlicer      *slicer;
-    assert_int_equal(krs_slicer_new(product->frame, &options, &slicer), KRS_OK);
+    assert_int_equal(krs_slicer_new(product->state, &options, &slicer), KRS_OK);
     return slicer;
 }
 
@@ -25,7 +25,7 @@ static KrsSection *slice_at(KrsSlicer *slicer, Vec point, Vec normal)
     return section;
 }
 
-/* Of a section without arcs, by its points alone. */
+/* Returns the area of a section without arcs, by its points alone. */
 static double area_of_points(const KrsSection *section)
 {
     double area = 0;

@@ -15,13 +15,13 @@
 
 #define LIFT       0.125 /* pixels above even ground, where rays start */
 #define BLUR_REACH 8     /* pixels: so far from a penumbra nothing is shared */
-/* Of means of 5x5 pixels, as shares of the light: root of the mean square in and near the penumbra
-   for 1 and for 4 rays a pixel, and the worst of all. */
+/* Limits for means of 5x5 pixels, as shares of the light: root of the mean square in and near the penumbra for
+   1 and for 4 rays a pixel, and the worst of all. */
 #define MAX_OFF_1      0.025
 #define MAX_OFF_4      0.015
 #define MAX_OFF_AT_ALL 0.15
-/* Of single pixels of a narrow penumbra, one ray each: root of the mean square.  It is 0.13 where
-   means reach as far across the edge as along it. */
+/* Limits for single pixels of a narrow penumbra, one ray each: root of the mean square.  It is 0.13 where means
+   reach as far across the edge as along it. */
 #define NARROW     (1.5 * DEGREE)
 #define MAX_FRAYED 0.105
 /* Around a lamp in a recess, one ray a pixel: by how many pixels the edge of light is uneven where this

@@ -283,15 +283,15 @@ static const char *const texts[][2] = {
 static KrsPicture *render(const KrsScene *scene)
 {
     const KrsRenderOptions options = {.width = 120, .height = 80};
-    KrsState              *frame;
+    KrsState              *state;
     KrsRendering          *rendering;
     KrsPicture            *picture;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     if (krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
-        krs_render(rendering, frame, &options, &picture) != KRS_OK)
+        krs_render(rendering, state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     return picture;
 }
 

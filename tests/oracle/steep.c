@@ -163,7 +163,7 @@ static KrsPicture *take(const Product *product, KrsTrace trace)
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
     if (krs_rendering_new(renderer, product->scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
-        krs_render(rendering, product->frame, &options, &picture) != KRS_OK)
+        krs_render(rendering, product->state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     krs_rendering_free(rendering);
     return picture;

@@ -23,22 +23,22 @@ enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
 static KrsRenderer *renderer;
 
-static int start(void **state)
+static int start(void **context)
 {
-    (void)state;
+    (void)context;
     return krs_renderer_new(&(KrsRendererOptions){.device = tested_device()}, &renderer) != KRS_OK;
 }
 
-static int stop(void **state)
+static int stop(void **context)
 {
-    (void)state;
+    (void)context;
     krs_renderer_free(renderer);
     return 0;
 }
 
 typedef struct Fixture {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
 } Fixture;
 
@@ -48,7 +48,7 @@ static Fixture fixture_open(const char *text)
     KrsOptions options = {.gradients = true};
     if (krs_compile_text(text, strlen(text), "scene.krs", &options, &fixture.scene) != KRS_OK)
         fail_msg("does not compile: %s", text);
-    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.state), KRS_OK);
     assert_int_equal(
         krs_rendering_new(renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering), KRS_OK);
     return fixture;
@@ -57,7 +57,7 @@ static Fixture fixture_open(const char *text)
 static void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
 }
 
@@ -71,7 +71,7 @@ static KrsPicture *shoot(Fixture *fixture, KrsNormals normals)
                                 .aovs = KRS_AOV_NORMAL | KRS_AOV_POSITION | KRS_AOV_DEPTH |
                                         KRS_AOV_IDS,
                                 .methods.normals = normals};
-    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;
 }
@@ -134,9 +134,9 @@ static void agrees_with(const char *text, Closed *closed, double largest, double
         fail_msg("%zu pixels, worst %g: %s", seen, worst, text);
 }
 
-static void derivatives_agree_with_closed_forms(void **state)
+static void derivatives_agree_with_closed_forms(void **context)
 {
-    (void)state;
+    (void)context;
     agrees_with("camera { eye: [1, 3, 3] } show torus(1, 0.4);", normal_of_torus, 1e-5, 10);
     agrees_with("use \"std/surfaces.krs\"; camera { eye: [2, 1.5, 3.5] } show barth_sextic();",
                 normal_of_barth, 2e-2, 2.19);
@@ -145,7 +145,7 @@ static void derivatives_agree_with_closed_forms(void **state)
 /* ---- differences ---- */
 
 /* The gradient of the distance by differences of two widths; false where they do not agree. */
-static bool differences(KrsState *frame, const float at[3], double n[3])
+static bool differences(KrsState *state, const float at[3], double n[3])
 {
     const double steps[2] = {1e-5, 2e-5};
     double       found[2][3], apart = 0, size = 0;
@@ -154,7 +154,7 @@ static bool differences(KrsState *frame, const float at[3], double n[3])
         double points[2][3] = {{at[0], at[1], at[2]}, {at[0], at[1], at[2]}};
         points[0][i % 3] -= steps[i / 3];
         points[1][i % 3] += steps[i / 3];
-        krs_probe(frame, (const double(*)[3])points, 2, hits);
+        krs_probe(state, (const double(*)[3])points, 2, hits);
         found[i / 3][i % 3] = (hits[1].distance - hits[0].distance) / (2 * steps[i / 3]);
     }
     for (int k = 0; k < 3; k++) {
@@ -174,7 +174,7 @@ static void agrees_with_differences(const char *text)
     for (size_t i = 0; i < PIXELS; i++) {
         double n[3];
         hit += !isinf(picture->depth[i]);
-        if (isinf(picture->depth[i]) || !differences(fixture.frame, &picture->position[3 * i], n))
+        if (isinf(picture->depth[i]) || !differences(fixture.state, &picture->position[3 * i], n))
             continue;
         double off = angle(&picture->normal[3 * i], n);
         worst      = fmax(worst, off);
@@ -190,9 +190,9 @@ static void agrees_with_differences(const char *text)
         fail_msg("%zu hit, %zu told, %zu wrong, worst %g: %s", hit, seen, wrong, worst, text);
 }
 
-static void derivatives_agree_with_differences(void **state)
+static void derivatives_agree_with_differences(void **context)
 {
-    (void)state;
+    (void)context;
     static const char *const scenes[] = {
         "camera { eye: [2, 3, 5] } show box([1, 1.4, 0.8]) - sphere(0.7).move([0.4, 0.3, 0.4]);"
         "show plane([0, 1, 0], -0.8) & box([8, 2, 8]);",
@@ -254,9 +254,9 @@ static void check_examples(const char *path)
     fclose(file);
 }
 
-static void shapes_of_the_library_agree(void **state)
+static void shapes_of_the_library_agree(void **context)
 {
-    (void)state;
+    (void)context;
     check_examples("compiler/library/solids.krs");
     check_examples("compiler/library/figures.krs");
 }
@@ -264,9 +264,9 @@ static void shapes_of_the_library_agree(void **state)
 /* ---- stencils ---- */
 
 /* A torus, whose largest curvature is known, seen from nearby. */
-static void stencils_keep_their_order(void **state)
+static void stencils_keep_their_order(void **context)
 {
-    (void)state;
+    (void)context;
     static const double curvature = 1 / 0.4;
     Fixture fixture = fixture_open("camera { eye: [1, 3, 3], fov: 40deg } show torus(1, 0.4);");
     for (KrsNormals normals = KRS_NORMALS_DEFAULT; normals < KRS_NORMALS_ANALYTIC; normals++) {
@@ -305,9 +305,9 @@ static void stencils_keep_their_order(void **state)
 }
 
 /* A component without derivatives has the normals of the octahedron, another its own. */
-static void components_without_derivatives_have_differences(void **state)
+static void components_without_derivatives_have_differences(void **context)
 {
-    (void)state;
+    (void)context;
     Fixture fixture = fixture_open("camera { eye: [3, 2, 4] } show julia([-0.2, 0.6, 0.2, 0.2]);"
                                    "show torus(1, 0.2).move([0, 1.2, 0]);");
     KrsPicture *analytic = shoot(&fixture, KRS_NORMALS_ANALYTIC);
@@ -330,22 +330,22 @@ static void components_without_derivatives_have_differences(void **state)
     assert_true(other[0] * 100 < seen[0] && other[1] * 2 > seen[1]);
 }
 
-static void analytic_normals_are_asked_for_in_time(void **state)
+static void analytic_normals_are_asked_for_in_time(void **context)
 {
-    (void)state;
+    (void)context;
     const char      *text = "show sphere(1);";
     Fixture          fixture;
     KrsPicture      *picture;
     KrsRenderOptions options = {.width = 16, .height = 16, .methods.normals = KRS_NORMALS_ANALYTIC};
     assert_int_equal(krs_compile_text(text, strlen(text), "s.krs", NULL, &fixture.scene), KRS_OK);
-    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.state), KRS_OK);
     assert_int_equal(
         krs_rendering_new(renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering), KRS_OK);
-    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &picture),
+    assert_int_equal(krs_render(fixture.rendering, fixture.state, &options, &picture),
                      KRS_BAD_ARGUMENT);
     assert_non_null(strstr(krs_renderer_message(renderer), "gradients"));
     options.methods.normals = KRS_NORMALS_COUNT;
-    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &picture),
+    assert_int_equal(krs_render(fixture.rendering, fixture.state, &options, &picture),
                      KRS_BAD_ARGUMENT);
     fixture_close(&fixture);
 }
@@ -374,9 +374,9 @@ static int count_between(const KrsPicture *picture, int pixels)
 
 /* Far from the origin differences reach farther, so many hits lie next to the line of an edge.  Few
    may still have a mean: those at corners, where three faces meet, and on outlines. */
-static void pixels_on_edges_show_one_side(void **state)
+static void pixels_on_edges_show_one_side(void **context)
 {
-    (void)state;
+    (void)context;
     enum { ACROSS = 480, DOWN = 270, MOST = 12 };
     Fixture fixture = fixture_open(
         "camera { eye: [49, 6, 17], target: [40, 1, 0], fov: 15deg }\n"
@@ -384,7 +384,7 @@ static void pixels_on_edges_show_one_side(void **state)
         "show (box([4, 3, 4]).move([0, 1.5, 0]) & half_space([0, 1, 1], 2.8))\n"
         "    .rotate([0, 1, 0], 0.3).move([40, 0, 0]);\n");
     KrsPicture *picture = NULL;
-    assert_int_equal(krs_render(fixture.rendering, fixture.frame,
+    assert_int_equal(krs_render(fixture.rendering, fixture.state,
                                 &(KrsRenderOptions){.width           = ACROSS,
                                                     .height          = DOWN,
                                                     .methods.normals = KRS_NORMALS_OCTAHEDRON},

@@ -419,7 +419,7 @@ static void is_well_in_view(void **state)
     Product        product = product_format("use \"std/surfaces.krs\";\nshow %.*s();\n"
                                                    "camera { eye: %.*s_view }",
                                             name, surface->name, name, surface->name);
-    assert_int_equal(krs_state_view(product.frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(product.state, 0, &view), KRS_OK);
     Vec    eye     = vec(view.camera.eye[0], view.camera.eye[1], view.camera.eye[2]);
     Vec    forward = vec_unit(vec_scale(-1, eye)), up = vec(0, 1, 0);
     Vec    right = vec_unit(vec_cross(forward, up));

@@ -62,7 +62,7 @@ static void path_close(Path *path)
 }
 
 /* Three points at the same speed go on where the last part ends. */
-static void path_go_on(Path *path, Vec to)
+static void path_extend(Path *path, Vec to)
 {
     Vec *last = path->parts[path->count - 1], *next = path->parts[path->count];
     next[0] = last[2];
@@ -147,8 +147,8 @@ static Path path_new(double twist, double taper)
 
 static void path_lengthen(Path *path)
 {
-    path_go_on(path, vec(0.4, 0.7, 0.4));
-    path_go_on(path, vec(1.1, 0.5, 0.2));
+    path_extend(path, vec(0.4, 0.7, 0.4));
+    path_extend(path, vec(1.1, 0.5, 0.2));
 }
 
 /* What overlaps inside, and what a parabola is bent by less than its neighbour, is a thousandth of the

@@ -224,8 +224,8 @@ KrsPicture *twigs_render(const Shot *shot, const Lens *lens, uint32_t samples)
                                 .samples = samples,
                                 .error   = shot->error,
                                 .camera  = (size_t)shot->camera};
-    assert_int_equal(krs_state_set(scene->product.frame, "size", &size, 1), KRS_OK);
-    if (krs_render(scene->rendering, scene->product.frame, &options, &picture) != KRS_OK)
+    assert_int_equal(krs_state_set(scene->product.state, "size", &size, 1), KRS_OK);
+    if (krs_render(scene->rendering, scene->product.state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
     return picture;

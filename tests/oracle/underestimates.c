@@ -146,7 +146,7 @@ static KrsPicture *take(const struct Form *form, double softness, KrsShadows sha
     KrsPicture      *picture = NULL;
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .shadows = shadows, .samples = 1};
     if (krs_rendering_new(renderer, product.scene, KRS_FOR_PICTURES, &rendering) != KRS_OK ||
-        krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
+        krs_render(rendering, product.state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
     krs_rendering_free(rendering);

@@ -65,19 +65,19 @@ static bool is_unseen(Difference difference)
 }
 
 /* A picture with upsampling, and one without. */
-static void take_both(KrsRendering *rendering, KrsState *frame, KrsPicture *pictures[2])
+static void take_both(KrsRendering *rendering, KrsState *state, KrsPicture *pictures[2])
 {
     for (int i = 0; i < 2; i++)
         pictures[i] = take_picture(
-            rendering, frame,
+            rendering, state,
             (KrsRenderOptions){
                 .width = WIDTH, .height = HEIGHT, .samples = 1, .methods.no_upsampling = i});
 }
 
-static bool upsampling_is_unseen(const char *name, KrsState *frame, KrsPicture *pictures[2])
+static bool upsampling_is_unseen(const char *name, KrsState *state, KrsPicture *pictures[2])
 {
     KrsView view;
-    assert_int_equal(krs_state_view(frame, 0, &view), KRS_OK);
+    assert_int_equal(krs_state_view(state, 0, &view), KRS_OK);
     Difference d = compare_pictures(&view.image, pictures[0], pictures[1]);
     print_message("# upsampling, %s: off by %.1f of 255 at most, %.3f %% by more than 1, %.3f %% "
                   "by more than 4\n",
@@ -89,15 +89,15 @@ static bool upsampling_is_unseen(const char *name, KrsState *frame, KrsPicture *
 
 /* The mean of pictures of one ray each to lights and sky, through the pixels' centres, of which
    neighbours know nothing. */
-static KrsPicture *take_reference(KrsRendering *rendering, KrsState *frame)
+static KrsPicture *take_reference(KrsRendering *rendering, KrsState *state)
 {
     enum { SEEDS = 16 };
     const size_t     numbers = 4 * (size_t)WIDTH * HEIGHT;
     KrsRenderOptions options = {
         .width = WIDTH, .height = HEIGHT, .samples = 1, .methods.no_upsampling = true};
-    KrsPicture *sum = take_picture(rendering, frame, options);
+    KrsPicture *sum = take_picture(rendering, state, options);
     for (options.seed = 1; options.seed < SEEDS; options.seed++) {
-        KrsPicture *picture = take_picture(rendering, frame, options);
+        KrsPicture *picture = take_picture(rendering, state, options);
         for (size_t i = 0; i < numbers; i++)
             sum->color[i] += picture->color[i];
         krs_picture_free(picture);
@@ -128,11 +128,11 @@ static double means_apart(const KrsPicture *a, const KrsPicture *b)
 
 /* A picture whose neighbours share, against the reference of the same scene, or a scene with its
    light from elsewhere. */
-static bool sharing_is_unseen(const char *name, KrsRendering *rendering, KrsState *frame)
+static bool sharing_is_unseen(const char *name, KrsRendering *rendering, KrsState *state)
 {
-    KrsPicture *reference = take_reference(rendering, frame);
+    KrsPicture *reference = take_reference(rendering, state);
     KrsPicture *picture   = take_picture(
-          rendering, frame, (KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .samples = 1});
+          rendering, state, (KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .samples = 1});
     double apart = means_apart(picture, reference);
     print_message("# %s, neighbours share: means off by %.4f of the mean\n", name, apart);
     for (int k = 0; k < WIDTH * HEIGHT / 8; k++) /* a planted fault: an eighth is darker */
@@ -150,18 +150,18 @@ static bool example_is_unharmed(const char *path)
     Product       product = {0};
     KrsRendering *rendering;
     assert_int_equal(krs_compile_file(path, NULL, &product.scene), KRS_OK);
-    assert_int_equal(krs_state_new(product.scene, &product.frame), KRS_OK);
+    assert_int_equal(krs_state_new(product.scene, &product.state), KRS_OK);
     open_rendering(&product, &rendering);
-    bool unseen = sharing_is_unseen(path, rendering, product.frame);
+    bool unseen = sharing_is_unseen(path, rendering, product.state);
     krs_rendering_free(rendering);
     product_free(&product);
     return unseen;
 }
 
 /* Barth's sextic from near and far: nodes, creases, and hits by power series. */
-static void sharing_does_not_change_algebraic_surfaces(void **state)
+static void sharing_does_not_change_algebraic_surfaces(void **context)
 {
-    (void)state;
+    (void)context;
     static const double angles[] = {40, 10};
     size_t              wrong    = 0;
     for (int i = 0; i < 2; i++) {
@@ -176,16 +176,16 @@ static void sharing_does_not_change_algebraic_surfaces(void **state)
                     angles[i]);
         Product product = product_compile(text.bytes);
         open_rendering(&product, &rendering);
-        wrong += !sharing_is_unseen("a sextic", rendering, product.frame);
+        wrong += !sharing_is_unseen("a sextic", rendering, product.state);
         krs_rendering_free(rendering);
         product_free(&product);
     }
     assert_int_equal(wrong, 0);
 }
 
-static void sharing_does_not_change_examples(void **state)
+static void sharing_does_not_change_examples(void **context)
 {
-    (void)state;
+    (void)context;
     static const char *const paths[] = {"examples/02-gear.krs", "examples/06-temple.krs"};
     size_t                   wrong   = 0;
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++)
@@ -210,9 +210,9 @@ static size_t count_holes(KrsPicture *const pictures[2], size_t *dark)
     return holes;
 }
 
-static void upsampling_keeps_thin_shadows(void **state)
+static void upsampling_keeps_thin_shadows(void **context)
 {
-    (void)state;
+    (void)context;
     static const double widths[] = {1, 2, 4}; /* pixels */
     size_t              wrong    = 0;
     for (int i = 0; i < 3; i++) {
@@ -227,9 +227,9 @@ static void upsampling_keeps_thin_shadows(void **state)
                             {.width = WIDTH, .height = HEIGHT},
                             0};
         set_lighting(&shot);
-        take_both(fixture->rendering, fixture->product.frame, pictures);
+        take_both(fixture->rendering, fixture->product.state, pictures);
         snprintf(name, sizeof name, "shadows %g pixels wide", widths[i]);
-        wrong += !upsampling_is_unseen(name, fixture->product.frame, pictures);
+        wrong += !upsampling_is_unseen(name, fixture->product.state, pictures);
         holes = count_holes(pictures, &dark);
         print_message("# upsampling: %zu pixels in shadow, %zu of them lit\n", dark, holes);
         assert_true(dark > 300);
@@ -270,9 +270,9 @@ static const Shot cropped_shots[] = {
      0},
 };
 
-static void crops_are_parts_of_the_picture(void **state)
+static void crops_are_parts_of_the_picture(void **context)
 {
-    (void)state;
+    (void)context;
     static const KrsWindow crops[] = {{133, 77, 101, 60},
                                       {161, 82, 7, 5},
                                       {0, 99, 320, 1},
@@ -296,9 +296,9 @@ static void crops_are_parts_of_the_picture(void **state)
 /* ---- Planted faults ---- */
 
 /* Both what is seen of a few pixels, and holes in shadows. */
-static void wrong_pixels_are_found(void **state)
+static void wrong_pixels_are_found(void **context)
 {
-    (void)state;
+    (void)context;
     enum { FEW = 40 };
     Shot        shot  = cropped_shots[1];
     KrsImage    image = {.tone_map = "none"};

@@ -103,29 +103,29 @@ static double first_change(Formula *f, const double o[3], const double v[3], dou
     return most;
 }
 
-static double along_at(KrsState *frame, const Tape *tape, Node root, const double p[3],
+static double along_at(KrsState *state, const Tape *tape, Node root, const double p[3],
                        const double v[3])
 {
-    tape_run_surface(tape, p, v, 0, frame->values);
-    return frame->values[root].v[0];
+    tape_run_surface(tape, p, v, 0, state->values);
+    return state->values[root].v[0];
 }
 
 /* So far behind a surface, and the longest that a length may be there; bodies are ten times as wide. */
 static const double BEHIND = 1e-5, MAX_BEHIND = 0.2;
 
-static void steps_stay_before_the_surface(void **state)
+static void steps_stay_before_the_surface(void **context)
 {
-    const struct Case *c = *state;
+    const struct Case *c = *context;
     KrsScene          *scene;
-    KrsState          *frame;
+    KrsState          *state;
     uint32_t           seed = 3;
     assert_int_equal(krs_compile_text(c->text, strlen(c->text), c->name, NULL, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_true(krs_scene_program(scene)->along);
     Node root = roots_of(&scene->roots, ROOTS_ALONG).items[0];
     Tape tape = tape_new(scene->graph, &root, 1, &scene->arena);
-    state_refresh(frame);
-    tape_run_frame(&tape, frame->parameters, frame->values);
+    state_refresh(state);
+    tape_run_frame(&tape, state->parameters, state->values);
     int evaluations = 0, hits = 0;
     for (int ray = 0; ray < 250; ray++) {
         double o[3], v[3], length = 0, p[3], aim[3];
@@ -141,7 +141,7 @@ static void steps_stay_before_the_surface(void **state)
         double side = c->formula(o) < 0 ? -1 : 1; /* which rounding at the zero may change */
         for (int i = 0; i < 200 && t < end && fabs(step) > 1e-9; i++) {
             context_at(o, v, t, p);
-            step = fmax(side * along_at(frame, &tape, root, p, v), 0);
+            step = fmax(side * along_at(state, &tape, root, p, v), 0);
             t += step;
             evaluations++;
             if (t > truth + 1e-7 && truth < end)
@@ -154,14 +154,14 @@ static void steps_stay_before_the_surface(void **state)
                 fail_msg("%s: ray %d ends at %.9g, the surface is at %.9g", c->name, ray, t, truth);
             /* Just behind it lengths are short: chords from before it cross 0 there. */
             context_at(o, v, truth + BEHIND, p);
-            double behind = along_at(frame, &tape, root, p, v);
+            double behind = along_at(state, &tape, root, p, v);
             if (fabs(behind) > MAX_BEHIND)
                 fail_msg("%s: ray %d has %g ahead behind its surface", c->name, ray, behind);
         }
     }
     assert_true(hits > 60);
     assert_true(evaluations < 250 * 20);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 

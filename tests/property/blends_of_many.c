@@ -80,7 +80,7 @@ static void probe(const CsgNode *csg_node, const Part *parts, int count, double 
     size_t      length  = (size_t)sprintf(text, "show %s([", csg_node->function);
     KrsOptions  options = {0};
     KrsScene   *scene   = NULL;
-    KrsState   *frame   = NULL;
+    KrsState   *state   = NULL;
     for (int i = 0; i < count; i++) {
         write_part(text + length, &parts[i]);
         length += strlen(text + length);
@@ -88,9 +88,9 @@ static void probe(const CsgNode *csg_node, const Part *parts, int count, double 
     length += (size_t)sprintf(text + length, "], blend: %.17g, kind: \"%s\"%s);", csg_node->width,
                               csg_node->kind, strcmp(csg_node->kind, "stairs") ? "" : ", steps: 3");
     assert_int_equal(krs_compile_text(text, length, "many.krs", &options, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_probe(frame, (const double(*)[3])points, POINTS, hits), KRS_OK);
-    krs_state_free(frame);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_probe(state, (const double(*)[3])points, POINTS, hits), KRS_OK);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 
@@ -235,14 +235,14 @@ static CsgNode random_csg_node(bool intersect)
                      between(0.02, 0.4)};
 }
 
-static void follows_definition(void **state)
+static void follows_definition(void **context)
 {
     static const int counts[] = {2, 3, 5, 8, 9, 17, 63, 64, 130};
     static double    points[POINTS][3];
     static KrsHit    hits[POINTS];
     static Part      parts[MOST];
     int              intersected = 0;
-    (void)state;
+    (void)context;
     for (size_t n = 0; n < sizeof counts / sizeof *counts; n++)
         for (int trial = 0; trial < KINDS; trial++) {
             CsgNode csg_node = random_csg_node((trial + n) % 4 == 3 && counts[n] < 64);
@@ -268,12 +268,12 @@ static void follows_definition(void **state)
     assert_true(intersected > 0); /* some have nothing in common */
 }
 
-static void order_and_what_is_far_do_not_show(void **state)
+static void order_and_what_is_far_do_not_show(void **context)
 {
     static double points[POINTS][3];
     static KrsHit before[POINTS], after[POINTS];
     static Part   parts[MOST];
-    (void)state;
+    (void)context;
     for (int trial = 0; trial < 30; trial++) {
         CsgNode csg_node = random_csg_node(false);
         int     count    = 2 + (int)random_below(&randomness, trial % 3 ? 30 : 100), more;
@@ -295,12 +295,12 @@ static void order_and_what_is_far_do_not_show(void **state)
 }
 
 /* Two sides of a step differ by no more than its length. */
-static void slopes_hold(void **state)
+static void slopes_hold(void **context)
 {
     static double points[POINTS][3];
     static KrsHit hits[POINTS];
     static Part   parts[MOST];
-    (void)state;
+    (void)context;
     for (int trial = 0; trial < 12; trial++) {
         CsgNode csg_node = random_csg_node(false);
         int     count    = 3 + (int)random_below(&randomness, trial % 2 ? 12 : 90);
@@ -323,7 +323,7 @@ static void slopes_hold(void **state)
 }
 
 /* What surfaces are mixed by is the same in any order, too. */
-static void colours_do_not_show_the_order(void **state)
+static void colours_do_not_show_the_order(void **context)
 {
     static const char *const texts[] = {
         "let a = sphere(1).paint(#ff0000); let b = sphere(1).move([1, 0, 0]).paint(#00ff00);"
@@ -335,19 +335,19 @@ static void colours_do_not_show_the_order(void **state)
         "[sphere(0.1 + 0.001 * i).move([i, 99, 0]) for i in 0..70], blend: 1);"};
     static double points[POINTS][3];
     static KrsHit hits[3][POINTS];
-    (void)state;
+    (void)context;
     for (int i = 0; i < POINTS; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = between(-1, 1.5);
     for (int t = 0; t < 3; t++) {
         KrsOptions options = {0};
         KrsScene  *scene   = NULL;
-        KrsState  *frame   = NULL;
+        KrsState  *state   = NULL;
         assert_int_equal(krs_compile_text(texts[t], strlen(texts[t]), "c.krs", &options, &scene),
                          KRS_OK);
-        assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-        assert_int_equal(krs_probe(frame, (const double(*)[3])points, POINTS, hits[t]), KRS_OK);
-        krs_state_free(frame);
+        assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+        assert_int_equal(krs_probe(state, (const double(*)[3])points, POINTS, hits[t]), KRS_OK);
+        krs_state_free(state);
         krs_scene_free(scene);
     }
     for (int t = 1; t < 3; t++)

@@ -42,7 +42,7 @@ static double difference(Bench *b, Node node, const double point[3], int axis, d
     return (value_at(b, node, after) - value_at(b, node, before)) / (2 * step);
 }
 
-/* Of a FLOAT; returns how many of the points told something. */
+/* Checks the derivatives of a FLOAT; returns how many of the points told something. */
 static int check_derivatives(Bench *b, const char *name, Node root)
 {
     Node     partial[3], blame = NODE_NONE;

@@ -29,8 +29,8 @@ static double between(double low, double high) { return random_between(&randomne
 
 typedef enum PartKind { BOX, BALL, ROD, CAPSULE, PART_KINDS } PartKind;
 
-/* Of a box half the sides are `size`; of others size[0] is the radius and size[1] half the height, along
-   the second axis of the frame. */
+/* A box has half its sides in `size`; other parts have the radius in size[0] and half the height in size[1],
+   along the second axis of the frame. */
 typedef struct Part {
     PartKind kind;
     double   size[3], centre[3];
@@ -160,13 +160,13 @@ static void probe_text(const char *text, const char *param, double value, double
 {
     KrsOptions options = {0};
     KrsScene  *scene   = NULL;
-    KrsState  *frame   = NULL;
+    KrsState  *state   = NULL;
     assert_int_equal(krs_compile_text(text, strlen(text), "fillets.krs", &options, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     if (param)
-        assert_int_equal(krs_state_set(frame, param, &value, 1), KRS_OK);
-    assert_int_equal(krs_probe(frame, (const double(*)[3])points, (size_t)count, hits), KRS_OK);
-    krs_state_free(frame);
+        assert_int_equal(krs_state_set(state, param, &value, 1), KRS_OK);
+    assert_int_equal(krs_probe(state, (const double(*)[3])points, (size_t)count, hits), KRS_OK);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 
@@ -541,7 +541,7 @@ static void order_and_what_is_far_do_not_show(void **state)
     }
 }
 
-/* Of each two of many what they are alone; so also of 100 alike, which become an instance group. */
+/* Takes the least over each two of many; 100 that are alike become an instance group. */
 static double min_pair(const Part *parts, int count, double r, const double p[3], bool hulls)
 {
     double d[MOST], least = HUGE_VAL;

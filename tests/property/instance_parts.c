@@ -16,7 +16,7 @@ Arena              arena, scratch;
 static Sources     sources;
 static Diags       diags;
 static Parameters  parameters;
-static FrameSlopes slopes;
+static StateSlopes slopes;
 ShapeBuilder       builder;
 Random             randomness;
 double             now, height; /* the time, and a parameter from 0 to 1 */
@@ -29,7 +29,7 @@ int start(void **state)
     sources      = (Sources){.arena = &arena};
     diags        = (Diags){.arena = &arena, .sources = &sources};
     parameters   = (Parameters){0};
-    slopes       = (FrameSlopes){0};
+    slopes       = (StateSlopes){0};
     randomness   = (Random){7};
     builder      = (ShapeBuilder){.arena      = &arena,
                                   .scratch    = &scratch,

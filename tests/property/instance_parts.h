@@ -48,7 +48,7 @@ Seen lower(const Shape *shape, LoweredGroups *instances);
 void prepare(Seen *seen);
 /* The distance; other values are in values[roots[]]. */
 double look(const Seen *seen, const double p[3]);
-/* Of what is listed at a point, and no more than that, a distance is right. */
+/* The distance is right within this radius by what is listed at a point, and by no more than that. */
 double clearance_at(const double p[3]);
 
 typedef struct Difference {

@@ -358,8 +358,8 @@ static void reach_is_needed(void **state)
     }
 }
 
-/* Of two operands, one that is the reach above the result changes it by less than a ten-thousandth; a fifth
-   less is too little. */
+/* Where one of two operands is the reach above the result it changes that by less than a ten-thousandth; a
+   fifth less is too little. */
 static void reach_of_two(void **state)
 {
     (void)state;

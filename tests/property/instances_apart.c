@@ -23,7 +23,7 @@ enum { POINTS = 240, RAYS = POINTS / 2, SEED = 11, LEAST = 16 };
 
 typedef struct Asked {
     KrsScene *scene;
-    KrsState *frame;
+    KrsState *state;
     double    distances[POINTS];
     KrsHit    hits[POINTS], rays[RAYS];
 } Asked;
@@ -34,10 +34,10 @@ typedef struct Questions {
 
 static void ask(Asked *asked, const Questions *questions)
 {
-    assert_int_equal(krs_distance(asked->frame, questions->points, POINTS, asked->distances),
+    assert_int_equal(krs_distance(asked->state, questions->points, POINTS, asked->distances),
                      KRS_OK);
-    assert_int_equal(krs_probe(asked->frame, questions->points, POINTS, asked->hits), KRS_OK);
-    assert_int_equal(krs_raycast(asked->frame, questions->origins, questions->directions, RAYS, 100,
+    assert_int_equal(krs_probe(asked->state, questions->points, POINTS, asked->hits), KRS_OK);
+    assert_int_equal(krs_raycast(asked->state, questions->origins, questions->directions, RAYS, 100,
                                  0, asked->rays),
                      KRS_OK);
 }
@@ -50,13 +50,13 @@ static void open_scene(Asked *asked, const InstanceText *scene, bool apart)
     if (status != KRS_OK)
         fail_msg("%s does not compile:\n%s", scene->name, text);
     free(text);
-    assert_int_equal(krs_state_new(asked->scene, &asked->frame), KRS_OK);
+    assert_int_equal(krs_state_new(asked->scene, &asked->state), KRS_OK);
     assert_true((asked->scene->program.table_count == 0) == apart);
 }
 
 static void close_scene(Asked *asked)
 {
-    krs_state_free(asked->frame);
+    krs_state_free(asked->state);
     krs_scene_free(asked->scene);
 }
 
@@ -129,7 +129,7 @@ static Differences differences_of(const InstanceText *scene, bool by_cells)
     Differences      found = {0};
     open_scene(&apart, scene, true);
     open_scene(&group, scene, false);
-    group.frame->tapes.distance.by_cells = group.frame->tapes.surface.by_cells = by_cells;
+    group.state->tapes.distance.by_cells = group.state->tapes.surface.by_cells = by_cells;
     make_questions(&apart, &questions);
     ask(&apart, &questions);
     ask(&group, &questions);

@@ -143,7 +143,7 @@ static const Loop by_iterations[] = {
 
 typedef struct Asked {
     KrsScene *scene;
-    KrsState *frame;
+    KrsState *state;
     double    distances[POINTS];
     KrsHit    hits[POINTS];
 } Asked;
@@ -164,19 +164,19 @@ static void open_loop(Asked *asked, const Loop *loop, int seed, KrsSpecialize sp
                            : compile_with_instances(text, length, LEAST, &options, &asked->scene);
     if (status != KRS_OK)
         fail_msg("%s does not compile:\n%s", loop->name, text);
-    assert_int_equal(krs_state_new(asked->scene, &asked->frame), KRS_OK);
+    assert_int_equal(krs_state_new(asked->scene, &asked->state), KRS_OK);
 }
 
 static void close_loop(Asked *asked)
 {
-    krs_state_free(asked->frame);
+    krs_state_free(asked->state);
     krs_scene_free(asked->scene);
 }
 
 static void ask(Asked *asked, const double points[POINTS][3])
 {
-    assert_int_equal(krs_distance(asked->frame, points, POINTS, asked->distances), KRS_OK);
-    assert_int_equal(krs_probe(asked->frame, points, POINTS, asked->hits), KRS_OK);
+    assert_int_equal(krs_distance(asked->state, points, POINTS, asked->distances), KRS_OK);
+    assert_int_equal(krs_probe(asked->state, points, POINTS, asked->hits), KRS_OK);
 }
 
 static bool is_near(double a, double b) { return a == b || fabs(a - b) < 1e-9; }

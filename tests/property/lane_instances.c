@@ -27,11 +27,11 @@ static const char *const letters[] = {
 
 static Random randomness = {SEED};
 
-/* One of the two tapes of a frame, and its lanes. */
+/* One of the two tapes of a state, and its lanes. */
 typedef struct Subject {
     Memory      memory;
     Arena       arena;
-    KrsState   *frame;
+    KrsState   *state;
     const Tape *tape;
     Node        roots[ROOT_COUNT];
     size_t      count;
@@ -41,7 +41,7 @@ typedef struct Subject {
 
 static void open_lanes(Subject *s, bool surface)
 {
-    const KrsScene *scene = s->frame->scene;
+    const KrsScene *scene = s->state->scene;
     s->tape               = surface ? &scene->surface : &scene->distance;
     s->count              = surface ? ROOT_COUNT : 1;
     s->roots[0]           = distance_root(&scene->roots, 0);
@@ -49,14 +49,14 @@ static void open_lanes(Subject *s, bool surface)
         memcpy(s->roots, surface_roots(&scene->roots, 0), sizeof s->roots);
     s->lanes         = lane_tape_new(s->tape, s->roots, s->count, false, 0, &s->arena);
     s->lanes.scalars = arena_new_array(&s->arena, double, s->lanes.scalar_count + 1);
-    lane_tape_scalars(&s->lanes, s->frame->values, s->lanes.scalars);
-    s->work = lane_work_in(arena_alloc(&s->arena, lane_work_bytes(&s->lanes), 1), s->frame->values);
+    lane_tape_scalars(&s->lanes, s->state->values, s->lanes.scalars);
+    s->work = lane_work_in(arena_alloc(&s->arena, lane_work_bytes(&s->lanes), 1), s->state->values);
 }
 
 /* Some are near each other, as those of one cell are; others anywhere. */
 static void place(const Subject *s, double (*points)[3], double (*normals)[3])
 {
-    const KrsProgram *program   = &s->frame->scene->program;
+    const KrsProgram *program   = &s->state->scene->program;
     double            middle[3] = {0, 0, 0};
     for (int i = 0; i < POINTS; i++) {
         bool alone = i < POINTS / 2;
@@ -75,12 +75,12 @@ static size_t count_different(const Subject *s, const LanePoints *points, const 
     size_t different = 0, output = 0;
     for (size_t i = 0; i < points->count; i++) {
         tape_run_surface(s->tape, points->points[i], points->normals[i], points->footprints[i],
-                         s->frame->values);
+                         s->state->values);
         for (size_t k = 0; k < s->count; k++) {
             GraphType type = (GraphType)s->tape->graph->items[s->roots[k]].type;
             uint32_t  size = type <= TYPE_VEC4 ? (uint32_t)type : 1;
             for (uint32_t c = 0; c < size; c++, output++) {
-                double tape = s->frame->values[s->roots[k]].v[c], lane = results[output];
+                double tape = s->state->values[s->roots[k]].v[c], lane = results[output];
                 different += !(tape == lane || (isnan(tape) && isnan(lane)));
             }
         }
@@ -121,15 +121,15 @@ static KrsScene *open_scene(Subject *s, const char *name, const char *text)
         compile_with_instances(text, strlen(text), LEAST, NULL, &scene) != KRS_OK)
         fail_msg("%s does not compile", name);
     assert_true(scene->program.table_count > 0);
-    assert_int_equal(krs_state_new(scene, &s->frame), KRS_OK);
-    state_refresh(s->frame);
+    assert_int_equal(krs_state_new(scene, &s->state), KRS_OK);
+    state_refresh(s->state);
     return scene;
 }
 
 static void close_scene(Subject *s, KrsScene *scene)
 {
     arena_free(&s->arena);
-    krs_state_free(s->frame);
+    krs_state_free(s->state);
     krs_scene_free(scene);
 }
 
@@ -217,7 +217,7 @@ static void try_box(Subject *s, Tally *tally)
     double     points[LANES][3], whole[LANES], less[LANES];
     Box        box    = box_near(s);
     LaneRanges ranges = lane_ranges_new(&s->lanes, &s->arena);
-    ranges.values     = s->frame->values;
+    ranges.values     = s->state->values;
     lane_ranges_run(&s->lanes, &ranges, box);
     LaneTape pruned = lane_prune(&s->lanes, &ranges, 1, &s->arena);
     for (int i = 0; i < LANES; i++)

@@ -129,7 +129,7 @@ static double value_at(const Made *made, const double p[3])
     return trial_value(&made->trial, p).v[made->component];
 }
 
-/* Of choices the derivatives are those of the pieces. */
+/* The derivatives of choices are those of the pieces. */
 static double chosen_piece(const Made *made, const double p[3])
 {
     Trial of_condition = made->trial;

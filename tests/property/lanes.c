@@ -27,7 +27,7 @@ typedef struct Pair {
     Node       roots[ROOTS];
 } Pair;
 
-/* Of the roots. */
+/* Makes the tapes of the roots. */
 static void pair_finish(Bench *b, Pair *pair, const NodeValue *parameters)
 {
     pair->tape   = tape_new(b->graph, pair->roots, ROOTS, &b->arena);
@@ -628,7 +628,7 @@ static Node make_row(Bench *b, const void *kind, Box box)
     return graph_op(g, row->op, operands);
 }
 
-/* Of every row of ops.def: what it has is right, and where it does not jump it has some. */
+/* Each row of ops.def has right second derivatives, and where it does not jump it has some. */
 static void hessians_of_rows_hold(void **state)
 {
     for (size_t i = 0; i < sizeof ROWS_OF_TABLE / sizeof *ROWS_OF_TABLE; i++) {

@@ -29,62 +29,62 @@ static const char scene_text[] =
     ".scale(0.5 + 0.1 * gap).move(place(i)).paint(#808080) for i in 0..400]);"
     "show union([sphere(0.4).move([i - 100, gap, 3 * sin(beat)]) for i in 0..200], blend: 0.1);";
 
-static KrsState *frame_of(const char *declared, KrsScene **scene)
+static KrsState *state_of(const char *declared, KrsScene **scene)
 {
     char      text[1024];
-    KrsState *frame;
+    KrsState *state;
     snprintf(text, sizeof text, scene_text, declared);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
-    assert_int_equal(krs_state_new(*scene, &frame), KRS_OK);
-    return frame;
+    assert_int_equal(krs_state_new(*scene, &state), KRS_OK);
+    return state;
 }
 
-/* Whether answers in a frame are those of a scene in which its numbers are known. */
-static void assert_same_answers(KrsState *frame, KrsState *known)
+/* Whether answers in a state are those of a scene in which its numbers are known. */
+static void assert_same_answers(KrsState *state, KrsState *known)
 {
     double points[POINTS][3], is[POINTS], wanted[POINTS], bounds[POINTS];
     for (int i = 0; i < POINTS; i++)
         random_vector(&randomness, 12, points[i]);
     const double(*p)[3] = (const double(*)[3])points;
-    assert_int_equal(krs_distance(frame, p, POINTS, is), KRS_OK);
+    assert_int_equal(krs_distance(state, p, POINTS, is), KRS_OK);
     assert_int_equal(krs_distance(known, p, POINTS, wanted), KRS_OK);
-    assert_int_equal(krs_distance_bound(frame, p, POINTS, bounds), KRS_OK);
+    assert_int_equal(krs_distance_bound(state, p, POINTS, bounds), KRS_OK);
     for (int i = 0; i < POINTS; i++) {
         assert_true(fabs(is[i] - wanted[i]) < 1e-9);
         assert_true(bounds[i] < wanted[i] + 1e-9);
         double alone; /* without lanes */
-        assert_int_equal(krs_distance(frame, p + i, 1, &alone), KRS_OK);
+        assert_int_equal(krs_distance(state, p + i, 1, &alone), KRS_OK);
         assert_true(alone == is[i]);
     }
 }
 
-static void frames_are_scenes(void **state)
+static void states_are_scenes(void **context)
 {
-    (void)state;
+    (void)context;
     KrsScene *scene, *other;
-    KrsState *frame = frame_of(
+    KrsState *state = state_of(
         "param gap = 1 in [0.5, 3]; param turn = 1 in [0, 6]; let beat = time;", &scene);
     for (int i = 0; i < 4; i++) {
         double gap = between(0.5, 3), turn = between(0, 6), beat = between(-9, 9);
         char   declared[128];
         snprintf(declared, sizeof declared, "let gap = %.17g; let turn = %.17g; let beat = %.17g;",
                  gap, turn, beat);
-        KrsState *known = frame_of(declared, &other);
-        assert_int_equal(krs_state_set(frame, "gap", &gap, 1), KRS_OK);
-        assert_int_equal(krs_state_set(frame, "turn", &turn, 1), KRS_OK);
-        assert_int_equal(krs_state_set_time(frame, beat), KRS_OK);
-        assert_same_answers(frame, known);
+        KrsState *known = state_of(declared, &other);
+        assert_int_equal(krs_state_set(state, "gap", &gap, 1), KRS_OK);
+        assert_int_equal(krs_state_set(state, "turn", &turn, 1), KRS_OK);
+        assert_int_equal(krs_state_set_time(state, beat), KRS_OK);
+        assert_same_answers(state, known);
         krs_state_free(known);
         krs_scene_free(other);
     }
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_are_scenes),
+        cmocka_unit_test(states_are_scenes),
     };
     return cmocka_run_group_tests_name("moving scenes", tests, NULL, NULL);
 }

@@ -186,7 +186,7 @@ int moving_eighths(char kind)
     }
 }
 
-/* Of some places halfway between whole numbers, the one where noise rises most along an axis. */
+/* Takes the one of some places halfway between whole numbers where noise rises most along an axis. */
 static void steep_place(Random *random, Operand *operand)
 {
     Op     op       = operand->type == TYPE_VEC2 ? OP_noise2 : OP_noise3;

@@ -17,7 +17,7 @@ typedef struct Row {
     const char *signature; /* of a MAP row: g for each operand, FLOAT or vector */
 } Row;
 
-/* Of all operations; `name` is NULL where there is nothing to try. */
+/* A trial for each operation; `name` is NULL where there is nothing to try. */
 extern const Row op_rows[OP_COUNT];
 
 /* base + gradient * point; truths and instance numbers are steps of its first component. */

@@ -70,7 +70,7 @@ static void overlaps(void **state)
     }
 }
 
-/* Of many boxes it takes little time, and few are found. */
+/* Many boxes take little time, and few are found. */
 static void many_overlaps(void **state)
 {
     enum { MANY_BOXES = 100000 };

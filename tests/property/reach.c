@@ -112,7 +112,7 @@ static void copy_tighten(ReachStage *stages, uint32_t count, Fault fault)
 
 /* ---- the judge ---- */
 
-/* Of all calls: after how many a point was outside, and how many left a side too far out. */
+/* What all calls have told: after how many a point was outside, and how many left a side too far out. */
 typedef struct Verdict {
     int    calls, outside, loose;
     double farthest; /* of all sides, in diagonals */

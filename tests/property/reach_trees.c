@@ -101,9 +101,9 @@ static Box seen_of_tree(const ReachStage stages[TREE_STAGES])
     return seen;
 }
 
-static void trees_shrink_to_their_crowns(void **state)
+static void trees_shrink_to_their_crowns(void **context)
 {
-    (void)state;
+    (void)context;
     ReachStage loose[TREE_STAGES], tight[TREE_STAGES];
     grow_tree(loose);
     grow_tree(tight);
@@ -134,14 +134,14 @@ static void trees_shrink_to_their_crowns(void **state)
 
 /* Goes from one point to another until it is inside of a solid; false when it never is.  Nothing
    solid may be met outside of the box. */
-static bool walk(KrsState *frame, Box box, const double from[3], const double to[3], double p[3])
+static bool walk(KrsState *state, Box box, const double from[3], const double to[3], double p[3])
 {
     double offset[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, distance, t = 0;
     double length = sqrt(dot3(offset, offset));
     while (t < 2 * length) {
         for (int i = 0; i < 3; i++)
             p[i] = from[i] + offset[i] * t / length;
-        krs_distance(frame, (const double(*)[3])p, 1, &distance);
+        krs_distance(state, (const double(*)[3])p, 1, &distance);
         assert_true(distance > 0 || in_box(box, p));
         if (distance <= 0)
             return true;
@@ -162,7 +162,7 @@ static void random_outside(Random *random, Box box, double far, double p[3])
 }
 
 /* What 2,000 walks from around a box into it meet. */
-static Box seen_of_scene(KrsState *frame, Box box)
+static Box seen_of_scene(KrsState *state, Box box)
 {
     Box    seen   = box_empty;
     Random random = {3};
@@ -171,7 +171,7 @@ static Box seen_of_scene(KrsState *frame, Box box)
         random_outside(&random, box, 0.2, from);
         for (int k = 0; k < 3; k++)
             to[k] = random_between(&random, box.axis[k].low, box.axis[k].high);
-        if (walk(frame, box, from, to, p))
+        if (walk(state, box, from, to, p))
             include(&seen, p);
     }
     return seen;
@@ -179,14 +179,14 @@ static Box seen_of_scene(KrsState *frame, Box box)
 
 /* Distances know nothing of the box, so they can refute it: what is shown may neither stick out
    nor, since the walks come close to every side, leave much of the box empty. */
-static void nothing_solid_is_outside_of_reported_bounds(void **state)
+static void nothing_solid_is_outside_of_reported_bounds(void **context)
 {
-    (void)state;
+    (void)context;
     KrsScene    *scene;
-    KrsState    *frame;
+    KrsState    *state;
     KrsComponent tree;
     assert_int_equal(krs_compile_file("bench/scenes/tree28.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_component_count(scene), 1);
     assert_int_equal(krs_component(scene, 0, &tree), KRS_OK);
     Box box = {
@@ -195,15 +195,15 @@ static void nothing_solid_is_outside_of_reported_bounds(void **state)
     for (int i = 0; i < 10000; i++) {
         double p[3], distance;
         random_outside(&random, box, i % 2 == 0 ? 0.01 : 0.5, p);
-        krs_distance(frame, (const double(*)[3])p, 1, &distance);
+        krs_distance(state, (const double(*)[3])p, 1, &distance);
         assert_true(distance > 0);
     }
-    Box seen = seen_of_scene(frame, box);
+    Box seen = seen_of_scene(state, box);
     for (int i = 0; i < 3; i++) {
         assert_true(box.axis[i].high - seen.axis[i].high < 0.05 * diagonal(box));
         assert_true(seen.axis[i].low - box.axis[i].low < 0.05 * diagonal(box));
     }
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 

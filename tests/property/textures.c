@@ -105,7 +105,7 @@ static double mean_of_picture(int k)
     return sum / (drawn.width * drawn.height);
 }
 
-/* Of a level at the middle of a texel. */
+/* Returns the value of a level at the middle of a texel. */
 static NodeValue middle_of(const Texture *texture, uint32_t level, uint32_t x, uint32_t y)
 {
     const TextureLevel *at    = &texture->levels[level];

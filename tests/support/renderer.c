@@ -40,15 +40,15 @@ int renderer_close(void **state)
 KrsPicture *picture_of(const char *text, const KrsRenderOptions *options)
 {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     KrsPicture   *picture;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, frame, options, &picture), KRS_OK);
+    assert_int_equal(krs_render(rendering, state, options, &picture), KRS_OK);
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     return picture;
 }

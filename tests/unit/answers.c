@@ -147,10 +147,10 @@ static void points_have_materials(void **state)
     const Fixture      *fixture    = *state;
     const double(*places)[3]       = (const double(*)[3])points;
     const float(*single_places)[3] = (const float(*)[3])single_points;
-    assert_int_equal(krs_probe(fixture->frame, places, COUNT, hits), KRS_OK);
+    assert_int_equal(krs_probe(fixture->state, places, COUNT, hits), KRS_OK);
     assert_int_equal(
-        krs_device_probe(fixture->rendering, fixture->frame, places, COUNT, device_hits), KRS_OK);
-    assert_int_equal(point_query_sample(fixture->rendering, fixture->frame, single_places, COUNT,
+        krs_device_probe(fixture->rendering, fixture->state, places, COUNT, device_hits), KRS_OK);
+    assert_int_equal(point_query_sample(fixture->rendering, fixture->state, single_places, COUNT,
                                         NULL, surfaces),
                      KRS_OK);
     for (int i = 0; i < COUNT; i++) {
@@ -171,8 +171,8 @@ static void rays_end_at_materials(void **state)
     const Fixture *fixture       = *state;
     const double(*origins)[3]    = (const double(*)[3])points;
     const double(*directions)[3] = (const double(*)[3])inwards;
-    assert_int_equal(krs_raycast(fixture->frame, origins, directions, COUNT, 10, 0, hits), KRS_OK);
-    assert_int_equal(krs_device_raycast(fixture->rendering, fixture->frame, origins, directions,
+    assert_int_equal(krs_raycast(fixture->state, origins, directions, COUNT, 10, 0, hits), KRS_OK);
+    assert_int_equal(krs_device_raycast(fixture->rendering, fixture->state, origins, directions,
                                         COUNT, 10, 0, device_hits),
                      KRS_OK);
     for (int i = 0; i < COUNT; i++) {
@@ -189,8 +189,8 @@ static void the_rest_is_as_the_table_says(void **state)
     Fixture      fixture = {0};
     (void)state;
     fixture_open(&fixture, "show sphere(1);", NULL);
-    assert_int_equal(krs_probe(fixture.frame, point, 1, &hits[0]), KRS_OK);
-    assert_int_equal(krs_device_probe(fixture.rendering, fixture.frame, point, 1, &hits[1]),
+    assert_int_equal(krs_probe(fixture.state, point, 1, &hits[0]), KRS_OK);
+    assert_int_equal(krs_device_probe(fixture.rendering, fixture.state, point, 1, &hits[1]),
                      KRS_OK);
     for (int each = 0; each < 2; each++) {
         Material material;
@@ -221,8 +221,8 @@ static void turns_of_a_loop_are_components(void **state)
         places[i][0] = 3 * (i - 1) + 0.5;
     const double(*centres)[3] = (const double(*)[3])places;
     assert_int_equal(krs_component_count(fixture.scene), ALL);
-    assert_int_equal(krs_probe(fixture.frame, centres, ALL, hits[0]), KRS_OK);
-    assert_int_equal(krs_device_probe(fixture.rendering, fixture.frame, centres, ALL, hits[1]),
+    assert_int_equal(krs_probe(fixture.state, centres, ALL, hits[0]), KRS_OK);
+    assert_int_equal(krs_device_probe(fixture.rendering, fixture.state, centres, ALL, hits[1]),
                      KRS_OK);
     for (int each = 0; each < 2; each++)
         for (uint32_t i = 0; i < ALL; i++) {
@@ -270,8 +270,8 @@ static void alike_components_are_components(void **state)
         const double(*centres)[3] = (const double(*)[3])places;
         assert_int_equal(krs_component_count(fixture.scene), ALL);
         assert_int_equal(krs_scene_program(fixture.scene)->table_count, 2);
-        assert_int_equal(krs_probe(fixture.frame, centres, ALL, hits[0]), KRS_OK);
-        assert_int_equal(krs_device_probe(fixture.rendering, fixture.frame, centres, ALL, hits[1]),
+        assert_int_equal(krs_probe(fixture.state, centres, ALL, hits[0]), KRS_OK);
+        assert_int_equal(krs_device_probe(fixture.rendering, fixture.state, centres, ALL, hits[1]),
                          KRS_OK);
         for (int on = 0; on < 2; on++)
             for (uint32_t i = 0; i < ALL; i++) {

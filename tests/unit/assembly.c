@@ -17,7 +17,7 @@
 
 typedef struct Taken {
     KrsScene    *scene;
-    KrsState    *frame;
+    KrsState    *state;
     KrsAssembly *assembly;
 } Taken;
 
@@ -27,15 +27,15 @@ static Taken take(const char *text, double error)
     KrsOptions     options = {.assembly = true};
     KrsMeshOptions how     = {.error = error};
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &t.scene), KRS_OK);
-    assert_int_equal(krs_state_new(t.scene, &t.frame), KRS_OK);
-    assert_int_equal(krs_assemble(t.frame, &how, &t.assembly), KRS_OK);
+    assert_int_equal(krs_state_new(t.scene, &t.state), KRS_OK);
+    assert_int_equal(krs_assemble(t.state, &how, &t.assembly), KRS_OK);
     return t;
 }
 
 static void leave(Taken t)
 {
     krs_assembly_free(t.assembly);
-    krs_state_free(t.frame);
+    krs_state_free(t.state);
     krs_scene_free(t.scene);
 }
 
@@ -48,7 +48,7 @@ static double determinant(const double m[3][4])
 
 /* What visits find. */
 typedef struct Found {
-    KrsState      *frame;
+    KrsState      *state;
     double         volume, farthest; /* of a vertex from the surface */
     size_t         copies, reflections;
     const KrsMesh *last; /* mesh, and its volume */
@@ -80,10 +80,10 @@ static bool look_at(void *user, const KrsItem *item, const double matrix[3][4])
     if (found->last != mesh)
         found->last_volume = volume_of(mesh);
     found->last = mesh;
-    for (size_t i = 0; found->frame && i < mesh->vertex_count; i++) {
+    for (size_t i = 0; found->state && i < mesh->vertex_count; i++) {
         double image[3], distance;
         apply(matrix, mesh->vertices[i], image);
-        krs_distance(found->frame, (const double(*)[3])image, 1, &distance);
+        krs_distance(found->state, (const double(*)[3])image, 1, &distance);
         found->farthest = fmax(found->farthest, fabs(distance));
     }
     found->volume += fabs(size) * found->last_volume;
@@ -108,7 +108,7 @@ static void copies_are_where_the_sequence_is(void **context)
     (void)context;
     const double pi    = acos(-1);
     Taken        t     = take(bush, 0.02);
-    Found        found = {.frame = t.frame};
+    Found        found = {.state = t.state};
     assert_non_null(t.assembly);
     assert_true(krs_assembly_visit(t.assembly, look_at, &found));
     double tori = 8 * 0.125 * 2 * pi * pi * 0.3 * 0.01, ball = 4 * pi / 3 * 0.064;
@@ -166,7 +166,7 @@ static void what_is_cut_is_meshed_whole(void **context)
 }
 
 /* Where the mirror is depends on a parameter, so whether it cuts does, too. */
-static void each_frame_is_asked(void **context)
+static void each_state_is_asked(void **context)
 {
     (void)context;
     Taken t = take(
@@ -177,12 +177,12 @@ static void each_frame_is_asked(void **context)
     double         at  = -0.3;
     assert_non_null(t.assembly);
     krs_assembly_free(t.assembly);
-    assert_int_equal(krs_state_set(t.frame, "at", &at, 1), KRS_OK);
-    assert_int_equal(krs_assemble(t.frame, &how, &t.assembly), KRS_OK);
+    assert_int_equal(krs_state_set(t.state, "at", &at, 1), KRS_OK);
+    assert_int_equal(krs_assemble(t.state, &how, &t.assembly), KRS_OK);
     assert_null(t.assembly);
     at = 0.3;
-    assert_int_equal(krs_state_set(t.frame, "at", &at, 1), KRS_OK);
-    assert_int_equal(krs_assemble(t.frame, &how, &t.assembly), KRS_OK);
+    assert_int_equal(krs_state_set(t.state, "at", &at, 1), KRS_OK);
+    assert_int_equal(krs_assemble(t.state, &how, &t.assembly), KRS_OK);
     assert_non_null(t.assembly);
     assert_true(fabs(t.assembly->low[0] + 1.7) <= 0.1);
     leave(t);
@@ -193,6 +193,6 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(copies_are_where_the_sequence_is),
                                        cmocka_unit_test(a_million_copies_are_one_mesh),
                                        cmocka_unit_test(what_is_cut_is_meshed_whole),
-                                       cmocka_unit_test(each_frame_is_asked)};
+                                       cmocka_unit_test(each_state_is_asked)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

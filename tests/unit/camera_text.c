@@ -32,10 +32,10 @@ static KrsScene *compile(const char *text)
 static KrsCamera camera_of(const KrsScene *scene)
 {
     KrsCamera camera;
-    KrsState *frame;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_state_camera(frame, 0, &camera), KRS_OK);
-    krs_state_free(frame);
+    KrsState *state;
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_state_camera(state, 0, &camera), KRS_OK);
+    krs_state_free(state);
     return camera;
 }
 
@@ -197,9 +197,9 @@ static void assert_written(const char *before, size_t index, KrsStatus status, c
     assert_true(text_file_write(path, &(Bytes){(char *)before, strlen(before)}));
     assert_int_equal(krs_compile_file(path, NULL, &scene), KRS_OK);
     KrsCamera was, camera;
-    KrsState *frame;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_state_camera(frame, index, &was), KRS_OK);
+    KrsState *state;
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_state_camera(state, index, &was), KRS_OK);
     camera = was;
     memcpy(camera.eye, (double[]){1, 2, 3}, sizeof camera.eye);
     assert_int_equal(camera_text_write(scene, index, &was, &camera, path), status);
@@ -207,7 +207,7 @@ static void assert_written(const char *before, size_t index, KrsStatus status, c
     assert_int_equal(bytes.length, strlen(after));
     assert_memory_equal(bytes.text, after, bytes.length);
     free(bytes.text);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     remove(path);
 }

@@ -80,12 +80,12 @@ static size_t print_body(const Body *b, char *text, size_t room)
                                    b->move[1], b->move[2]);
 }
 
-KrsState *frame_of_subject(const Subject *subject, KrsScene **scene)
+KrsState *state_of_subject(const Subject *subject, KrsScene **scene)
 {
     static const char *const csg_nodes[CSG_NODES] = {"union", "union", "intersection", "difference",
                                                      "union"};
     char                     text[2000], own[600], other[600];
-    KrsState                *frame;
+    KrsState                *state;
     print_body(&subject->bodies[0], own, sizeof own);
     print_body(&subject->bodies[1], other, sizeof other);
     if (subject->csg_node == ALONE)
@@ -96,8 +96,8 @@ KrsState *frame_of_subject(const Subject *subject, KrsScene **scene)
     else
         snprintf(text, sizeof text, "show %s(%s, %s);", csg_nodes[subject->csg_node], own, other);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
-    assert_int_equal(krs_state_new(*scene, &frame), KRS_OK);
-    return frame;
+    assert_int_equal(krs_state_new(*scene, &state), KRS_OK);
+    return state;
 }
 
 /* ---- their surfaces ---- */

@@ -35,7 +35,7 @@ typedef struct Kind {
 /* Half of the CSG nodes are of two that nearly have one surface, whose edges are blunt. */
 Subject random_subject(Random *random, const Kind *kind);
 /* The same as a scene. */
-KrsState *frame_of_subject(const Subject *subject, KrsScene **scene);
+KrsState *state_of_subject(const Subject *subject, KrsScene **scene);
 
 /* A number with the sign of the distance, whose slope is 1 at most, so that it is nowhere more than the distance.
    Where there are no edges it is the distance, unless it is that of an equation or a blend. */

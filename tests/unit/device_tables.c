@@ -1,6 +1,6 @@
 /*
  * device_tables.c: the tables of a scene are on the device, word for word as krs_state_tables gives
- * them for the frame, when a picture or a query has begun.  They are texels, or storage buffers where
+ * them for the state, when a picture or a query has begun.  They are texels, or storage buffers where
  * the device reads too few texels; a device that has no room for them says so.  All of it under the
  * validation layers.
  */
@@ -37,7 +37,7 @@ static void note_validation_message(void *user, const char *message)
 typedef struct Fixture {
     KrsRenderer *renderer;
     KrsScene    *scene;
-    KrsState    *frame;
+    KrsState    *state;
     Instances   *instances;
 } Fixture;
 
@@ -85,7 +85,7 @@ static Fixture open_scene(const char *text, unsigned emulation)
         fail_msg("%s", krs_renderer_message(fixture.renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene),
                      KRS_OK);
-    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.state), KRS_OK);
     return fixture;
 }
 
@@ -100,7 +100,7 @@ static void close_fixture(Fixture *fixture)
 {
     if (krs_renderer_validation_messages(fixture->renderer) != 0)
         fail_msg("the validation layers complain: %s", validation_message);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
     krs_renderer_free(fixture->renderer);
 }
@@ -126,7 +126,7 @@ static bool device_has_tables(const Fixture *fixture, const KrsRendering *render
     size_t rows = krs_table_rows(fixture->scene), cells = krs_table_cells(fixture->scene);
     float(*wanted_rows)[4]     = calloc(rows, sizeof *wanted_rows);
     uint32_t(*wanted_cells)[2] = calloc(cells, sizeof *wanted_cells);
-    krs_state_tables_in_use(fixture->frame, NULL, wanted_rows, wanted_cells, &rows, &cells);
+    krs_state_tables_in_use(fixture->state, NULL, wanted_rows, wanted_cells, &rows, &cells);
     bool same = device_has(gpu, &rendering->table_rows, wanted_rows, rows * sizeof *wanted_rows) &&
                 device_has(gpu, &rendering->table_cells, wanted_cells,
                            cells * sizeof *wanted_cells);
@@ -135,16 +135,16 @@ static bool device_has_tables(const Fixture *fixture, const KrsRendering *render
     return same;
 }
 
-static void a_query_brings_tables(void **state)
+static void a_query_brings_tables(void **context)
 {
-    Fixture       fixture      = open_fixture(*state, 2000, 0);
+    Fixture       fixture      = open_fixture(*context, 2000, 0);
     const float   points[1][3] = {{0, 0, 3}};
     float         distance;
     KrsRendering *rendering;
     assert_int_equal(
         krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(krs_device_distance(rendering, fixture.frame, points, 1, &distance),
+        assert_int_equal(krs_device_distance(rendering, fixture.state, points, 1, &distance),
                          KRS_OK);
         assert_true(device_has_tables(&fixture, rendering));
     }
@@ -155,15 +155,15 @@ static void a_query_brings_tables(void **state)
     close_fixture(&fixture);
 }
 
-static void a_picture_brings_tables(void **state)
+static void a_picture_brings_tables(void **context)
 {
-    Fixture          fixture = open_fixture(*state, 300, EMULATE_MIN_LIMITS);
+    Fixture          fixture = open_fixture(*context, 300, EMULATE_MIN_LIMITS);
     KrsRenderOptions options = {.width = 16, .height = 16};
     KrsPicture      *picture;
     KrsRendering    *rendering;
     assert_int_equal(
         krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, fixture.frame, &options, &picture), KRS_OK);
+    assert_int_equal(krs_render(rendering, fixture.state, &options, &picture), KRS_OK);
     assert_true(device_has_tables(&fixture, rendering));
     krs_picture_free(picture);
     krs_rendering_free(rendering);
@@ -183,7 +183,7 @@ static double moving_distance(const float p[3], double time, double height)
     return nearest;
 }
 
-/* Points about balls that are there in this frame. */
+/* Points about balls that are there in this state. */
 static void points_near(Bench *bench, double time, double height, float points[][3])
 {
     for (int n = 0; n < MOVING_POINTS; n++) {
@@ -194,12 +194,12 @@ static void points_near(Bench *bench, double time, double height, float points[]
     }
 }
 
-static void assert_frame_is_seen(Bench *bench, const Fixture *fixture, KrsRendering *rendering,
+static void assert_state_is_seen(Bench *bench, const Fixture *fixture, KrsRendering *rendering,
                                  double time, double height)
 {
     static float points[MOVING_POINTS][3], found[MOVING_POINTS];
     points_near(bench, time, height, points);
-    assert_int_equal(krs_device_distance(rendering, fixture->frame, (const float(*)[3])points,
+    assert_int_equal(krs_device_distance(rendering, fixture->state, (const float(*)[3])points,
                                          MOVING_POINTS, found),
                      KRS_OK);
     assert_true(device_has_tables(fixture, rendering));
@@ -209,7 +209,7 @@ static void assert_frame_is_seen(Bench *bench, const Fixture *fixture, KrsRender
     }
 }
 
-static void rows_are_those_of_the_frame(Bench *bench, unsigned emulation)
+static void rows_are_those_of_the_state(Bench *bench, unsigned emulation)
 {
     static const double frames[][2] = {{0, 0.5}, {0, 0.5},   {1.5, 0.5},
                                        {1.5, 2}, {-8, 1.25}, {0, 0.5}};
@@ -221,31 +221,31 @@ static void rows_are_those_of_the_frame(Bench *bench, unsigned emulation)
         krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         bool same = i > 0 && frames[i][0] == frames[i - 1][0] && frames[i][1] == frames[i - 1][1];
-        assert_int_equal(krs_state_set_time(fixture.frame, frames[i][0]), KRS_OK);
-        assert_int_equal(krs_state_set(fixture.frame, "height", &frames[i][1], 1), KRS_OK);
+        assert_int_equal(krs_state_set_time(fixture.state, frames[i][0]), KRS_OK);
+        assert_int_equal(krs_state_set(fixture.state, "height", &frames[i][1], 1), KRS_OK);
         assert_true(i == 0 || device_has_tables(&fixture, rendering) == same);
-        assert_frame_is_seen(bench, &fixture, rendering, frames[i][0], frames[i][1]);
+        assert_state_is_seen(bench, &fixture, rendering, frames[i][0], frames[i][1]);
     }
     assert_int_equal(krs_rendering_update(rendering, fixture.scene), KRS_OK);
-    assert_frame_is_seen(bench, &fixture, rendering, 0, 0.5);
+    assert_state_is_seen(bench, &fixture, rendering, 0, 0.5);
     krs_rendering_free(rendering);
     close_fixture(&fixture);
 }
 
-static void rows_of_texels_are_those_of_the_frame(void **state)
+static void rows_of_texels_are_those_of_the_state(void **context)
 {
-    rows_are_those_of_the_frame(*state, 0);
+    rows_are_those_of_the_state(*context, 0);
 }
 
-static void rows_of_buffers_are_those_of_the_frame(void **state)
+static void rows_of_buffers_are_those_of_the_state(void **context)
 {
-    rows_are_those_of_the_frame(*state, EMULATE_MIN_LIMITS);
+    rows_are_those_of_the_state(*context, EMULATE_MIN_LIMITS);
 }
 
-/* A picture of a frame is that of a scene without time, whose numbers are those of the frame. */
-static void pictures_are_those_of_the_frame(void **state)
+/* A picture of a state is that of a scene without time, whose numbers are those of the state. */
+static void pictures_are_those_of_the_state(void **context)
 {
-    (void)state;
+    (void)context;
     static const char *const still[] = {"-1", "2.5"};
     static const double      times[] = {-1, 2.5};
     KrsRenderOptions         options = {.width = 192, .height = 96, .aovs = AGREEMENT_AOVS};
@@ -261,12 +261,12 @@ static void pictures_are_those_of_the_frame(void **state)
         Fixture     other = open_scene(text, 0);
         KrsPicture *pictures[2];
         assert_false(other.scene->program.rows_vary);
-        assert_int_equal(krs_state_set_time(fixture.frame, times[i]), KRS_OK);
-        assert_int_equal(krs_render(rendering, fixture.frame, &options, &pictures[0]), KRS_OK);
+        assert_int_equal(krs_state_set_time(fixture.state, times[i]), KRS_OK);
+        assert_int_equal(krs_render(rendering, fixture.state, &options, &pictures[0]), KRS_OK);
         KrsRendering *of_other;
         assert_int_equal(
             krs_rendering_new(other.renderer, other.scene, KRS_FOR_PICTURES, &of_other), KRS_OK);
-        assert_int_equal(krs_render(of_other, other.frame, &options, &pictures[1]), KRS_OK);
+        assert_int_equal(krs_render(of_other, other.state, &options, &pictures[1]), KRS_OK);
         Agreement agreement = agreement_of(pictures[0], pictures[1], 1);
         assert_true(agreement.solid > agreement.pixels / 50);
         assert_int_equal(agreement_faults(&agreement), 0);
@@ -308,12 +308,12 @@ static void compare_with_room(Bench *bench, unsigned emulation, bool enough)
     close_fixture(&fixture);
 }
 
-static void too_large_tables_are_refused(void **state)
+static void too_large_tables_are_refused(void **context)
 {
-    compare_with_room(*state, 0, true);
-    compare_with_room(*state, 0, false);
-    compare_with_room(*state, EMULATE_MIN_LIMITS, true);
-    compare_with_room(*state, EMULATE_MIN_LIMITS, false);
+    compare_with_room(*context, 0, true);
+    compare_with_room(*context, 0, false);
+    compare_with_room(*context, EMULATE_MIN_LIMITS, true);
+    compare_with_room(*context, EMULATE_MIN_LIMITS, false);
 }
 
 int main(void)
@@ -321,11 +321,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_query_brings_tables, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(a_picture_brings_tables, bench_start, bench_stop),
-        cmocka_unit_test_setup_teardown(rows_of_texels_are_those_of_the_frame, bench_start,
+        cmocka_unit_test_setup_teardown(rows_of_texels_are_those_of_the_state, bench_start,
                                         bench_stop),
-        cmocka_unit_test_setup_teardown(rows_of_buffers_are_those_of_the_frame, bench_start,
+        cmocka_unit_test_setup_teardown(rows_of_buffers_are_those_of_the_state, bench_start,
                                         bench_stop),
-        cmocka_unit_test_setup_teardown(pictures_are_those_of_the_frame, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(pictures_are_those_of_the_state, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(too_large_tables_are_refused, bench_start, bench_stop),
     };
     return cmocka_run_group_tests_name("tables on a device", tests, NULL, NULL);

@@ -35,7 +35,7 @@ static void note_validation_message(void *user, const char *message)
 typedef struct Fixture {
     KrsRenderer  *renderer;
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
 } Fixture;
 
@@ -51,7 +51,7 @@ static Fixture open_fixture(const char *text, unsigned emulation)
         fail_msg("%s", krs_renderer_message(fixture.renderer));
     if (krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene) != KRS_OK)
         fail_msg("does not compile: %s", text);
-    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.state), KRS_OK);
     assert_int_equal(
         krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &fixture.rendering),
         KRS_OK);
@@ -63,7 +63,7 @@ static void close_fixture(Fixture *fixture)
     if (krs_renderer_validation_messages(fixture->renderer) != 0)
         fail_msg("the validation layers complain: %s", validation_message);
     krs_rendering_free(fixture->rendering);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
     krs_renderer_free(fixture->renderer);
 }
@@ -71,7 +71,7 @@ static void close_fixture(Fixture *fixture)
 static KrsPicture *render(const Fixture *fixture, const KrsRenderOptions *options)
 {
     KrsPicture *picture;
-    if (krs_render(fixture->rendering, fixture->frame, options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->state, options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture->renderer));
     return picture;
 }
@@ -259,23 +259,23 @@ static void compare_all(unsigned emulation)
     assert_int_equal(wrong, 0);
 }
 
-static void short_texel_buffers_are_not_seen(void **state)
+static void short_texel_buffers_are_not_seen(void **context)
 {
-    (void)state;
+    (void)context;
     compare_all(EMULATE_MIN_LIMITS);
 }
 
-static void a_card_is_not_seen(void **state)
+static void a_card_is_not_seen(void **context)
 {
-    (void)state;
+    (void)context;
     compare_all(EMULATE_CARD);
     assert_int_equal(compare(&cases[0], EMULATE_CARD | EMULATE_MIN_LIMITS), 0);
 }
 
 /* The comparison sees one bit. */
-static void a_flipped_bit_is_found(void **state)
+static void a_flipped_bit_is_found(void **context)
 {
-    (void)state;
+    (void)context;
     Fixture     fixture = open_fixture(cases[0].text, 0);
     KrsPicture *a = render(&fixture, &cases[0].options), *b = render(&fixture, &cases[0].options);
     assert_int_equal(difference(a, b), 0);
@@ -291,13 +291,13 @@ static void a_flipped_bit_is_found(void **state)
 /* What the host waits for: two times to clear, rays, light, and the results. */
 enum { SUBMISSIONS_OF_CARD = 5 };
 
-static void a_card_is_seldom_waited_for(void **state)
+static void a_card_is_seldom_waited_for(void **context)
 {
-    (void)state;
+    (void)context;
     Fixture          fixture = open_fixture(cases[0].text, EMULATE_CARD);
     KrsRenderOptions options = cases[0].options;
     options.slice_ms         = 1e6; /* a slice is all of it */
-    for (int frame = 0; frame < 2; frame++) {
+    for (int i = 0; i < 2; i++) {
         KrsPicture *picture = render(&fixture, &options);
         assert_in_range(picture->stats.submissions, 1, SUBMISSIONS_OF_CARD);
         krs_picture_free(picture);
@@ -314,9 +314,9 @@ static bool count_down(void *user, double done)
 }
 
 /* Wherever it is interrupted, and the next picture is whole. */
-static void a_card_is_interrupted(void **state)
+static void a_card_is_interrupted(void **context)
 {
-    (void)state;
+    (void)context;
     Fixture          fixture     = open_fixture(cases[0].text, EMULATE_CARD);
     KrsRenderOptions options     = cases[0].options;
     KrsPicture      *whole       = render(&fixture, &options);
@@ -326,7 +326,7 @@ static void a_card_is_interrupted(void **state)
     for (int calls = 0; calls < 20; calls++) {
         KrsPicture *picture;
         left             = calls;
-        KrsStatus status = krs_render(fixture.rendering, fixture.frame, &options, &picture);
+        KrsStatus status = krs_render(fixture.rendering, fixture.state, &options, &picture);
         if (status == KRS_OK)
             assert_int_equal(difference(whole, picture), 0);
         else
@@ -354,16 +354,16 @@ static void ask(unsigned emulation, KrsHit hits[RAYS])
         directions[i][1] = 0.004 * (i % 20) - 0.6;
         directions[i][2] = 0.004 * (i / 20) - 0.03;
     }
-    assert_int_equal(krs_device_raycast(fixture.rendering, fixture.frame,
+    assert_int_equal(krs_device_raycast(fixture.rendering, fixture.state,
                                         (const double(*)[3])origins, (const double(*)[3])directions,
                                         RAYS, 100, 1e-4, hits),
                      KRS_OK);
     close_fixture(&fixture);
 }
 
-static void answers_are_the_same(void **state)
+static void answers_are_the_same(void **context)
 {
-    (void)state;
+    (void)context;
     static KrsHit plain[RAYS], others[RAYS];
     size_t        hits = 0;
     ask(0, plain);

@@ -45,7 +45,7 @@ static const KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samp
 /* A scene on the device, with what a viewer has of it. */
 typedef struct Viewer {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     KrsFilm      *film;
 } Viewer;
@@ -61,7 +61,7 @@ static Viewer open_viewer(const char *text)
     const KrsOptions how = {.specialize = KRS_SPECIALIZE_STRUCTURE};
     Viewer           viewer;
     check(krs_compile_text(text, strlen(text), "edited.krs", &how, &viewer.scene));
-    check(krs_state_new(viewer.scene, &viewer.frame));
+    check(krs_state_new(viewer.scene, &viewer.state));
     check(krs_rendering_new(renderer, viewer.scene, KRS_FOR_PICTURES, &viewer.rendering));
     check(krs_film_new(viewer.rendering, &options, &viewer.film));
     return viewer;
@@ -71,7 +71,7 @@ static void close_viewer(Viewer *viewer)
 {
     krs_film_free(viewer->film);
     krs_rendering_free(viewer->rendering);
-    krs_state_free(viewer->frame);
+    krs_state_free(viewer->state);
     krs_scene_free(viewer->scene);
 }
 
@@ -81,7 +81,7 @@ static KrsChange edit(Viewer *viewer, const char *text)
     KrsChanges changes;
     check(krs_scene_update(viewer->scene, text, strlen(text), &updated, &changes));
     check(krs_rendering_update(viewer->rendering, updated));
-    check(krs_state_update(viewer->frame, updated));
+    check(krs_state_update(viewer->state, updated));
     krs_scene_free(viewer->scene);
     viewer->scene = updated;
     return changes.kind;
@@ -90,7 +90,7 @@ static KrsChange edit(Viewer *viewer, const char *text)
 static KrsPicture *render(Viewer *viewer)
 {
     KrsPicture *picture;
-    check(krs_render(viewer->rendering, viewer->frame, &options, &picture));
+    check(krs_render(viewer->rendering, viewer->state, &options, &picture));
     return picture;
 }
 
@@ -98,7 +98,7 @@ static KrsPicture *film(Viewer *viewer)
 {
     KrsPicture *picture;
     for (int i = 0; i < SAMPLES; i++)
-        check(krs_film_add(viewer->film, viewer->frame, NULL, 1));
+        check(krs_film_add(viewer->film, viewer->state, NULL, 1));
     assert_int_equal(krs_film_samples(viewer->film), SAMPLES);
     check(krs_film_read(viewer->film, 0, &picture));
     return picture;
@@ -152,9 +152,9 @@ static void assert_shaders_stay(const Viewer *viewer)
     assert_true(with_scene > 0);
 }
 
-static void an_edit_of_numbers_compiles_nothing(void **state)
+static void an_edit_of_numbers_compiles_nothing(void **context)
 {
-    (void)state;
+    (void)context;
     Viewer      viewer = open_viewer(before);
     KrsPicture *first  = film(&viewer);
     krs_film_clear(viewer.film);
@@ -174,9 +174,9 @@ static void an_edit_of_numbers_compiles_nothing(void **state)
     close_viewer(&viewer);
 }
 
-static void edits_of_a_instance_compile_nothing(void **state)
+static void edits_of_a_instance_compile_nothing(void **context)
 {
-    (void)state;
+    (void)context;
     Viewer         viewer = open_viewer(group);
     KrsPicture    *first  = render(&viewer);
     const uint64_t made   = shaders_made(&viewer);
@@ -199,9 +199,9 @@ static void edits_of_a_instance_compile_nothing(void **state)
     close_viewer(&viewer);
 }
 
-static void other_structures_are_compiled_once(void **state)
+static void other_structures_are_compiled_once(void **context)
 {
-    (void)state;
+    (void)context;
     Viewer         viewer = open_viewer(before);
     const uint64_t made   = shaders_made(&viewer);
     assert_int_equal(edit(&viewer, structure), KRS_CHANGE_STRUCTURE);
@@ -215,17 +215,17 @@ static void other_structures_are_compiled_once(void **state)
     close_viewer(&viewer);
 }
 
-static void rays_and_zones_follow(void **state)
+static void rays_and_zones_follow(void **context)
 {
-    (void)state;
+    (void)context;
     Viewer viewer = open_viewer(before);
-    check(krs_state_set_zones(viewer.frame, (const double[][4]){{0, 1, 0, 0.75}}, 1));
+    check(krs_state_set_zones(viewer.state, (const double[][4]){{0, 1, 0, 0.75}}, 1));
     KrsPicture *picture = render(&viewer);
     krs_picture_free(picture);
     assert_int_equal(edit(&viewer, numbers), KRS_CHANGE_VALUES);
     picture = render(&viewer);
     assert_shaders_stay(&viewer);
-    check(krs_state_set_zones(viewer.frame, NULL, 0));
+    check(krs_state_set_zones(viewer.state, NULL, 0));
     KrsPicture *whole = render(&viewer);
     assert_false(are_equal(picture, whole));
     assert_int_equal(edit(&viewer, panorama), KRS_CHANGE_STRUCTURE);
@@ -237,12 +237,12 @@ static void rays_and_zones_follow(void **state)
     close_viewer(&viewer);
 }
 
-static void films_lose_their_samples(void **state)
+static void films_lose_their_samples(void **context)
 {
-    (void)state;
+    (void)context;
     Viewer      viewer = open_viewer(before);
     KrsPicture *picture;
-    check(krs_film_add(viewer.film, viewer.frame, NULL, 1));
+    check(krs_film_add(viewer.film, viewer.state, NULL, 1));
     edit(&viewer, numbers);
     assert_int_equal(krs_film_samples(viewer.film), 0);
     assert_int_equal(krs_film_read(viewer.film, 0, &picture), KRS_BAD_ARGUMENT);
@@ -250,17 +250,17 @@ static void films_lose_their_samples(void **state)
     close_viewer(&viewer);
 }
 
-static void mistakes_leave_what_is_shown(void **state)
+static void mistakes_leave_what_is_shown(void **context)
 {
-    (void)state;
+    (void)context;
     KrsScene   *updated;
     Viewer      viewer = open_viewer(before);
     const char *wrong  = "show sphere(;";
-    check(krs_film_add(viewer.film, viewer.frame, NULL, 1));
+    check(krs_film_add(viewer.film, viewer.state, NULL, 1));
     assert_int_equal(krs_scene_update(viewer.scene, wrong, strlen(wrong), &updated, NULL),
                      KRS_BAD_SCENE);
     assert_null(updated);
-    check(krs_film_add(viewer.film, viewer.frame, NULL, 1));
+    check(krs_film_add(viewer.film, viewer.state, NULL, 1));
     assert_int_equal(krs_film_samples(viewer.film), 2);
     krs_film_clear(viewer.film);
     assert_shows(&viewer, before);

@@ -37,9 +37,9 @@ static bool has_table(const char *text, bool pictures)
     return has;
 }
 
-static void few_large_parts_share_code(void **state)
+static void few_large_parts_share_code(void **context)
 {
-    (void)state;
+    (void)context;
     assert_true(has_table(PARTS(8) ");", true));
     assert_false(has_table(PARTS(8) ");", false));
     assert_false(has_table(PARTS(5) ");", true));
@@ -48,24 +48,24 @@ static void few_large_parts_share_code(void **state)
         has_table("show union([sphere(0.1 * i + 0.2).move([i, 0, 0]) for i in 0..8]);", true));
 }
 
-static void answers_are_those_of_parts_apart(void **state)
+static void answers_are_those_of_parts_apart(void **context)
 {
     enum { COUNT = 2000 };
     static double points[COUNT][3];
     static KrsHit together[COUNT], apart[COUNT];
     Random        random = {11};
-    (void)state;
+    (void)context;
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = random_between(&random, -2, k == 0 ? 26 : 3);
     for (int pictures = 0; pictures < 2; pictures++) {
         KrsScene *scene = compile(PARTS(8) ");", pictures);
-        KrsState *frame = NULL;
-        assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+        KrsState *state = NULL;
+        assert_int_equal(krs_state_new(scene, &state), KRS_OK);
         assert_int_equal(
-            krs_probe(frame, (const double(*)[3])points, COUNT, pictures ? together : apart),
+            krs_probe(state, (const double(*)[3])points, COUNT, pictures ? together : apart),
             KRS_OK);
-        krs_state_free(frame);
+        krs_state_free(state);
         krs_scene_free(scene);
     }
     for (int i = 0; i < COUNT; i++) {

@@ -44,7 +44,7 @@ static KrsFilm *new_film(Fixture *fixture, const KrsRenderOptions *options)
 static void add(Fixture *fixture, KrsFilm *film, const KrsCamera *camera, uint32_t samples)
 {
     uint32_t before = krs_film_samples(film);
-    if (krs_film_add(film, fixture->frame, camera, samples) != KRS_OK)
+    if (krs_film_add(film, fixture->state, camera, samples) != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture->renderer));
     assert_int_equal(krs_film_samples(film), before + samples);
 }
@@ -152,7 +152,7 @@ static void films_take_turns(void **state)
         add(&fixture, a, NULL, 1);
         add(&fixture, b, NULL, 1);
         add(&fixture, a, NULL, 2);
-        assert_int_equal(krs_device_probe(fixture.rendering, fixture.frame, point, 1, &hit),
+        assert_int_equal(krs_device_probe(fixture.rendering, fixture.state, point, 1, &hit),
                          KRS_OK);
         assert_near(hit.distance, 3, 1e-4);
         add(&fixture, a, NULL, 1);
@@ -167,7 +167,7 @@ static void films_take_turns(void **state)
 }
 
 /* Fewer samples than were planned, and more, are means all the same. */
-static void samples_go_on(void **state)
+static void samples_are_added(void **state)
 {
     Fixture         *fixture = *state;
     KrsRenderOptions options = {
@@ -203,7 +203,7 @@ static void frames_may_differ(void **state)
     KrsFilm               *film       = new_film(fixture, &options), *alone[2];
     KrsPicture            *seen[2];
     for (int n = 0; n < 2; n++) {
-        assert_int_equal(krs_state_set(fixture->frame, "height", &heights[n], 1), KRS_OK);
+        assert_int_equal(krs_state_set(fixture->state, "height", &heights[n], 1), KRS_OK);
         alone[n] = new_film(fixture, &options);
         add(fixture, alone[n], NULL, 1);
         seen[n] = read_film(fixture, alone[n]);
@@ -226,7 +226,7 @@ static void frames_may_differ(void **state)
     }
     krs_picture_free(blurred);
     krs_film_free(film);
-    assert_int_equal(krs_state_set(fixture->frame, "height", &heights[0], 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->state, "height", &heights[0], 1), KRS_OK);
 }
 
 /* A camera that the caller gives is as good as one of the scene. */
@@ -237,14 +237,14 @@ static void cameras_are_the_callers(void **state)
     KrsFilm         *film    = new_film(fixture, &options);
     KrsCamera        camera;
     for (size_t i = 0; i < krs_camera_count(fixture->scene); i++) {
-        assert_int_equal(krs_state_camera(fixture->frame, i, &camera), KRS_OK);
+        assert_int_equal(krs_state_camera(fixture->state, i, &camera), KRS_OK);
         krs_film_clear(film);
         add(fixture, film, &camera, 1);
         options.camera = i;
         assert_same(read_film(fixture, film), fixture_render(fixture, options));
     }
     assert_int_equal(krs_camera_count(fixture->scene), 3);
-    assert_int_equal(krs_state_camera(fixture->frame, 3, &camera), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_camera(fixture->state, 3, &camera), KRS_BAD_ARGUMENT);
 
     /* Another scene says what the caller says here; it is compiled without a panorama. */
     static const char text[]  = "camera { eye: [0.5, 0.75, 4], target: [0, 0.5, 0],"
@@ -372,7 +372,7 @@ static void failures_leave_it_empty(void **state)
     KrsFilm *film    = new_film(fixture, &options);
     add(fixture, film, NULL, 2);
     left = 3;
-    assert_int_equal(krs_film_add(film, fixture->frame, NULL, 1), KRS_INTERRUPTED);
+    assert_int_equal(krs_film_add(film, fixture->state, NULL, 1), KRS_INTERRUPTED);
     assert_int_equal(krs_film_samples(film), 0);
     assert_int_equal(krs_film_read(film, 0, &picture), KRS_BAD_ARGUMENT);
     assert_null(picture);
@@ -394,12 +394,12 @@ static void wrong_use_is_refused(void **state)
         assert_null(film);
     }
     film = new_film(fixture, &depths);
-    assert_int_equal(krs_film_add(film, fixture->frame, NULL, 0), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_film_add(film, fixture->frame, NULL, KRS_MAX_SAMPLES + 1),
+    assert_int_equal(krs_film_add(film, fixture->state, NULL, 0), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, fixture->state, NULL, KRS_MAX_SAMPLES + 1),
                      KRS_BAD_ARGUMENT);
     add(fixture, film, NULL, 1);
-    assert_int_equal(krs_film_add(film, fixture->frame, NULL, KRS_MAX_SAMPLES), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_film_add(film, fixture->frame, &(KrsCamera){.fov = 1}, 1),
+    assert_int_equal(krs_film_add(film, fixture->state, NULL, KRS_MAX_SAMPLES), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, fixture->state, &(KrsCamera){.fov = 1}, 1),
                      KRS_BAD_ARGUMENT); /* its eye is at its target */
     assert_int_equal(krs_film_samples(film), 1);
     assert_int_equal(krs_film_read(film, KRS_AOV_NORMAL, &picture), KRS_BAD_ARGUMENT);
@@ -440,7 +440,7 @@ int main(void)
         cmocka_unit_test(portions_are_the_whole),
         cmocka_unit_test(bands_are_swapped),
         cmocka_unit_test(films_take_turns),
-        cmocka_unit_test_setup_teardown(samples_go_on, set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(samples_are_added, set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(frames_may_differ, set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(cameras_are_the_callers, set_up, fixture_tear_down),
         cmocka_unit_test(bright_rays_are_clamped),

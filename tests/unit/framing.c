@@ -92,19 +92,19 @@ static KrsScene *compile(const char *text)
 /* The camera, and that placing it again finds the same with as many operations. */
 static double place(const KrsScene *scene, KrsCamera *camera)
 {
-    KrsState *frame;
+    KrsState *state;
     KrsCamera again;
     uint64_t  ran[2];
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     for (int i = 0; i < 2; i++) {
-        uint64_t before = frame->ran;
-        assert_int_equal(krs_state_fit_camera(frame), KRS_OK);
-        assert_int_equal(krs_state_camera(frame, 0, i ? &again : camera), KRS_OK);
-        ran[i] = frame->ran - before;
+        uint64_t before = state->ran;
+        assert_int_equal(krs_state_fit_camera(state), KRS_OK);
+        assert_int_equal(krs_state_camera(state, 0, i ? &again : camera), KRS_OK);
+        ran[i] = state->ran - before;
     }
     assert_true(ran[0] == ran[1]);
     assert_memory_equal(again.eye, camera->eye, sizeof again.eye);
-    krs_state_free(frame);
+    krs_state_free(state);
     return (double)ran[0];
 }
 

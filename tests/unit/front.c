@@ -119,7 +119,7 @@ static void bytes_of_zero_are_reported(void **state)
     reading_free(r);
 }
 
-/* Of a picture or a program nothing but the first byte is reported. */
+/* A picture or a program has nothing reported but the first byte. */
 static void a_binary_file_is_one_mistake(void **state)
 {
     (void)state;

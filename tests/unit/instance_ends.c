@@ -73,7 +73,7 @@ static void sample(double width)
     KrsRendererOptions options = {.device = tested_device()};
     KrsRenderer       *renderer;
     KrsScene          *scene;
-    KrsState          *frame;
+    KrsState          *state;
     KrsRendering      *rendering;
     write_scene(text, width);
     for (int i = 0; i < POINTS; i++)
@@ -83,12 +83,12 @@ static void sample(double width)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "ends.krs", NULL, &scene), KRS_OK);
     assert_true(some_function_ends(scene->graph->instances));
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     assert_int_equal(
-        krs_device_distance(rendering, frame, (const float(*)[3])points, POINTS, found), KRS_OK);
+        krs_device_distance(rendering, state, (const float(*)[3])points, POINTS, found), KRS_OK);
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     krs_renderer_free(renderer);
 }

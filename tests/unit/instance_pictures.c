@@ -36,7 +36,7 @@ enum { SHOWN = KRS_AOV_DEPTH | KRS_AOV_NORMAL | KRS_AOV_ALBEDO | KRS_AOV_IDS };
 
 typedef struct Seen {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     KrsPicture   *picture;
 } Seen;
@@ -49,10 +49,10 @@ static void look(Seen *seen, const InstanceText *scenes, size_t count, bool apar
                                               &seen->scene);
     free(text);
     assert_int_equal(status, KRS_OK);
-    assert_int_equal(krs_state_new(seen->scene, &seen->frame), KRS_OK);
+    assert_int_equal(krs_state_new(seen->scene, &seen->state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, seen->scene, KRS_FOR_PICTURES, &seen->rendering),
                      KRS_OK);
-    if (krs_render(seen->rendering, seen->frame, &options, &seen->picture) != KRS_OK)
+    if (krs_render(seen->rendering, seen->state, &options, &seen->picture) != KRS_OK)
         fail_msg("%s: %s", scenes->name, krs_renderer_message(renderer));
 }
 
@@ -60,7 +60,7 @@ static void forget(Seen *seen)
 {
     krs_picture_free(seen->picture);
     krs_rendering_free(seen->rendering);
-    krs_state_free(seen->frame);
+    krs_state_free(seen->state);
     krs_scene_free(seen->scene);
 }
 
@@ -112,9 +112,9 @@ static bool are_same(const Different *d)
            d->shadings <= d->covered / 25 && d->mean < 1e-3;
 }
 
-static void pictures_are_as_apart(void **state)
+static void pictures_are_as_apart(void **context)
 {
-    (void)state;
+    (void)context;
     for (size_t i = 0; i < PICTURED_GROUPS; i += TOGETHER) {
         Seen apart, group;
         look(&apart, &instance_texts[i], TOGETHER, true);
@@ -131,7 +131,7 @@ static void pictures_are_as_apart(void **state)
 /* ---- queries ---- */
 
 /* Far from all parts the distance on the device may be less, and has a normal of length 0 or 1. */
-static void answers_of_the_device_are_bounds(void **state)
+static void answers_of_the_device_are_bounds(void **context)
 {
     static double       points[SAMPLED][3], wanted[SAMPLED];
     static float        places[SAMPLED][3], sampled[SAMPLED];
@@ -140,16 +140,16 @@ static void answers_of_the_device_are_bounds(void **state)
     Random              random = {SEED};
     Seen                seen;
     int                 less = 0, flat = 0;
-    (void)state;
+    (void)context;
     look(&seen, &instance_texts[0], 1, false);
     for (int i = 0; i < SAMPLED * 3; i++)
         points[i / 3][i % 3] = places[i / 3][i % 3] = (float)random_between(&random, -2, 2);
-    assert_int_equal(krs_distance(seen.frame, (const double(*)[3])points, SAMPLED, wanted), KRS_OK);
-    assert_int_equal(point_query_sample(seen.rendering, seen.frame, (const float(*)[3])places,
+    assert_int_equal(krs_distance(seen.state, (const double(*)[3])points, SAMPLED, wanted), KRS_OK);
+    assert_int_equal(point_query_sample(seen.rendering, seen.state, (const float(*)[3])places,
                                         SAMPLED, sampled, surfaces),
                      KRS_OK);
     assert_int_equal(
-        krs_device_probe(seen.rendering, seen.frame, (const double(*)[3])points, SAMPLED, hits),
+        krs_device_probe(seen.rendering, seen.state, (const double(*)[3])points, SAMPLED, hits),
         KRS_OK);
     for (int i = 0; i < SAMPLED; i++) {
         double length = length3(hits[i].normal);

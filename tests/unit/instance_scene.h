@@ -12,7 +12,7 @@ enum { SPHERES = 50, COLUMNS = 5, RADIUS = 3, SHADE = 4, PLACES = 12 };
 
 /* The radius is multiplied by the parameter, the time, which is: */
 static const double TIME = 1.25;
-/* Of the smooth minimum. */
+/* The width of the smooth minimum. */
 static const double WIDTH = 0.4;
 
 /* The distance of spheres, the same of a smooth minimum, of copies of spheres at other places; the

@@ -54,18 +54,18 @@ static void open_fixture(Fixture *fixture, Bench *bench)
 /* What shaders find where a root of the graph is the scene's distance. */
 static void sample_root(Fixture *fixture, Node root)
 {
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     surface_roots(&fixture->scene->roots, 0)[ROOT_DISTANCE] = root;
-    assert_int_equal(krs_state_new(fixture->scene, &frame), KRS_OK);
-    assert_int_equal(krs_state_set_time(frame, TIME), KRS_OK);
+    assert_int_equal(krs_state_new(fixture->scene, &state), KRS_OK);
+    assert_int_equal(krs_state_set_time(state, TIME), KRS_OK);
     assert_int_equal(
         krs_rendering_new(fixture->renderer, fixture->scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    assert_int_equal(krs_device_distance(rendering, frame, (const float(*)[3])fixture->points,
+    assert_int_equal(krs_device_distance(rendering, state, (const float(*)[3])fixture->points,
                                          POINTS, fixture->found),
                      KRS_OK);
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
 }
 
 /* At how many points the tape finds something else. */

@@ -69,7 +69,7 @@ static Blot find_blot(const KrsPicture *picture)
 
 static void set(Fixture *fixture, const char *name, double value)
 {
-    assert_int_equal(krs_state_set(fixture->frame, name, &value, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->state, name, &value, 1), KRS_OK);
 }
 
 static KrsPicture *render(Fixture *fixture, size_t camera, uint32_t samples, KrsEye eye)
@@ -111,7 +111,7 @@ static void balls_have_circles_of_confusion(void **state)
             const bool   flat = camera == ORTHOGRAPHIC;
             const double z = depths[i], unit = flat ? 4.0 / SIDE : pixel() * z;
             const double ball = 1.5, size = ball * unit;
-            /* Of a point, where all rays through the lens that see it meet the picture. */
+            /* All rays through the lens that see a point meet the picture within this circle. */
             const double circle = APERTURE * fabs(1 - z / FOCUS) / unit;
             set(fixture, "away", z);
             set(fixture, "size", size);
@@ -179,8 +179,8 @@ static void portions_are_the_whole(void **state)
         KrsFilm               *film;
         KrsPicture            *whole = fixture_render(fixture, options), *parts;
         assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_OK);
-        assert_int_equal(krs_film_add(film, fixture->frame, NULL, 2), KRS_OK);
-        assert_int_equal(krs_film_add(film, fixture->frame, NULL, 3), KRS_OK);
+        assert_int_equal(krs_film_add(film, fixture->state, NULL, 2), KRS_OK);
+        assert_int_equal(krs_film_add(film, fixture->state, NULL, 3), KRS_OK);
         assert_int_equal(krs_film_read(film, 0, &parts), KRS_OK);
         assert_memory_equal(whole->color, parts->color, 16 * SIDE * SIDE);
         assert_memory_equal(whole->depth, parts->depth, 4 * SIDE * SIDE);
@@ -309,7 +309,7 @@ static void what_moves_is_drawn_out(void **state)
     assert_near(blot.x, 0.25 / unit, 0.1);
     assert_near(blot.spread / (way * way / 12 + size * size / 2 + 1.0 / 6), 1, 0.03);
     assert_near(blot.weight / still.weight, 1, 0.02);
-    assert_near(krs_state_time(fixture->frame), 0, 0);
+    assert_near(krs_state_time(fixture->state), 0, 0);
     /* The planes are those of the middle. */
     set(fixture, "beside", 0.25);
     KrsPicture *middle = render(fixture, PLAIN, 1, KRS_EYE_OF_BOTH);
@@ -334,7 +334,7 @@ static void eyes_see_the_parallax(void **state)
         const Blot right = see(fixture, TURNS, 16, KRS_EYE_ON_RIGHT);
         assert_near(left.x - right.x, 0.3 * (1 / z - 1 / 8.0) / pixel(), 0.1);
         assert_near(left.x + right.x, 0, 0.25);
-        /* Of a panorama each eye is 0.2 from the middle, across the way that it looks. */
+        /* A panorama has each eye 0.2 from the middle, across the way that it looks. */
         set(fixture, "size", 0.7);
         const Blot west = see(fixture, ALL_AROUND, 64, KRS_EYE_ON_LEFT);
         const Blot east = see(fixture, ALL_AROUND, 64, KRS_EYE_ON_RIGHT);
@@ -387,12 +387,12 @@ static void wrong_lenses_are_refused(void **state)
     wrong[2].shift[1] = INFINITY;
     assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_OK);
     for (int i = 0; i < 3; i++)
-        assert_int_equal(krs_film_add(film, fixture->frame, &wrong[i], 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_film_add(film, fixture->frame, &good, 1), KRS_OK);
+        assert_int_equal(krs_film_add(film, fixture->state, &wrong[i], 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, fixture->state, &good, 1), KRS_OK);
     krs_film_free(film);
     options.light = 2; /* there is one */
     assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_OK);
-    assert_int_equal(krs_film_add(film, fixture->frame, &good, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, fixture->state, &good, 1), KRS_BAD_ARGUMENT);
     krs_film_free(film);
 }
 

@@ -158,8 +158,8 @@ static void portions_and_crops_are_the_whole(void **state)
     assert_int_equal(krs_film_new(lit.rendering, &options, &film), KRS_OK);
     assert_int_equal(krs_film_new(lit.rendering, &others, &other), KRS_OK);
     for (uint32_t portion = 1; portion < 4; portion++) {
-        assert_int_equal(krs_film_add(film, lit.frame, NULL, portion == 3 ? 2 : portion), KRS_OK);
-        assert_int_equal(krs_film_add(other, lit.frame, NULL, 1), KRS_OK);
+        assert_int_equal(krs_film_add(film, lit.state, NULL, portion == 3 ? 2 : portion), KRS_OK);
+        assert_int_equal(krs_film_add(other, lit.state, NULL, 1), KRS_OK);
     }
     assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
     for (size_t y = 0; y < 43; y++)
@@ -179,8 +179,8 @@ static void what_does_not_add_up_is_refused(void **state)
     KrsPicture      *picture;
     clamped.max_radiance = 1;
     noisy.noise          = 0.1;
-    assert_int_equal(krs_render(lit.rendering, lit.frame, &clamped, &picture), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_render(lit.rendering, lit.frame, &noisy, &picture), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_render(lit.rendering, lit.state, &clamped, &picture), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_render(lit.rendering, lit.state, &noisy, &picture), KRS_BAD_ARGUMENT);
 }
 
 int main(void)

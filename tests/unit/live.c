@@ -330,14 +330,14 @@ static void expect_gray(Document *document, KrsChange kind, unsigned char gray)
 {
     assert_int_equal(document_read(document), KRS_OK);
     Version  *version = document_version(document);
-    KrsState *frame;
+    KrsState *state;
     double    distance;
     assert_int_equal(version_changes(version).kind, kind);
-    assert_int_equal(krs_state_new(version_scene(version), &frame), KRS_OK);
+    assert_int_equal(krs_state_new(version_scene(version), &state), KRS_OK);
     const double point[1][3] = {{1 + 0.2 * gray / 255.0, 0, 0}};
-    assert_int_equal(krs_distance(frame, point, 1, &distance), KRS_OK);
+    assert_int_equal(krs_distance(state, point, 1, &distance), KRS_OK);
     assert_true(fabs(distance) < 1e-6);
-    krs_state_free(frame);
+    krs_state_free(state);
     version_release(version);
 }
 
@@ -425,7 +425,7 @@ static void presets_are_kept(void **state)
     remove(path);
 }
 
-/* Of what is no file, or outside of the folder that may be read, nothing is read, and nothing is waited for. */
+/* What is no file, or outside of the folder that may be read, is not read, and nothing is waited for. */
 static void presets_are_read_from_files(void **state)
 {
     (void)state;

@@ -30,17 +30,17 @@ static KrsStatus use_scene(const char *text, Scarce *scarce)
 {
     KrsOptions options = {.allocator = scarce_allocator(scarce)};
     KrsScene  *scene;
-    KrsState  *frame  = NULL;
+    KrsState  *state  = NULL;
     KrsStatus  status = krs_compile_text(text, strlen(text), "scene.krs", &options, &scene);
     if (status == KRS_OK)
-        status = krs_state_new(scene, &frame);
+        status = krs_state_new(scene, &state);
     if (status == KRS_OK) {
         double point[1][3] = {{1, 2, 3}}, distance;
         KrsHit hit;
-        krs_distance(frame, (const double(*)[3])point, 1, &distance);
-        krs_probe(frame, (const double(*)[3])point, 1, &hit);
+        krs_distance(state, (const double(*)[3])point, 1, &distance);
+        krs_probe(state, (const double(*)[3])point, 1, &hit);
     }
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     return status;
 }
@@ -64,27 +64,27 @@ static void fail_at_every_point(bool lasting)
     }
 }
 
-static void one_allocation_fails(void **state)
+static void one_allocation_fails(void **context)
 {
-    (void)state;
+    (void)context;
     fail_at_every_point(false);
 }
 
-static void all_later_allocations_fail(void **state)
+static void all_later_allocations_fail(void **context)
 {
-    (void)state;
+    (void)context;
     fail_at_every_point(true);
 }
 
 /* Texts and meshes that the caller gets are blocks of its allocator, and go back to it. */
-static void results_are_of_the_allocator(void **state)
+static void results_are_of_the_allocator(void **context)
 {
-    (void)state;
+    (void)context;
     static const char text[]  = "show  sphere(1);";
     Scarce            scarce  = {0};
     KrsOptions        options = {.allocator = scarce_allocator(&scarce)};
     KrsScene         *scene;
-    KrsState         *frame;
+    KrsState         *state;
     KrsMesh          *mesh, *simplified;
     char             *formatted, *glsl;
     bool              same;
@@ -94,26 +94,26 @@ static void results_are_of_the_allocator(void **state)
     assert_int_equal(scarce.held, 1);
     options.allocator.release(options.allocator.user, formatted);
     assert_int_equal(krs_compile_text(text, strlen(text), "a.krs", &options, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     int64_t before = scarce.held;
     assert_int_equal(krs_text(scene, KRS_TARGET_GLSL, NULL, &glsl), KRS_OK);
     assert_int_equal(scarce.held, before + 1);
     options.allocator.release(options.allocator.user, glsl);
-    assert_int_equal(krs_mesh(frame, &(KrsMeshOptions){.error = 0.1}, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(state, &(KrsMeshOptions){.error = 0.1}, &mesh), KRS_OK);
     assert_int_equal(scarce.held, before + 3); /* the mesh, its vertices and its triangles */
     assert_int_equal(krs_mesh_simplify(mesh, &(KrsMeshOptions){.error = 0.1}, &simplified), KRS_OK);
     assert_int_equal(scarce.held, before + 6);
     krs_mesh_free(simplified);
     krs_mesh_free(mesh);
     assert_int_equal(scarce.held, before);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     assert_int_equal(scarce.held, 0);
 }
 
-static void the_limit_holds(void **state)
+static void the_limit_holds(void **context)
 {
-    (void)state;
+    (void)context;
     Scarce      scarce  = {0};
     KrsOptions  options = {.allocator = scarce_allocator(&scarce), .memory_limit = 1 << 20};
     const char *text    = "let a = [[i, i + 1, i + 2] for i in 0..900000]; show sphere(1);";
@@ -156,9 +156,9 @@ static size_t bytes_for(const char *format, int count)
 }
 
 /* What each component, shape or mirror takes is not the size of the whole scene. */
-static void memory_grows_with_the_scene(void **state)
+static void memory_grows_with_the_scene(void **context)
 {
-    (void)state;
+    (void)context;
     static const char *const growing[] = {
         "camera {} for i in 0..%d { show sphere(0.1).move([0.1 * i, 0, 0]); }",
         "camera {} show union([sphere(0.1).move([0.1 * i, 0, 0]) for i in 0..%d]);",

@@ -21,7 +21,7 @@
 static KrsMesh *mesh_by(Scene s, KrsMeshOptions options)
 {
     KrsMesh *mesh;
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_OK);
     return mesh;
 }
 
@@ -104,7 +104,7 @@ static void check_hits(Scene s, const KrsMesh *mesh, double size)
         random_vector(&chance, size, from);
         random_vector(&chance, size, to);
         add_scaled3(direction, to, -1, from);
-        KrsHit hit = cast(s.frame, from, direction, INFINITY, 0);
+        KrsHit hit = cast(s.state, from, direction, INFINITY, 0);
         if (hit.hit && hit.t > 0)
             assert_true(distance_to_mesh(mesh, hit.point) <= mesh->error);
     }
@@ -126,7 +126,7 @@ static void check_triangles(Scene s, const KrsMesh *mesh)
         for (int k = 0; k < DIRECTIONS && !near; k++) {
             double direction[3];
             random_vector(&chance, 1, direction);
-            near = cast(s.frame, point, direction, mesh->error, 0).hit;
+            near = cast(s.state, point, direction, mesh->error, 0).hit;
         }
         assert_true(near);
     }
@@ -186,7 +186,7 @@ static void meshes_are_closed_and_near(void **context)
 
 /* ---- surfaces whose distances have a closed form ---- */
 
-/* Of a torus of radii 1 and 0.4 about y, and of a ball of radius 1. */
+/* The distances to a torus of radii 1 and 0.4 about y, and to a ball of radius 1. */
 static double ring_distance(const double p[3]) { return hypot(hypot(p[0], p[2]) - 1, p[1]) - 0.4; }
 static double ball_distance(const double p[3]) { return length3(p) - 1; }
 
@@ -373,7 +373,7 @@ static void thin_walls_are_found_or_reported(void **context)
     check_closed(coarse);
     assert_true(coarse->unresolved > 0);
     double distance, *place = coarse->unresolved_at;
-    assert_int_equal(krs_distance(sheet.frame, (const double(*)[3])place, 1, &distance), KRS_OK);
+    assert_int_equal(krs_distance(sheet.state, (const double(*)[3])place, 1, &distance), KRS_OK);
     assert_true(fabs(distance) < 0.25 * coarse->error); /* the wall is there */
     krs_mesh_free(fine);
     krs_mesh_free(coarse);
@@ -393,22 +393,22 @@ static void what_cannot_be_meshed_is_refused(void **context)
     KrsMeshOptions options = {.error = 0.1};
     KrsMesh       *mesh;
     Scene          s = scene_of("show half_space([0, 1, 0], 0.2);");
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_BAD_ARGUMENT);
     assert_null(mesh);
     options = (KrsMeshOptions){
         .error = 0.1, .within = true, .low = {-1, -1, -1}, .high = {1, 1, 1}};
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_OK);
     check_closed(mesh);
     assert_true(fabs(volume_of(mesh) - 4 * 1.2) < 0.2);
     krs_mesh_free(mesh);
     options.component = 2;
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_BAD_ARGUMENT);
     options.component    = 1;
     options.memory_limit = 10000;
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OUT_OF_MEMORY);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_OUT_OF_MEMORY);
     options.memory_limit = 0;
     options.progress     = stop;
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_INTERRUPTED);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_INTERRUPTED);
     scene_close(s);
 }
 
@@ -418,14 +418,14 @@ static void components_and_empty_scenes(void **context)
     Scene          s       = scene_of("show sphere(0.5); show box([1, 1, 1]).move([3, 0, 0]);");
     KrsMeshOptions options = {.error = 0.1, .component = 2};
     KrsMesh       *mesh;
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_OK);
     assert_true(fabs(volume_of(mesh) - 1) < 0.05);
     krs_mesh_free(mesh);
     scene_close(s);
     s                 = scene_of("for i in 0..100 { show sphere(0.3).move([i, 0, 0]);"
                                                  "  if i == 50 { show box([1, 1, 1]).move([3, 5, 0]); } }");
     options.component = 52; /* between many that are one in the shaders */
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_OK);
     assert_true(fabs(volume_of(mesh) - 1) < 0.05);
     krs_mesh_free(mesh);
     scene_close(s);
@@ -564,8 +564,8 @@ static void smooth_surfaces_have_large_triangles(void **context)
         assert_int_equal(krs_compile_text(rows[i].text, strlen(rows[i].text), "scene.krs", &options,
                                           &meshed.scene),
                          KRS_OK);
-        assert_int_equal(krs_state_new(meshed.scene, &meshed.frame), KRS_OK);
-        assert_int_equal(krs_mesh(meshed.frame, &(KrsMeshOptions){.error = rows[i].error}, &mesh),
+        assert_int_equal(krs_state_new(meshed.scene, &meshed.state), KRS_OK);
+        assert_int_equal(krs_mesh(meshed.state, &(KrsMeshOptions){.error = rows[i].error}, &mesh),
                          KRS_OK);
         print_message("# %s within %g: %zu triangles\n", rows[i].text, rows[i].error,
                       mesh->triangle_count);

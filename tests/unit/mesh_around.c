@@ -52,7 +52,7 @@ static void weights_in(const double corners[4][3], const double p[3], double wei
     }
 }
 
-/* Of all that have a point, at their boundaries too; -1: none has it. */
+/* Returns the worst of all that have a point, at their boundaries too; -1: none has it. */
 static double worst_deviation_at(const Tets *tets, const double p[3])
 {
     double worst = -1, corners[4][3], weights[4];
@@ -95,7 +95,7 @@ static bool any_way_is_lost(const Tets *tets, const double p[3])
     return false;
 }
 
-/* Of each point in a bounded tetrahedron: what is said of it, against ways in all directions. */
+/* Compares what is said of each point in a bounded tetrahedron with ways in all directions. */
 static void no_way_ends_in_a_bad_one(void **context)
 {
     enum { SPACES = 6, POINTS = 200 };

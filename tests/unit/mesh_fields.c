@@ -32,18 +32,18 @@ static Opened *open_field(const char *text)
 {
     Opened *o = calloc(1, sizeof *o);
     assert_non_null(o);
-    KrsState  *frame;
+    KrsState  *state;
     KrsOptions options = {.outlines = true};
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &o->scene),
                      KRS_OK);
-    assert_int_equal(krs_state_new(o->scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(o->scene, &state), KRS_OK);
     o->memory       = o->scene->memory;
     o->memory.used  = 0;
     o->memory.limit = (size_t)1 << 30;
     o->arena.memory = &o->memory;
     o->solid.roots  = malloc(solid_root_bytes(o->scene));
     solid_of_components(o->scene, NULL, &o->solid);
-    o->field = (MeshField){.state = frame, .solid = &o->solid};
+    o->field = (MeshField){.state = state, .solid = &o->solid};
     state_refresh(o->field.state);
     field_open(&o->field, &o->arena);
     return o;

@@ -69,10 +69,10 @@ static void marks_touch_what_is_set(void **context)
 static Mesher *open_mesher(const char *text, double error, KrsMeshOptions *options,
                            MeshSolid *solid, KrsScene **scene)
 {
-    KrsState *frame;
+    KrsState *state;
     Mesher   *m = calloc(1, sizeof *m);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
-    assert_int_equal(krs_state_new(*scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(*scene, &state), KRS_OK);
     solid->roots = malloc(solid_root_bytes(*scene));
     solid_of_components(*scene, NULL, solid);
     *options       = (KrsMeshOptions){.error = error};
@@ -89,11 +89,11 @@ static Mesher *open_mesher(const char *text, double error, KrsMeshOptions *optio
     }
     for (size_t i = 0; i < parallel_parts(); i++) {
         m->fields[i] = (MeshField){.solid = solid};
-        assert_int_equal(state_copy_of(frame, &m->fields[i].state), KRS_OK);
+        assert_int_equal(state_copy_of(state, &m->fields[i].state), KRS_OK);
         state_refresh_points(m->fields[i].state);
         field_open(&m->fields[i], &m->arena);
     }
-    krs_state_free(frame);
+    krs_state_free(state);
     return m;
 }
 

@@ -28,7 +28,7 @@ static bool hear(void *user, double fraction)
 static const char *const text = "show difference(union(box([1, 0.3, 0.8]).round(0.05), "
                                 "cylinder(0.3, 0.8), blend: 0.15), cylinder(0.15, 2));";
 
-/* Of several, the one that tells may get no turn. */
+/* One thread does all: among several, the one that tells may not come to it. */
 static void work_in_one_thread(void)
 {
     cpu_set_t all, one;
@@ -48,7 +48,7 @@ static void work_goes_on_in_small_steps(void **state)
     KrsMesh       *mesh, *few;
     (void)state;
     work_in_one_thread();
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_OK);
     assert_true(told.count > 10 && told.last > 0.7 && told.largest_step < 0.5);
     told = (Told){.most = SIZE_MAX};
     assert_int_equal(krs_mesh_simplify(mesh, &options, &few), KRS_OK);
@@ -64,7 +64,7 @@ static void simplifying_is_stopped(void **state)
     KrsMeshOptions options = {.error = 0.02};
     KrsMesh       *mesh, *few;
     (void)state;
-    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    assert_int_equal(krs_mesh(s.state, &options, &mesh), KRS_OK);
     options.progress = hear;
     for (size_t most = 1; most < 40; most += 13) {
         Told told    = {.most = most};

@@ -29,7 +29,7 @@ static double uniform(double low, double high) { return random_between(&chance, 
 typedef struct Trial {
     const Subject *subject;
     KrsScene      *scene;
-    KrsState      *frame;
+    KrsState      *state;
     Memory         memory;
     Arena          arena;
     Node          *roots;
@@ -87,7 +87,7 @@ static void open_trial(Trial *t, const Subject *subject, const double focus[3], 
     /* Bounds come near to the truth in small tetrahedra; where the surface is beyond an edge large ones are wanted. */
     double length   = poked ? uniform(0.1, 0.4) : exp(uniform(log(0.004), log(0.1))), origin[3];
     *t              = (Trial){.subject = subject};
-    t->frame        = frame_of_subject(subject, &t->scene);
+    t->state        = state_of_subject(subject, &t->scene);
     t->arena.memory = &t->memory;
     t->roots        = malloc(solid_root_bytes(t->scene));
     t->solid.roots  = t->roots;
@@ -96,7 +96,7 @@ static void open_trial(Trial *t, const Subject *subject, const double focus[3], 
     solid_of_components(t->scene, NULL, &t->solid);
     for (size_t i = 0; i < parallel_parts(); i++) {
         t->fields[i] = (MeshField){.solid = &t->solid};
-        assert_int_equal(state_copy_of(t->frame, &t->fields[i].state), KRS_OK);
+        assert_int_equal(state_copy_of(t->state, &t->fields[i].state), KRS_OK);
         state_refresh(t->fields[i].state);
         field_open(&t->fields[i], &t->arena);
     }
@@ -126,7 +126,7 @@ static void close_trial(Trial *t)
         state_free(t->fields[i].state);
     arena_free(&t->arena);
     free(t->roots);
-    krs_state_free(t->frame);
+    krs_state_free(t->state);
     krs_scene_free(t->scene);
 }
 
@@ -270,7 +270,8 @@ static bool is_closed_form(const Trial *t, const double p[3])
     return fabs(subject_value(t->subject, p) - field_distance(&t->fields[0], p)) < 1e-9;
 }
 
-/* Of random points, and of corners: gradients are differences, so these are a little within the box. */
+/* Compares with random points, and with corners: gradients are differences, so these are a little within the
+   box. */
 static void check_slope(const Trial *t, Box box, double slope, Shares *shares)
 {
     static const double WITHIN = 1e-5;
@@ -286,7 +287,7 @@ static void check_slope(const Trial *t, Box box, double slope, Shares *shares)
         check_slope_at(t->subject, (const double(*)[3])points, count, slope, shares);
 }
 
-/* Of ways along the gradient in the middle, from points of a box that are near to the surface. */
+/* Compares with ways along the gradient in the middle, from points of a box that are near to the surface. */
 static void check_slope_of_ways(const Trial *t, Box box, double slope, Shares *shares)
 {
     enum { TRIES = 200 };

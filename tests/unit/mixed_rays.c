@@ -56,7 +56,7 @@ static int close_renderer(void **state)
 
 typedef struct Fixture {
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
 } Fixture;
 
@@ -64,7 +64,7 @@ static Fixture open_fixture(const char *text, KrsPurpose purpose)
 {
     Fixture fixture;
     assert_int_equal(krs_compile_text(text, strlen(text), "mixed", NULL, &fixture.scene), KRS_OK);
-    assert_int_equal(krs_state_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture.scene, &fixture.state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, fixture.scene, purpose, &fixture.rendering),
                      KRS_OK);
     return fixture;
@@ -73,7 +73,7 @@ static Fixture open_fixture(const char *text, KrsPurpose purpose)
 static void close_fixture(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
 }
 
@@ -86,7 +86,7 @@ static KrsPicture *render(const Fixture *fixture, KrsIntegrator integrator,
                                       .integrator         = integrator,
                                       .methods.components = components};
     KrsPicture            *picture;
-    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;
 }

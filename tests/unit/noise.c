@@ -88,7 +88,7 @@ static KrsFilm *new_film(const KrsRenderOptions *options)
 
 static void add(KrsFilm *film, uint32_t samples)
 {
-    assert_int_equal(krs_film_add(film, lit.frame, NULL, samples), KRS_OK);
+    assert_int_equal(krs_film_add(film, lit.state, NULL, samples), KRS_OK);
 }
 
 /* In portions, and by turns with another film, which takes the buffers. */
@@ -261,7 +261,7 @@ static void scenes_may_ask_for_it(void **state)
     assert_true(is_part_of(&scene, picture, render_scene(&scene, same), "the scene's noise"));
     krs_picture_free(picture);
     wrong.noise = -1;
-    assert_int_equal(krs_render(scene.rendering, scene.frame, &wrong, &picture), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_render(scene.rendering, scene.state, &wrong, &picture), KRS_BAD_ARGUMENT);
     close_scene(&scene);
 }
 

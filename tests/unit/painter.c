@@ -132,22 +132,22 @@ static uint8_t *render(const Fixture *fixture, const char *text, double r)
     const KrsOptions with    = {.specialize = KRS_SPECIALIZE_STRUCTURE};
     uint8_t         *pixels  = malloc(BYTES);
     KrsScene        *scene;
-    KrsState        *frame;
+    KrsState        *state;
     KrsRendering    *rendering;
     KrsFilm         *film;
     KrsPicture      *picture;
     assert_int_equal(krs_compile_text(text, strlen(text), "a", &with, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_state_set(frame, "r", &r, 1), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_state_set(state, "r", &r, 1), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     assert_int_equal(krs_film_new(rendering, &options, &film), KRS_OK);
-    assert_int_equal(krs_film_add(film, frame, &fixture->view.camera, 1), KRS_OK);
+    assert_int_equal(krs_film_add(film, state, &fixture->view.camera, 1), KRS_OK);
     assert_int_equal(krs_film_read(film, KRS_AOV_COLOR, &picture), KRS_OK);
     assert_int_equal(krs_picture_to_srgb8(picture, scene, 0, 4, pixels), KRS_OK);
     krs_picture_free(picture);
     krs_film_free(film);
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
     return pixels;
 }
@@ -263,7 +263,7 @@ static void the_first_edit_can_be_prepared(void **state)
     }
 }
 
-/* Of edits that follow each other quickly the last is shown, and the others are given up. */
+/* When edits follow each other quickly the last is shown, and the others are given up. */
 static void edits_overtake_each_other(void **state)
 {
     (void)state;

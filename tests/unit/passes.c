@@ -94,7 +94,7 @@ static void write_file(const char *path, const char *text)
     assert_int_equal(fclose(file), 0);
 }
 
-/* Of a wrong scene passes before the mistake are printed, those behind it are not. */
+/* A wrong scene has its passes before the mistake printed, and those behind it not. */
 static void mistakes_end_the_passes(void **state)
 {
     static const struct {

@@ -201,8 +201,8 @@ static void portions_are_the_whole(void **state)
     options.samples          = 3;
     KrsPicture *whole        = render_scene(&still, options);
     KrsFilm    *film         = new_film(&options);
-    assert_int_equal(krs_film_add(film, still.frame, NULL, 1), KRS_OK);
-    assert_int_equal(krs_film_add(film, still.frame, NULL, 2), KRS_OK);
+    assert_int_equal(krs_film_add(film, still.state, NULL, 1), KRS_OK);
+    assert_int_equal(krs_film_add(film, still.state, NULL, 2), KRS_OK);
     assert_true(is_part_of(&still, whole, read_and_free(film), "two portions"));
     krs_picture_free(whole);
 }
@@ -231,8 +231,8 @@ static void rays_of_lists_show_the_same(void **state)
                           .directions = (const double(*)[3])directions,
                           .width      = 3.0 / SIDE};
     KrsFilm      *seen = new_film(&options), *listed = new_film(&options);
-    assert_int_equal(krs_film_add(seen, still.frame, &camera, 1), KRS_OK);
-    assert_int_equal(krs_film_add_rays(listed, still.frame, &rays), KRS_OK);
+    assert_int_equal(krs_film_add(seen, still.state, &camera, 1), KRS_OK);
+    assert_int_equal(krs_film_add_rays(listed, still.state, &rays), KRS_OK);
     KrsPicture *a = read_and_free(seen), *b = read_and_free(listed);
     size_t      differ = 0;
     for (size_t k = 0; k < SIDE * SIDE; k++)
@@ -262,7 +262,7 @@ static void interruption_is_heard(void **state)
     options.user     = &left;
     for (int calls = 0; calls < 40; calls += 5) {
         left = calls;
-        assert_int_equal(krs_render(still.rendering, still.frame, &options, &picture),
+        assert_int_equal(krs_render(still.rendering, still.state, &options, &picture),
                          KRS_INTERRUPTED);
         assert_null(picture);
     }
@@ -321,7 +321,7 @@ static void updates_are_followed(void **state)
     krs_picture_free(render_scene(&before, usual()));
     assert_int_equal(krs_rendering_update(before.rendering, after.scene), KRS_OK);
     KrsPicture *fresh   = render_scene(&after, usual());
-    Scene       updated = {.name = "updated", .rendering = before.rendering, .frame = after.frame};
+    Scene       updated = {.name = "updated", .rendering = before.rendering, .state = after.state};
     assert_true(is_part_of(&after, fresh, render_scene(&updated, usual()), "an update"));
     krs_picture_free(fresh);
     close_scene(&before);
@@ -409,7 +409,7 @@ static void wrong_choices_are_refused(void **state)
                                       {.bounces = KRS_MAX_BOUNCES + 1}};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
-        assert_int_equal(krs_render(still.rendering, still.frame, &wrong[i], &picture),
+        assert_int_equal(krs_render(still.rendering, still.state, &wrong[i], &picture),
                          KRS_BAD_ARGUMENT);
         assert_null(picture);
         assert_true(strlen(krs_renderer_message(watched_renderer)) > 10);

@@ -38,7 +38,7 @@ enum { WIDTH = 160, HEIGHT = 100, PIXELS = WIDTH * HEIGHT };
 typedef struct Scene {
     const char   *name, *text;
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *plain, *early; /* of renderers without and with early-outs */
 } Scene;
 
@@ -91,9 +91,9 @@ static void print_validation_message(void *user, const char *message)
     fprintf(stderr, "the validation layers complain: %s\n", message);
 }
 
-static int open_scenes(void **state)
+static int open_scenes(void **context)
 {
-    (void)state;
+    (void)context;
     KrsRendererOptions options = {.device             = tested_device(),
                                   .validation         = true,
                                   .validation_message = print_validation_message};
@@ -107,9 +107,9 @@ static int open_scenes(void **state)
         const double zone[4] = {-4.5, 0, 0, 0.8};
         status = krs_compile_text(s->text, strlen(s->text), s->name, &with, &s->scene);
         if (status == KRS_OK)
-            status = krs_state_new(s->scene, &s->frame);
+            status = krs_state_new(s->scene, &s->state);
         if (status == KRS_OK && i == ZONED)
-            status = krs_state_set_zones(s->frame, &zone, 1);
+            status = krs_state_set_zones(s->state, &zone, 1);
         if (status == KRS_OK)
             status = krs_rendering_new(plain, s->scene, KRS_FOR_PICTURES, &s->plain);
         if (status == KRS_OK)
@@ -118,13 +118,13 @@ static int open_scenes(void **state)
     return status != KRS_OK;
 }
 
-static int close_scenes(void **state)
+static int close_scenes(void **context)
 {
-    (void)state;
+    (void)context;
     for (int i = 0; i < SCENES; i++) {
         krs_rendering_free(scenes[i].plain);
         krs_rendering_free(scenes[i].early);
-        krs_state_free(scenes[i].frame);
+        krs_state_free(scenes[i].state);
         krs_scene_free(scenes[i].scene);
     }
     uint64_t validation_messages = krs_renderer_validation_messages(plain) +
@@ -142,7 +142,7 @@ static KrsPicture *render(const Scene *scene, bool with_early_outs, KrsRenderOpt
         options.height = HEIGHT;
     }
     KrsRendering *rendering = with_early_outs ? scene->early : scene->plain;
-    KrsStatus     status    = krs_render(rendering, scene->frame, &options, &picture);
+    KrsStatus     status    = krs_render(rendering, scene->state, &options, &picture);
     if (status != KRS_OK)
         fail_msg("%s: %s", scene->name, krs_renderer_message(with_early_outs ? early : plain));
     return picture;
@@ -206,9 +206,9 @@ static const KrsRenderOptions together = {.methods.components = KRS_COMPONENTS_T
 static const KrsRenderOptions by_turns = {.methods.components = KRS_COMPONENTS_APART};
 static const KrsRenderOptions packed   = {.methods.components = KRS_COMPONENTS_PACKED};
 
-static void parts_make_the_union(void **state)
+static void parts_make_the_union(void **context)
 {
-    const Scene *scene = *state;
+    const Scene *scene = *context;
     KrsPicture  *whole = render(scene, false, together);
     KrsPicture  *apart = render(scene, false, by_turns);
     KrsPicture  *turns = render(scene, false, packed);
@@ -224,9 +224,9 @@ static void parts_make_the_union(void **state)
     krs_picture_free(turns);
 }
 
-static void early_outs_are_not_seen(void **state)
+static void early_outs_are_not_seen(void **context)
 {
-    const Scene *scene = *state;
+    const Scene *scene = *context;
     KrsPicture  *all   = render(scene, false, together);
     KrsPicture  *few   = render(scene, true, (KrsRenderOptions){0});
     check_same(scene, all, few);
@@ -252,9 +252,9 @@ static void check_equal(const KrsPicture *whole, const KrsPicture *part)
         }
 }
 
-static void crops_and_schedules_change_nothing(void **state)
+static void crops_and_schedules_change_nothing(void **context)
 {
-    (void)state;
+    (void)context;
     const Scene     *scene = &scenes[GROUND];
     KrsRenderOptions apart = {.methods.components = KRS_COMPONENTS_APART};
     KrsPicture      *whole = render(scene, false, apart);
@@ -298,7 +298,7 @@ static void spiral_is_the_union(int count, double far, const char *more, const c
     write_spiral(&text, count, far, more);
     KrsOptions with = {.diagnostic = print_diagnostic};
     assert_int_equal(krs_compile_text(text.bytes, text.length, name, &with, &scene.scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene.scene, &scene.frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene.scene, &scene.state), KRS_OK);
     assert_int_equal(krs_rendering_new(plain, scene.scene, KRS_FOR_PICTURES, &scene.plain), KRS_OK);
     assert_int_equal(krs_scene_program(scene.scene)->camera_relative, far > 0);
     KrsPicture *whole = render(&scene, false, together), *turns = render(&scene, false, packed);
@@ -308,14 +308,14 @@ static void spiral_is_the_union(int count, double far, const char *more, const c
     krs_picture_free(whole);
     krs_picture_free(turns);
     krs_rendering_free(scene.plain);
-    krs_state_free(scene.frame);
+    krs_state_free(scene.state);
     krs_scene_free(scene.scene);
     arena_free(&arena);
 }
 
-static void any_number_is_packed(void **state)
+static void any_number_is_packed(void **context)
 {
-    (void)state;
+    (void)context;
     static const int counts[] = {1, 8, 9, 65};
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
         char name[32];
@@ -324,24 +324,24 @@ static void any_number_is_packed(void **state)
     }
 }
 
-static void zones_are_packed(void **state)
+static void zones_are_packed(void **context)
 {
-    (void)state;
+    (void)context;
     spiral_is_the_union(9, 0,
                         "show plane([0, 1, 0], -1);"
                         "zone { center: [0.5, 0, 1.5], radius: 0.9 }",
                         "a spiral in a zone");
 }
 
-static void far_away_is_packed(void **state)
+static void far_away_is_packed(void **context)
 {
-    (void)state;
+    (void)context;
     spiral_is_the_union(9, 1e5, "", "a spiral far from the origin");
 }
 
-static void packed_in_every_way(void **state)
+static void packed_in_every_way(void **context)
 {
-    (void)state;
+    (void)context;
     const Scene *scene = &scenes[MIXED];
     KrsPicture  *whole = render(scene, false, packed);
     for (int schedule = KRS_SCHEDULE_PIXEL; schedule < KRS_SCHEDULE_COUNT; schedule++) {
@@ -367,9 +367,9 @@ static void packed_in_every_way(void **state)
 }
 
 /* What is cheap is not worth shaders of its own. */
-static void only_what_is_heavy_is_apart(void **state)
+static void only_what_is_heavy_is_apart(void **context)
 {
-    (void)state;
+    (void)context;
     static const char cheap[] = "show sphere(1); show box([1, 1, 1]).move([3, 0, 0]);"
                                 "show torus(1, 0.2).move([0, 0, 3]);";
     KrsScene         *scene;

@@ -115,7 +115,7 @@ static KrsRenderOptions on_floor(int camera)
 
 static void set(Fixture *fixture, const char *name, double value)
 {
-    assert_int_equal(krs_state_set(fixture->frame, name, &value, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->state, name, &value, 1), KRS_OK);
 }
 
 /* The direction from the floor to a light. */
@@ -297,7 +297,7 @@ static void lists_of_rays_have_plates(void **state)
     set(fixture, "at_lamp", 0);
     set(fixture, "at_sun", 1);
     assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_OK);
-    assert_int_equal(krs_film_add_rays(film, fixture->frame, &rays), KRS_OK);
+    assert_int_equal(krs_film_add_rays(film, fixture->state, &rays), KRS_OK);
     assert_int_equal(krs_film_read(film, 0, &seen), KRS_OK);
     memcpy(ground.depth, along, sizeof along);
     check_shadows(seen, 1, 40);

@@ -413,7 +413,7 @@ static void texts_are_short(void **state)
 enum { POINTS = 4096 };
 
 /* What is at the points, by the shader of questions in another variant. */
-static void probe_by(KrsRendering *rendering, KrsState *frame, const KrsVariant *variant,
+static void probe_by(KrsRendering *rendering, KrsState *state, const KrsVariant *variant,
                      const double (*points)[3], KrsHit *hits)
 {
     ShaderVariant other = variant_of_point_query(rendering);
@@ -426,7 +426,7 @@ static void probe_by(KrsRendering *rendering, KrsState *frame, const KrsVariant 
     assert_true(
         shader_create(&renderer->gpu, &shader, &source, renderer->layout, &spirv_ms, &pipeline_ms));
     *used            = shader;
-    KrsStatus status = krs_device_probe(rendering, frame, points, POINTS, hits);
+    KrsStatus status = krs_device_probe(rendering, state, points, POINTS, hits);
     *used            = before;
     assert_true(gpu_wait(&renderer->gpu));
     shader_destroy(&renderer->gpu, &shader);
@@ -456,24 +456,24 @@ static void compare_variants(const char *path)
     static double points[POINTS][3];
     static KrsHit right[POINTS], found[POINTS];
     KrsScene     *scene = open_file(path, false);
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_state_set_time(frame, 0.7), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_state_set_time(state, 0.7), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
     for (int i = 0; i < POINTS; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = 6 * fmod(i * (double[]){0.8191725, 0.6710436, 0.5497005}[k], 1) - 3;
-    assert_int_equal(krs_device_probe(rendering, frame, (const double(*)[3])points, POINTS, right),
+    assert_int_equal(krs_device_probe(rendering, state, (const double(*)[3])points, POINTS, right),
                      KRS_OK);
     for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
-        probe_by(rendering, frame, &variants[v], (const double(*)[3])points, found);
+        probe_by(rendering, state, &variants[v], (const double(*)[3])points, found);
         int different = count_different(right, found);
         if (different > POINTS / 1000)
             fail_msg("%s: %d of %d points differ in variant %zu", path, different, POINTS, v);
     }
     krs_rendering_free(rendering);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 

@@ -18,13 +18,13 @@ Scene scene_of(const char *text)
 {
     Scene s;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &s.scene), KRS_OK);
-    assert_int_equal(krs_state_new(s.scene, &s.frame), KRS_OK);
+    assert_int_equal(krs_state_new(s.scene, &s.state), KRS_OK);
     return s;
 }
 
 void scene_close(Scene s)
 {
-    krs_state_free(s.frame);
+    krs_state_free(s.state);
     krs_scene_free(s.scene);
 }
 
@@ -40,14 +40,14 @@ double apart(const double a[3], const double b[3])
     return length3(v);
 }
 
-KrsHit cast(KrsState *frame, const double origin[3], const double direction[3], double farthest,
+KrsHit cast(KrsState *state, const double origin[3], const double direction[3], double farthest,
             double tolerance)
 {
     KrsHit hit;
     double o[1][3], d[1][3];
     memcpy(o, origin, sizeof o);
     memcpy(d, direction, sizeof d);
-    assert_int_equal(krs_raycast(frame, (const double(*)[3])o, (const double(*)[3])d, 1, farthest,
+    assert_int_equal(krs_raycast(state, (const double(*)[3])o, (const double(*)[3])d, 1, farthest,
                                  tolerance, &hit),
                      KRS_OK);
     return hit;

@@ -9,7 +9,7 @@
 
 typedef struct Scene {
     KrsScene *scene;
-    KrsState *frame;
+    KrsState *state;
 } Scene;
 
 Scene scene_of(const char *text);
@@ -20,7 +20,7 @@ extern Random chance;
 double uniform(double low, double high);
 double length3(const double v[3]);
 double apart(const double a[3], const double b[3]);
-KrsHit cast(KrsState *frame, const double origin[3], const double direction[3], double farthest,
+KrsHit cast(KrsState *state, const double origin[3], const double direction[3], double farthest,
             double tolerance);
 
 #endif

@@ -25,9 +25,9 @@ static void arrays_are_answered_in_order(void **context)
     Scene s = scene_of("show sphere(1); show sphere(0.5).move([3, 0, 0]);");
     for (int i = 0; i < COUNT; i++)
         random_vector(&chance, 5, points[i]);
-    assert_int_equal(krs_distance(s.frame, (const double(*)[3])points, COUNT, distances), KRS_OK);
-    assert_int_equal(krs_normal(s.frame, (const double(*)[3])points, COUNT, normals), KRS_OK);
-    assert_int_equal(krs_probe(s.frame, (const double(*)[3])points, COUNT, hits), KRS_OK);
+    assert_int_equal(krs_distance(s.state, (const double(*)[3])points, COUNT, distances), KRS_OK);
+    assert_int_equal(krs_normal(s.state, (const double(*)[3])points, COUNT, normals), KRS_OK);
+    assert_int_equal(krs_probe(s.state, (const double(*)[3])points, COUNT, hits), KRS_OK);
     for (int i = 0; i < COUNT; i++) {
         const double center[2][3] = {{0, 0, 0}, {3, 0, 0}};
         double       each[2]      = {distance3(points[i], center[0]) - 1,
@@ -45,8 +45,8 @@ static void arrays_are_answered_in_order(void **context)
             assert_true(hits[i].normal[k] == normals[i][k]);
         }
     }
-    assert_int_equal(krs_distance(s.frame, NULL, 0, NULL), KRS_OK);
-    assert_int_equal(krs_raycast(s.frame, NULL, NULL, 0, 1, 0, NULL), KRS_OK);
+    assert_int_equal(krs_distance(s.state, NULL, 0, NULL), KRS_OK);
+    assert_int_equal(krs_raycast(s.state, NULL, NULL, 0, 1, 0, NULL), KRS_OK);
     scene_close(s);
 }
 
@@ -56,11 +56,11 @@ static void an_empty_scene_is_far_from_everything(void **context)
     Scene  s           = scene_of("camera { eye: [0, 0, 5] }");
     double point[1][3] = {{1, 2, 3}}, distance, origin[3] = {0, 0, 5}, direction[3] = {0, 0, -1};
     KrsHit hit;
-    assert_int_equal(krs_distance(s.frame, (const double(*)[3])point, 1, &distance), KRS_OK);
+    assert_int_equal(krs_distance(s.state, (const double(*)[3])point, 1, &distance), KRS_OK);
     assert_true(distance == INFINITY);
-    assert_int_equal(krs_probe(s.frame, (const double(*)[3])point, 1, &hit), KRS_OK);
+    assert_int_equal(krs_probe(s.state, (const double(*)[3])point, 1, &hit), KRS_OK);
     assert_int_equal(hit.component, 0);
-    hit = cast(s.frame, origin, direction, INFINITY, 0);
+    hit = cast(s.state, origin, direction, INFINITY, 0);
     assert_false(hit.hit || hit.unresolved);
     scene_close(s);
 }
@@ -86,10 +86,10 @@ static void what_is_nowhere_adds_nothing(void **context)
         for (int k = 0; k < POINTS; k++) {
             double point[1][3], distances[2];
             random_vector(&chance, 2.5, point[0]);
-            assert_int_equal(krs_distance(with.frame, (const double(*)[3])point, 1, distances),
+            assert_int_equal(krs_distance(with.state, (const double(*)[3])point, 1, distances),
                              KRS_OK);
             assert_int_equal(
-                krs_distance(without.frame, (const double(*)[3])point, 1, distances + 1), KRS_OK);
+                krs_distance(without.state, (const double(*)[3])point, 1, distances + 1), KRS_OK);
             if (distances[0] != distances[1])
                 fail_msg("%s: %.17g instead of %.17g at %g, %g, %g", pairs[i][0], distances[0],
                          distances[1], point[0][0], point[0][1], point[0][2]);
@@ -115,21 +115,21 @@ static void wrong_arguments_are_refused(void **context)
         memcpy(points[0], good[0], sizeof points[0]);
         memcpy(points[1], wrong[i], sizeof points[1]);
         const double(*p)[3] = (const double(*)[3])points;
-        assert_int_equal(krs_distance(s.frame, p, 2, distances), KRS_BAD_ARGUMENT);
-        assert_int_equal(krs_normal(s.frame, p, 2, normals), KRS_BAD_ARGUMENT);
-        assert_int_equal(krs_probe(s.frame, p, 2, hits), KRS_BAD_ARGUMENT);
-        assert_int_equal(krs_raycast(s.frame, p, good, 2, 9, 0, hits), KRS_BAD_ARGUMENT);
-        assert_int_equal(krs_raycast(s.frame, good, p, 2, 9, 0, hits), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_distance(s.state, p, 2, distances), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_normal(s.state, p, 2, normals), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_probe(s.state, p, 2, hits), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_raycast(s.state, p, good, 2, 9, 0, hits), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_raycast(s.state, good, p, 2, 9, 0, hits), KRS_BAD_ARGUMENT);
     }
     const double(*down)[3] = &good[1];
-    assert_int_equal(krs_raycast(s.frame, origin, still, 1, 9, 0, hits), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_raycast(s.frame, origin, down, 1, -1, 0, hits), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_raycast(s.frame, origin, down, 1, NAN, 0, hits), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_raycast(s.frame, origin, down, 1, 9, -1, hits), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_raycast(s.frame, origin, down, 1, 9, NAN, hits), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_raycast(s.frame, origin, down, 1, 9, INFINITY, hits), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_raycast(s.state, origin, still, 1, 9, 0, hits), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_raycast(s.state, origin, down, 1, -1, 0, hits), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_raycast(s.state, origin, down, 1, NAN, 0, hits), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_raycast(s.state, origin, down, 1, 9, -1, hits), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_raycast(s.state, origin, down, 1, 9, NAN, hits), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_raycast(s.state, origin, down, 1, 9, INFINITY, hits), KRS_BAD_ARGUMENT);
     assert_true(distances[0] == 7 && normals[0][0] == 7 && hits[0].t == 7 && hits[1].t == 7);
-    assert_int_equal(krs_raycast(s.frame, origin, down, 1, 9, 0, hits), KRS_OK);
+    assert_int_equal(krs_raycast(s.state, origin, down, 1, 9, 0, hits), KRS_OK);
     assert_true(fabs(hits[0].t - 4) < 1e-8);
     scene_close(s);
 }
@@ -149,7 +149,7 @@ static void rays_start_anywhere(void **context)
     };
     for (size_t i = 0; i < sizeof rays / sizeof *rays; i++) {
         double origin[3] = {0, 0, rays[i].z};
-        KrsHit hit       = cast(s.frame, origin, along, rays[i].farthest, 0);
+        KrsHit hit       = cast(s.state, origin, along, rays[i].farthest, 0);
         assert_false(hit.unresolved);
         assert_int_equal(hit.hit, rays[i].t >= 0);
         if (hit.hit)
@@ -171,7 +171,7 @@ static void thin_things_keep_their_width(void **context)
     size_t hits = 0;
     for (int i = 0; i < 1000; i++) {
         double origin[3] = {uniform(-4, 4), 0.01 * (i + 0.5) / 1000, 3}, down[3] = {0, 0, -1};
-        KrsHit hit   = cast(wire.frame, origin, down, 10, 0.005);
+        KrsHit hit   = cast(wire.state, origin, down, 10, 0.005);
         double chord = 2 * sqrt(fmax(1e-6 - origin[1] * origin[1], 0));
         if (chord == 0 || chord > 0.005 / 16)
             assert_int_equal(hit.hit, chord > 0);
@@ -185,7 +185,7 @@ static void thin_things_keep_their_width(void **context)
     Scene ball = scene_of("show sphere(1);");
     for (double depth = 1e-3; depth > 1e-9; depth /= 3) {
         double in[3] = {-5, 1 - depth, 0}, out[3] = {-5, 1 + depth, 0}, along[3] = {1, 0, 0};
-        KrsHit hit = cast(ball.frame, in, along, 10, 0), miss = cast(ball.frame, out, along, 10, 0);
+        KrsHit hit = cast(ball.state, in, along, 10, 0), miss = cast(ball.state, out, along, 10, 0);
         assert_true(hit.hit && !hit.unresolved);
         assert_true(fabs(hit.t - (5 - sqrt(2 * depth - depth * depth))) < 1e-6);
         assert_false(miss.hit);
@@ -200,20 +200,20 @@ static void rays_that_run_out_are_told(void **context)
     (void)context;
     Scene  s       = scene_of("show plane([0, 1, 0], 0); show sphere(1).move([1e8, 0, 0]);");
     double near[3] = {0, 1e-4, 0}, high[3] = {0, 5, 0}, along[3] = {1, 0, 0};
-    KrsHit hit = cast(s.frame, near, along, 1e9, 0);
+    KrsHit hit = cast(s.state, near, along, 1e9, 0);
     assert_true(hit.unresolved);
     assert_false(hit.hit);
     assert_true(hit.t > 1e-4 * KRS_MAX_STEPS && hit.t < 1e8);
     assert_true(fabs(hit.point[0] - hit.t) < 1e-6 && hit.component == 1);
-    hit = cast(s.frame, high, along, 1e5, 0);
+    hit = cast(s.state, high, along, 1e5, 0);
     assert_false(hit.hit || hit.unresolved);
-    hit = cast(s.frame, near, along, 10, 0); /* resolved where it need not go so far */
+    hit = cast(s.state, near, along, 10, 0); /* resolved where it need not go so far */
     assert_false(hit.hit || hit.unresolved);
     double down[3] = {1, -1e-3, 0};
-    hit            = cast(s.frame, high, down, INFINITY, 0);
+    hit            = cast(s.state, high, down, INFINITY, 0);
     assert_true(hit.hit && fabs(hit.t - 5e3 * length3(down)) < 1e-4);
     double up[3] = {1, 1e-3, 0.5};
-    hit          = cast(s.frame, high, up, INFINITY, 0);
+    hit          = cast(s.state, high, up, INFINITY, 0);
     assert_false(hit.hit || hit.unresolved);
     scene_close(s);
 }
@@ -240,7 +240,7 @@ static void seams_do_not_end_rays(void **context)
             double low[3] = {-0.5, -0.5, -0.5}, high[3] = {1.5, 0.5, 0.5};
             for (int k = 0; k < 3; k++)
                 last = fmin(last, ((along[k] > 0 ? high : low)[k] - origin[k]) / along[k]);
-            KrsHit hit = cast(s.frame, origin, along, 100, tolerance);
+            KrsHit hit = cast(s.state, origin, along, 100, tolerance);
             assert_true(hit.hit);
             assert_true(fabs(hit.t - last * length3(along)) <= tolerance + 1e-8);
         }
@@ -248,7 +248,7 @@ static void seams_do_not_end_rays(void **context)
     }
     Scene  s         = scene_of("show box([1, 1, 1]); show box([1, 1, 1]).move([1.000001, 0, 0]);");
     double origin[3] = {-0.3, 0.1, 0.2}, along[3] = {1, 0, 0};
-    KrsHit hit = cast(s.frame, origin, along, 100, 0);
+    KrsHit hit = cast(s.state, origin, along, 100, 0);
     assert_true(hit.hit && fabs(hit.t - 0.8) < 1e-9);
     scene_close(s);
 }
@@ -260,11 +260,11 @@ static void directions_have_any_length(void **context)
     Scene s = scene_of("show sphere(1);");
     for (double size = 1e-300; size < 1e301; size *= 1e50) {
         double origin[3] = {3, 0, 4}, direction[3] = {-3 * size, 0, -4 * size};
-        KrsHit hit = cast(s.frame, origin, direction, 100, 0);
+        KrsHit hit = cast(s.state, origin, direction, 100, 0);
         assert_true(hit.hit && fabs(hit.t - 4) < 1e-8);
     }
     double origin[3] = {3e11, 0, 4e11}, direction[3] = {-3, 0, -4};
-    KrsHit hit = cast(s.frame, origin, direction, INFINITY, 0);
+    KrsHit hit = cast(s.state, origin, direction, INFINITY, 0);
     assert_true(hit.hit && fabs(hit.t - (5e11 - 1)) < 1e-2);
     scene_close(s);
 }
@@ -283,11 +283,11 @@ static void cast_at_once(const char *text)
         for (int k = 0; k < 3 && i % 5; k++)
             directions[i][k] = 0.6 * directions[i][k] - origins[i][k];
     }
-    assert_int_equal(krs_raycast(s.frame, (const double(*)[3])origins,
+    assert_int_equal(krs_raycast(s.state, (const double(*)[3])origins,
                                  (const double(*)[3])directions, COUNT, 20, 1e-4, together),
                      KRS_OK);
     for (int i = 0; i < COUNT; i++) {
-        assert_int_equal(krs_raycast(s.frame, (const double(*)[3])origins + i,
+        assert_int_equal(krs_raycast(s.state, (const double(*)[3])origins + i,
                                      (const double(*)[3])directions + i, 1, 20, 1e-4, &alone),
                          KRS_OK);
         hits += alone.hit;

@@ -374,7 +374,7 @@ static void what_is_not_finite_is_not_passed_over(void **state)
     }
 }
 
-/* Frames refuse the end of the range; the others are searched. */
+/* States refuse the end of the range; the others are searched. */
 static void settings_that_cannot_be_had_are_no_mistake(void **state)
 {
     (void)state;

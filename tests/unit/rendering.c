@@ -34,7 +34,7 @@ static void interruption_is_heard(void **state)
         int              left    = calls;
         KrsRenderOptions options = {
             .width = WIDTH, .height = HEIGHT, .progress = stop_later, .user = &left};
-        assert_int_equal(krs_render(fixture->rendering, fixture->frame, &options, &picture),
+        assert_int_equal(krs_render(fixture->rendering, fixture->state, &options, &picture),
                          KRS_INTERRUPTED);
         assert_null(picture);
         assert_int_equal(left, 0);
@@ -100,7 +100,7 @@ static void compiling_is_interrupted(void **state)
         assert_null(rendering);
     }
     assert_true(compiling.calls > 2 && compiling.done == 1);
-    assert_int_equal(krs_render(rendering, fixture->frame, &small, &picture), KRS_OK);
+    assert_int_equal(krs_render(rendering, fixture->state, &small, &picture), KRS_OK);
     assert_memory_equal(picture->color, meant->color,
                         (size_t)WIDTH * HEIGHT * 4 * sizeof *picture->color);
     krs_picture_free(picture);
@@ -126,7 +126,7 @@ static void shaders_are_made_ahead(void **state)
                                            purpose ? KRS_FOR_PICTURES : KRS_FOR_QUESTIONS,
                                            &rendering),
                          KRS_OK);
-        assert_int_equal(krs_render(rendering, fixture->frame, &small, &picture), KRS_OK);
+        assert_int_equal(krs_render(rendering, fixture->state, &small, &picture), KRS_OK);
         assert_memory_equal(picture->color, meant->color,
                             (size_t)WIDTH * HEIGHT * 4 * sizeof *picture->color);
         krs_picture_free(picture);
@@ -178,7 +178,7 @@ static void wrong_use_is_refused(void **state)
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
-        assert_int_equal(krs_render(fixture->rendering, fixture->frame, &wrong[i], &picture),
+        assert_int_equal(krs_render(fixture->rendering, fixture->state, &wrong[i], &picture),
                          KRS_BAD_ARGUMENT);
         assert_null(picture);
         assert_true(strlen(krs_renderer_message(fixture->renderer)) > 10);
@@ -319,7 +319,7 @@ static void every_sun_is_in_the_sky(void **state)
     for (int i = 0; i < PICTURES; i++) {
         for (int sun = 0; sun < 3; sun++) {
             double intensity = i == ALL || i == sun + 1 ? 2 + sun : 0;
-            assert_int_equal(krs_state_set(fixture.frame, names[sun], &intensity, 1), KRS_OK);
+            assert_int_equal(krs_state_set(fixture.state, names[sun], &intensity, 1), KRS_OK);
         }
         pictures[i] = fixture_render(&fixture,
                                      (KrsRenderOptions){.samples = 2, .no_occlusion = true});
@@ -355,7 +355,7 @@ static KrsStatus render_with(Scarce *scarce, Fixture *fixture)
     if (status == KRS_OK)
         status = krs_rendering_new(renderer, fixture->scene, KRS_FOR_PICTURES, &rendering);
     if (status == KRS_OK)
-        status = krs_render(rendering, fixture->frame, &small, &picture);
+        status = krs_render(rendering, fixture->state, &small, &picture);
     if (status != KRS_OK)
         assert_non_null(strstr(krs_renderer_message(renderer), "memory"));
     krs_picture_free(picture);
@@ -411,7 +411,7 @@ static void materials_give_numbers(void **state)
         krs_picture_free(picture);
         double places[3][3] = {{1, 0, 0}, {-0.6, 0.8, 0}, {0, 0, 1}};
         KrsHit hits[3];
-        assert_int_equal(krs_probe(fixture.frame, (const double(*)[3])places, 3, hits), KRS_OK);
+        assert_int_equal(krs_probe(fixture.state, (const double(*)[3])places, 3, hits), KRS_OK);
         for (int i = 0; i < 9; i++)
             assert_true(hits[i / 3].color[i % 3] >= 0 && hits[i / 3].color[i % 3] <= 1 &&
                         hits[i / 3].roughness >= 0 && hits[i / 3].roughness <= 1);

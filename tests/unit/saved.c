@@ -56,7 +56,7 @@ static KrsFilm *film_with(Fixture *fixture, const KrsRenderOptions *options, uin
     KrsFilm *film;
     assert_int_equal(krs_film_new(fixture->rendering, options, &film), KRS_OK);
     if (samples > 0)
-        assert_int_equal(krs_film_add(film, fixture->frame, NULL, samples), KRS_OK);
+        assert_int_equal(krs_film_add(film, fixture->state, NULL, samples), KRS_OK);
     return film;
 }
 
@@ -124,7 +124,7 @@ static void a_saved_film_goes_on(void **state)
             assert_int_equal(krs_film_samples(film), first[(i + k) % 3]);
             const uint32_t left = SAMPLES - krs_film_samples(film);
             if (left > 0)
-                assert_int_equal(krs_film_add(film, other.frame, NULL, left), KRS_OK);
+                assert_int_equal(krs_film_add(film, other.state, NULL, left), KRS_OK);
             assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
             assert_same(picture, fixture_render(&other, kinds[i]));
             krs_film_free(film);
@@ -145,7 +145,7 @@ static void what_is_no_film_is_refused(void **state)
     KrsFilm *film = film_with(&fixture, &kinds[0], 0);
     assert_int_equal(krs_film_save(film, take, &file), KRS_BAD_ARGUMENT); /* without samples */
     assert_int_equal(file.at, 0);
-    assert_int_equal(krs_film_add(film, fixture.frame, NULL, 1), KRS_OK);
+    assert_int_equal(krs_film_add(film, fixture.state, NULL, 1), KRS_OK);
     assert_int_equal(krs_film_save(film, take, &(Bytes){room, 1000, 0}), KRS_IO_ERROR);
     assert_int_equal(krs_film_samples(film), 1);
     assert_int_equal(krs_film_save(film, take, &file), KRS_OK);

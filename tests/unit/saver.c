@@ -34,18 +34,18 @@ static struct {
     Saver        *saver;
     SaveOrder     order;
     KrsRendering *rendering;
-    KrsState     *frame;
+    KrsState     *state;
 } stage;
 
 static void nothing_is_told(void *user) { (void)user; }
 
-static int set_up(void **state)
+static int set_up(void **context)
 {
     static double            values[1][4] = {{1.5}};
     const KrsRendererOptions with         = {.device = tested_device()};
     const KrsOptions         options      = {0};
     View                    *view         = &stage.order.view;
-    if (renderer_open(state) != 0 || enter_folder(state) != 0)
+    if (renderer_open(context) != 0 || enter_folder(context) != 0)
         return -1;
     FILE *file = fopen("scene.krs", "w");
     fputs(scene_text, file);
@@ -61,23 +61,23 @@ static int set_up(void **state)
     view->time            = 0.25;
     view->integrator      = KRS_INTEGRATOR_PREVIEW;
     const KrsScene *scene = version_scene(view->version);
-    krs_state_new(scene, &stage.frame);
-    krs_state_set(stage.frame, "r", values[0], 1);
+    krs_state_new(scene, &stage.state);
+    krs_state_set(stage.state, "r", values[0], 1);
     krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &stage.rendering);
-    krs_state_set_time(stage.frame, view->time);
-    krs_state_camera(stage.frame, 0, &view->camera);
+    krs_state_set_time(stage.state, view->time);
+    krs_state_camera(stage.state, 0, &view->camera);
     stage.saver = saver_new(&with, nothing_is_told, NULL);
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down(void **context)
 {
     saver_free(stage.saver);
     krs_rendering_free(stage.rendering);
-    krs_state_free(stage.frame);
+    krs_state_free(stage.state);
     version_release(stage.order.view.version);
     document_free(stage.document);
-    return leave_folder(state) + renderer_close(state);
+    return leave_folder(context) + renderer_close(context);
 }
 
 static void order(SaveKind kind, uint32_t frames, bool exr, const char *name)
@@ -108,10 +108,10 @@ static KrsPicture *render(const KrsCamera *camera, double time)
     KrsFilm               *film;
     KrsPicture            *picture;
     KrsCamera              own;
-    assert_int_equal(krs_state_set_time(stage.frame, time), KRS_OK);
-    assert_int_equal(krs_state_camera(stage.frame, 0, &own), KRS_OK);
+    assert_int_equal(krs_state_set_time(stage.state, time), KRS_OK);
+    assert_int_equal(krs_state_camera(stage.state, 0, &own), KRS_OK);
     assert_int_equal(krs_film_new(stage.rendering, &options, &film), KRS_OK);
-    assert_int_equal(krs_film_add(film, stage.frame, camera ? camera : &own, SAMPLES), KRS_OK);
+    assert_int_equal(krs_film_add(film, stage.state, camera ? camera : &own, SAMPLES), KRS_OK);
     assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
     krs_film_free(film);
     return picture;
@@ -133,17 +133,17 @@ static void assert_png(const char *name, const KrsCamera *camera, double time)
     krs_picture_free(picture);
 }
 
-static void a_picture_is_saved(void **state)
+static void a_picture_is_saved(void **context)
 {
-    (void)state;
+    (void)context;
     order(SAVE_PICTURE, 9, false, "one");
     assert_int_equal(wait_for_it().status, KRS_OK);
     assert_png("one.png", &stage.order.view.camera, stage.order.view.time);
 }
 
-static void light_is_saved_as_numbers(void **state)
+static void light_is_saved_as_numbers(void **context)
 {
-    (void)state;
+    (void)context;
     Memory      memory = {0};
     Arena       arena  = {.memory = &memory};
     Bytes       bytes;
@@ -162,9 +162,9 @@ static void light_is_saved_as_numbers(void **state)
 }
 
 /* Quarters of a turn around the target, as their definition has them. */
-static void turns_go_around(void **state)
+static void turns_go_around(void **context)
 {
-    (void)state;
+    (void)context;
     KrsCamera camera = stage.order.view.camera;
     order(SAVE_TURN, 4, false, "turn");
     assert_int_equal(wait_for_it().status, KRS_OK);
@@ -175,9 +175,9 @@ static void turns_go_around(void **state)
     assert_png("turn-0002.png", &camera, stage.order.view.time);
 }
 
-static void time_goes_on(void **state)
+static void time_goes_on(void **context)
 {
-    (void)state;
+    (void)context;
     order(SAVE_TIME, 3, false, "time"); /* by the scene's camera, which moves */
     assert_int_equal(wait_for_it().status, KRS_OK);
     assert_png("time-0001.png", NULL, 0.5);
@@ -198,9 +198,9 @@ static size_t count_files(const char *part)
     return count;
 }
 
-static void what_is_given_up_leaves_nothing(void **state)
+static void what_is_given_up_leaves_nothing(void **context)
 {
-    (void)state;
+    (void)context;
     stage.order.view.samples = 60000;
     stage.order.view.width   = 1600;
     order(SAVE_PICTURE, 1, false, "huge");

@@ -143,8 +143,8 @@ static void loops_within_distances_count(void **state)
     close_scene(&scene);
 }
 
-/* Of a large picture lanes take more pixels each.  Those whose normal needs more taps at an edge fall
-   behind, so lanes are at different pixels of their lists. */
+/* Lanes take more pixels each of a large picture.  Those whose normal needs more taps at an edge fall behind,
+   so lanes are at different pixels of their lists. */
 static void pixels_of_a_lane_are_not_seen(void **state)
 {
     (void)state;

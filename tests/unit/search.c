@@ -68,7 +68,7 @@ static void a_thousandth_too_much_is_found(void **state)
     }
 }
 
-/* Of a volume of 10^-7 of the box: random points do not meet it. */
+/* The jump has a volume of 10^-7 of the box: random points do not meet it. */
 static void a_small_jump_is_found(void **state)
 {
     Bench *b     = *state;

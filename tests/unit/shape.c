@@ -24,7 +24,7 @@ static Arena        arena, scratch;
 static Sources      sources;
 static Diags        diags;
 static Parameters   parameters;
-static FrameSlopes  slopes;
+static StateSlopes  slopes;
 static ShapeBuilder builder;
 static Random       randomness = {29};
 
@@ -38,7 +38,7 @@ static int start(void **state)
     sources         = (Sources){.arena = &arena};
     diags           = (Diags){.arena = &arena, .sources = &sources};
     parameters      = (Parameters){0};
-    slopes          = (FrameSlopes){0};
+    slopes          = (StateSlopes){0};
     builder         = (ShapeBuilder){.arena      = &arena,
                                      .scratch    = &scratch,
                                      .diags      = &diags,

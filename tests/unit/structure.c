@@ -111,7 +111,7 @@ static void numbers_of_the_text(void **state)
 }
 
 /* What depends on a parameter comes out as nodes, by elements; what is known of it, as numbers. */
-static void numbers_of_the_frame(void **state)
+static void numbers_of_the_state(void **state)
 {
     Bench      *b    = *state;
     Graph      *g    = b->graph;
@@ -253,7 +253,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(numbers_come_out),        TEST(a_copy_is_the_instance),
         TEST(structure_stays),         TEST(numbers_of_the_text),
-        TEST(numbers_of_the_frame),    TEST(shared_nodes_stay_shared),
+        TEST(numbers_of_the_state),    TEST(shared_nodes_stay_shared),
         TEST(some_nodes_stay),         TEST(dropped_nodes_leave_nothing),
         TEST(dropped_places_go),       TEST(a_detached_template_needs_no_nodes),
         TEST(what_cannot_be_detached),

@@ -89,20 +89,20 @@ static void assert_in_description(const char *wanted)
     free(json);
 }
 
-static void files_have_the_tables(void **state)
+static void files_have_the_tables(void **context)
 {
     KrsScene *scene;
-    KrsState *frame;
+    KrsState *state;
     char      wanted[512];
-    (void)state;
+    (void)context;
     compile_files(parts);
     assert_int_equal(krs_compile_file("parts.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     size_t row_count = krs_table_rows(scene), cell_count = krs_table_cells(scene);
     assert_true(row_count >= 310 && cell_count > 16);
     float(*rows)[4]     = calloc(row_count, sizeof *rows);
     uint32_t(*cells)[2] = calloc(cell_count, sizeof *cells);
-    krs_state_tables(frame, rows, cells);
+    krs_state_tables(state, rows, cells);
     assert_words("out/parts.rows.bin", rows, row_count * sizeof *rows);
     assert_words("out/parts.cells.bin", cells, cell_count * sizeof *cells);
     snprintf(wanted, sizeof wanted,
@@ -118,36 +118,36 @@ static void files_have_the_tables(void **state)
     assert_in_description(wanted);
     free(rows);
     free(cells);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 
 /* A parameter is none of their numbers. */
-static void tables_are_equal_in_all_frames(void **state)
+static void tables_are_equal_in_all_states(void **context)
 {
     KrsScene *scene;
-    KrsState *frame;
-    (void)state;
+    KrsState *state;
+    (void)context;
     compile_files(parts);
     assert_int_equal(krs_compile_text(parts, strlen(parts), "parts.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_state_set(frame, "height", (double[]){2}, 1), KRS_OK);
-    assert_int_equal(krs_state_set_time(frame, 7), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_state_set(state, "height", (double[]){2}, 1), KRS_OK);
+    assert_int_equal(krs_state_set_time(state, 7), KRS_OK);
     float(*rows)[4]     = calloc(krs_table_rows(scene), sizeof *rows);
     uint32_t(*cells)[2] = calloc(krs_table_cells(scene), sizeof *cells);
-    krs_state_tables(frame, rows, cells);
+    krs_state_tables(state, rows, cells);
     assert_words("out/parts.rows.bin", rows, krs_table_rows(scene) * sizeof *rows);
     assert_words("out/parts.cells.bin", cells, krs_table_cells(scene) * sizeof *cells);
     free(rows);
     free(cells);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(scene);
 }
 
-static void no_tables_no_files(void **state)
+static void no_tables_no_files(void **context)
 {
     size_t size;
-    (void)state;
+    (void)context;
     compile_files("show sphere(1);");
     assert_in_description("\"tables\": {\"kinds\": 0, \"rows\": 0, \"bytes\": 0}");
     assert_in_description("\"table_rows\": 0, \"table_cells\": 0, \"texel_buffers\": []");
@@ -168,12 +168,12 @@ static const char shader_head[] =
 static const char shader_main[] = "void main()\n{\n    krs_prepare();\n"
                                   "    d[0] = krs_distance(vec3(1.0));\n}\n";
 
-static void the_text_compiles(void **state)
+static void the_text_compiles(void **context)
 {
     size_t    length, count;
     char     *log = NULL;
     uint32_t *words;
-    (void)state;
+    (void)context;
     compile_files(parts);
     char *text = read_file("out/parts.glsl", &length);
     assert_non_null(text);
@@ -202,7 +202,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, enter_folder, leave_folder)
     const struct CMUnitTest tests[] = {
         TEST(files_have_the_tables),
-        TEST(tables_are_equal_in_all_frames),
+        TEST(tables_are_equal_in_all_states),
         TEST(no_tables_no_files),
         TEST(the_text_compiles),
     };

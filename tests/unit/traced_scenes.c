@@ -96,7 +96,7 @@ KrsStatus open_scene(Scene *scene)
     KrsStatus status = krs_compile_text(scene->text, strlen(scene->text), scene->name, &options,
                                         &scene->scene);
     if (status == KRS_OK)
-        status = krs_state_new(scene->scene, &scene->frame);
+        status = krs_state_new(scene->scene, &scene->state);
     if (status == KRS_OK)
         status = krs_rendering_new(watched_renderer, scene->scene, KRS_FOR_PICTURES,
                                    &scene->rendering);
@@ -106,7 +106,7 @@ KrsStatus open_scene(Scene *scene)
 void close_scene(Scene *scene)
 {
     krs_rendering_free(scene->rendering);
-    krs_state_free(scene->frame);
+    krs_state_free(scene->state);
     krs_scene_free(scene->scene);
 }
 
@@ -167,7 +167,7 @@ KrsPicture *render_scene(const Scene *scene, KrsRenderOptions options)
         options.width  = WIDTH;
         options.height = HEIGHT;
     }
-    if (krs_render(scene->rendering, scene->frame, &options, &picture) != KRS_OK)
+    if (krs_render(scene->rendering, scene->state, &options, &picture) != KRS_OK)
         fail_msg("%s: %s", scene->name, krs_renderer_message(watched_renderer));
     if (options.methods.max_steps == 0)
         assert_int_equal(picture->stats.unresolved, 0);

@@ -20,7 +20,7 @@ typedef struct Scene {
     const char   *name, *text;
     double        fov; /* of its camera, which is perspective */
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
 } Scene;
 

@@ -140,7 +140,7 @@ static void sphere_is_where_it_should_be(void **state)
         KrsView     view;
         size_t      hits    = 0;
         KrsPicture *picture = fixture_render(fixture, (KrsRenderOptions){.camera = camera});
-        assert_int_equal(krs_state_view(fixture->frame, camera, &view), KRS_OK);
+        assert_int_equal(krs_state_view(fixture->state, camera, &view), KRS_OK);
         for (unsigned j = 0; j < HEIGHT; j++)
             for (unsigned i = 0; i < WIDTH; i++) {
                 TestRay ray = pixel_ray(&view.camera, i, j);
@@ -159,9 +159,9 @@ static void parameters_need_no_compiling(void **state)
     Fixture *fixture = *state;
     double   size    = 0.5;
     KrsView  view;
-    assert_int_equal(krs_state_set(fixture->frame, "size", &size, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture->state, "size", &size, 1), KRS_OK);
     KrsPicture *picture = fixture_render(fixture, (KrsRenderOptions){.camera = FLAT});
-    assert_int_equal(krs_state_view(fixture->frame, FLAT, &view), KRS_OK);
+    assert_int_equal(krs_state_view(fixture->state, FLAT, &view), KRS_OK);
     for (unsigned j = 0; j < HEIGHT; j++)
         for (unsigned i = 0; i < WIDTH; i++) {
             TestRay ray = pixel_ray(&view.camera, i, j);
@@ -238,7 +238,7 @@ static void points_are_sampled(void **state)
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = (float)sin(i * (k + 1.7)) * 3;
-    KrsStatus status = point_query_sample(fixture->rendering, fixture->frame,
+    KrsStatus status = point_query_sample(fixture->rendering, fixture->state,
                                           (const float(*)[3])points, COUNT, distances, surfaces);
     assert_int_equal(status, KRS_OK);
     for (int i = 0; i < COUNT; i++) {
@@ -249,9 +249,9 @@ static void points_are_sampled(void **state)
         assert_near(surfaces[i].distance, distances[i], 2e-6);
         assert_int_equal(surfaces[i].component, 1);
     }
-    assert_int_equal(krs_device_distance(fixture->rendering, fixture->frame, NULL, 0, NULL),
+    assert_int_equal(krs_device_distance(fixture->rendering, fixture->state, NULL, 0, NULL),
                      KRS_OK);
-    assert_int_equal(krs_device_distance(fixture->rendering, fixture->frame, NULL, 1, distances),
+    assert_int_equal(krs_device_distance(fixture->rendering, fixture->state, NULL, 1, distances),
                      KRS_BAD_ARGUMENT);
 }
 
@@ -335,10 +335,10 @@ static void marched_planes_look_the_same(void **state)
     for (uint32_t camera = 0; camera < 2; camera++) {
         KrsPicture *known = fixture_render(&fixture,
                                            (KrsRenderOptions){.samples = 1, .camera = camera});
-        assert_int_equal(krs_state_set_zones(fixture.frame, far_away, 1), KRS_OK);
+        assert_int_equal(krs_state_set_zones(fixture.state, far_away, 1), KRS_OK);
         KrsPicture *marched = fixture_render(&fixture,
                                              (KrsRenderOptions){.samples = 1, .camera = camera});
-        assert_int_equal(krs_state_set_zones(fixture.frame, NULL, 0), KRS_OK);
+        assert_int_equal(krs_state_set_zones(fixture.state, NULL, 0), KRS_OK);
         unsigned other = 0, planes = 0;
         for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
             other += known->component[i] != marched->component[i];
@@ -378,7 +378,7 @@ static void far_cells_look_like_near_ones(void **state)
     fixture_open(&fixture, row, NULL);
     KrsPicture *near = fixture_render(&fixture, (KrsRenderOptions){.samples = 1});
     double      off  = 400000;
-    assert_int_equal(krs_state_set(fixture.frame, "off", &off, 1), KRS_OK);
+    assert_int_equal(krs_state_set(fixture.state, "off", &off, 1), KRS_OK);
     KrsPicture *far   = fixture_render(&fixture, (KrsRenderOptions){.samples = 1});
     unsigned    other = 0, hits = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {

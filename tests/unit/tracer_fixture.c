@@ -61,7 +61,7 @@ static void open_with(Fixture *fixture, const char *text, KrsRendererOptions opt
         fail_msg("%s", krs_renderer_message(fixture->renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "test.krs", &compiling, &fixture->scene),
                      KRS_OK);
-    assert_int_equal(krs_state_new(fixture->scene, &fixture->frame), KRS_OK);
+    assert_int_equal(krs_state_new(fixture->scene, &fixture->state), KRS_OK);
     if (krs_rendering_new(fixture->renderer, fixture->scene, KRS_FOR_PICTURES,
                           &fixture->rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture->renderer));
@@ -83,7 +83,7 @@ void fixture_open_as(Fixture *fixture, const char *text, unsigned emulation)
 void fixture_close(Fixture *fixture)
 {
     krs_rendering_free(fixture->rendering);
-    krs_state_free(fixture->frame);
+    krs_state_free(fixture->state);
     krs_scene_free(fixture->scene);
     krs_renderer_free(fixture->renderer);
 }
@@ -102,7 +102,7 @@ KrsPicture *fixture_render(Fixture *fixture, KrsRenderOptions options)
         options.width  = WIDTH;
         options.height = HEIGHT;
     }
-    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->state, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture->renderer));
     return picture;
 }

@@ -24,7 +24,7 @@ extern const double CENTRE[3];
 typedef struct Fixture {
     KrsRenderer  *renderer;
     KrsScene     *scene;
-    KrsState     *frame;
+    KrsState     *state;
     KrsRendering *rendering;
     unsigned      validation_messages;
     char          validation_message[2048]; /* the last */

@@ -1,5 +1,5 @@
 /*
- * update.c: edited texts of a scene: what is said to be different, and what frames keep.
+ * update.c: edited texts of a scene: what is said to be different, and what states keep.
  *
  * An updated scene is the scene that its text alone makes: distances, cameras and slots are equal.
  */
@@ -121,9 +121,9 @@ static void assert_changes(const Edit *edit, const KrsChanges *changes)
                  changes->surfaces);
 }
 
-static void changes_are_told(void **state)
+static void changes_are_told(void **context)
 {
-    (void)state;
+    (void)context;
     KrsScene *scene = compile(BEFORE, KRS_SPECIALIZE_STRUCTURE);
     for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
         KrsChanges  changes, back;
@@ -143,9 +143,9 @@ static void changes_are_told(void **state)
     krs_scene_free(scene);
 }
 
-static void literals_are_structure(void **state)
+static void literals_are_structure(void **context)
 {
-    (void)state;
+    (void)context;
     KrsChanges  changes;
     const char *text    = edited(BEFORE, "[2, 1, 1]", "[2, 1.5, 1]");
     KrsScene   *scene   = compile(BEFORE, KRS_SPECIALIZE_NUMBERS);
@@ -156,9 +156,9 @@ static void literals_are_structure(void **state)
     krs_scene_free(scene);
 }
 
-static void auto_takes_numbers_out_with_the_first_edit(void **state)
+static void auto_takes_numbers_out_with_the_first_edit(void **context)
 {
-    (void)state;
+    (void)context;
     KrsChanges changes;
     KrsScene  *literal = compile(BEFORE, KRS_SPECIALIZE_NUMBERS);
     KrsScene  *scene   = compile(BEFORE, KRS_SPECIALIZE_AUTO);
@@ -183,9 +183,9 @@ static void auto_takes_numbers_out_with_the_first_edit(void **state)
     " s.rotate([0, 0, 1], 1deg * i + 0.01).move([i % 8, 9.2, floor(i / 8)])]"                \
     " for i in 0..60 for s in solids(0.001 * i + more)]);"
 
-static void auto_keeps_very_many_numbers(void **state)
+static void auto_keeps_very_many_numbers(void **context)
 {
-    (void)state;
+    (void)context;
     KrsChanges  changes;
     const char *text      = edited(MANY, "0.0001", "0.0002");
     KrsScene   *structure = compile(MANY, KRS_SPECIALIZE_STRUCTURE);
@@ -256,9 +256,9 @@ static void assert_instance_edit(const InstanceEdit *edit, KrsSpecialize special
     krs_scene_free(scene);
 }
 
-static void tables_are_values(void **state)
+static void tables_are_values(void **context)
 {
-    (void)state;
+    (void)context;
     for (size_t i = 0; i < sizeof instance_edits / sizeof *instance_edits; i++) {
         assert_instance_edit(&instance_edits[i], KRS_SPECIALIZE_NUMBERS);
         assert_instance_edit(&instance_edits[i], KRS_SPECIALIZE_STRUCTURE);
@@ -266,9 +266,9 @@ static void tables_are_values(void **state)
 }
 
 /* Instances with the same numbers and the same boxes: only operations of the body tell them apart. */
-static void bodies_are_compared(void **state)
+static void bodies_are_compared(void **context)
 {
-    (void)state;
+    (void)context;
     const char *waves = "show union([sphere(0.1).displace(0.01 * sin(20 * x))"
                         ".move([i % 10, 0, floor(i / 10)]) for i in 0..100]);";
     KrsChanges  changes;
@@ -303,9 +303,9 @@ static const char *const street_edits[][2] = {
     {"< 0.9", "< 0.8"},
 };
 
-static void numbers_of_loops_are_values(void **state)
+static void numbers_of_loops_are_values(void **context)
 {
-    (void)state;
+    (void)context;
     KrsScene *scene = compile(STREET, KRS_SPECIALIZE_STRUCTURE);
     for (size_t i = 0; i < sizeof street_edits / sizeof *street_edits; i++) {
         KrsChanges  changes;
@@ -324,28 +324,28 @@ static void numbers_of_loops_are_values(void **state)
 
 /* ---- mistakes, and what is kept of the first compilation ---- */
 
-static void mistakes_leave_the_scene(void **state)
+static void mistakes_leave_the_scene(void **context)
 {
-    (void)state;
+    (void)context;
     Heard       heard = {0};
     KrsChanges  changes;
     KrsScene   *updated;
-    KrsState   *frame;
+    KrsState   *state;
     const char *wrong = "show sphere(rr);";
     KrsScene   *scene = compile_with(
           BEFORE,
           &(KrsOptions){.diagnostic = hear, .user = &heard, .specialize = KRS_SPECIALIZE_STRUCTURE});
     KrsScene *alone = compile(BEFORE, KRS_SPECIALIZE_STRUCTURE);
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_scene_update(scene, wrong, strlen(wrong), &updated, &changes),
                      KRS_BAD_SCENE);
     assert_null(updated);
     assert_int_equal(heard.errors, 1);
     assert_string_equal(heard.code, "E0201");
     assert_string_equal(heard.source, "edited.krs");
-    assert_int_equal(krs_state_set(frame, "r", (double[]){2}, 1), KRS_OK);
+    assert_int_equal(krs_state_set(state, "r", (double[]){2}, 1), KRS_OK);
     assert_same_scene(scene, alone);
-    krs_state_free(frame);
+    krs_state_free(state);
     krs_scene_free(alone);
     krs_scene_free(scene);
 }
@@ -360,9 +360,9 @@ static const char *load(void *user, const char *path, size_t *length)
 }
 
 /* The path of what is used begins with the scene's folder; the options may be gone by then. */
-static void used_files_are_read_again(void **state)
+static void used_files_are_read_again(void **context)
 {
-    (void)state;
+    (void)context;
     static const char scene_text[] = "use \"part.krs\"; show part;";
     const char       *part         = "let part = sphere(1);";
     KrsChanges        changes;
@@ -387,9 +387,9 @@ static void used_files_are_read_again(void **state)
     krs_scene_free(updated);
 }
 
-static void memory_may_run_out(void **state)
+static void memory_may_run_out(void **context)
 {
-    (void)state;
+    (void)context;
     Scarce     scarce  = {0};
     KrsStatus  status  = KRS_OUT_OF_MEMORY;
     int        refused = 0;
@@ -415,56 +415,56 @@ static void memory_may_run_out(void **state)
     assert_int_equal(scarce.held, 0);
 }
 
-/* ---- frames ---- */
+/* ---- states ---- */
 
-static double distance_at(KrsState *frame, double x)
+static double distance_at(KrsState *state, double x)
 {
     double point[1][3] = {{x, 0, 0}}, distance;
-    assert_int_equal(krs_distance(frame, (const double(*)[3])point, 1, &distance), KRS_OK);
+    assert_int_equal(krs_distance(state, (const double(*)[3])point, 1, &distance), KRS_OK);
     return distance;
 }
 
-static KrsState *frame_of(const KrsScene *scene)
+static KrsState *state_of(const KrsScene *scene)
 {
-    KrsState *frame;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
-    return frame;
+    KrsState *state;
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    return state;
 }
 
-static void frames_follow(void **state)
+static void states_follow(void **context)
 {
-    (void)state;
+    (void)context;
     KrsScene *scene = compile("param r = 1 in [0.5, 4]; param at = 2; param gone = 1;"
                               "show sphere(r).move([at + time + 0 * gone, 0, 0]);",
                               KRS_SPECIALIZE_STRUCTURE);
-    KrsState *frame = frame_of(scene), *other = frame_of(scene);
-    assert_int_equal(krs_state_set(frame, "r", (double[]){3}, 1), KRS_OK);
-    assert_int_equal(krs_state_set(frame, "gone", (double[]){5}, 1), KRS_OK);
-    assert_int_equal(krs_state_set_time(frame, 10), KRS_OK);
-    assert_int_equal(krs_state_set_zones(frame, (const double[][4]){{0, 0, 0, 0.5}}, 1), KRS_OK);
+    KrsState *state = state_of(scene), *other = state_of(scene);
+    assert_int_equal(krs_state_set(state, "r", (double[]){3}, 1), KRS_OK);
+    assert_int_equal(krs_state_set(state, "gone", (double[]){5}, 1), KRS_OK);
+    assert_int_equal(krs_state_set_time(state, 10), KRS_OK);
+    assert_int_equal(krs_state_set_zones(state, (const double[][4]){{0, 0, 0, 0.5}}, 1), KRS_OK);
     const double before = distance_at(other, 9);
 
     /* The radius was set; the place was not, so that it is the new default. */
     const char *text    = "param at = 4; param r = 1 in [0.5, 4];"
                           "show sphere(r).move([at + time, 0, 0]);";
     KrsScene   *updated = update(scene, text, NULL);
-    assert_int_equal(krs_state_update(frame, updated), KRS_OK);
+    assert_int_equal(krs_state_update(state, updated), KRS_OK);
     assert_true(distance_at(other, 9) == before);
-    assert_true(fabs(distance_at(frame, 20) - (20 - 14 - 3)) < 1e-12);
+    assert_true(fabs(distance_at(state, 20) - (20 - 14 - 3)) < 1e-12);
 
     /* A value that the other scene does not permit is left out. */
     text = "param r = 1 in [0.5, 2]; param at = 4; show sphere(r).move([at + time, 0, 0]);";
     KrsScene *third = update(updated, text, NULL);
-    assert_int_equal(krs_state_update(frame, third), KRS_OK);
+    assert_int_equal(krs_state_update(state, third), KRS_OK);
     krs_scene_free(updated);
-    assert_true(fabs(distance_at(frame, 20) - (20 - 14 - 1)) < 1e-12);
+    assert_true(fabs(distance_at(state, 20) - (20 - 14 - 1)) < 1e-12);
 
     /* The zone is there still. */
-    assert_int_equal(krs_state_set_time(frame, -4), KRS_OK);
-    assert_true(distance_at(frame, 0) > 0);
-    assert_int_equal(krs_state_set_zones(frame, NULL, 0), KRS_OK);
-    assert_true(distance_at(frame, 0) < 0);
-    krs_state_free(frame);
+    assert_int_equal(krs_state_set_time(state, -4), KRS_OK);
+    assert_true(distance_at(state, 0) > 0);
+    assert_int_equal(krs_state_set_zones(state, NULL, 0), KRS_OK);
+    assert_true(distance_at(state, 0) < 0);
+    krs_state_free(state);
     krs_state_free(other);
     krs_scene_free(third);
     krs_scene_free(scene);
@@ -483,7 +483,7 @@ int main(void)
         cmocka_unit_test(mistakes_leave_the_scene),
         cmocka_unit_test(used_files_are_read_again),
         cmocka_unit_test(memory_may_run_out),
-        cmocka_unit_test(frames_follow),
+        cmocka_unit_test(states_follow),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,9 +42,9 @@ static double ball(const double point[3])
     return distance * (distance > 0 ? exaggeration : inside_factor);
 }
 
-KrsStatus krs_distance(KrsState *frame, const double (*points)[3], size_t count, double *distances)
+KrsStatus krs_distance(KrsState *state, const double (*points)[3], size_t count, double *distances)
 {
-    (void)frame;
+    (void)state;
     for (size_t i = 0; i < count; i++)
         distances[i] = ball(points[i]);
     return KRS_OK;
@@ -57,15 +57,15 @@ size_t krs_table_cells(const KrsScene *scene)
     return 0;
 }
 
-KrsStatus krs_distance_bound(KrsState *frame, const double (*points)[3], size_t count,
+KrsStatus krs_distance_bound(KrsState *state, const double (*points)[3], size_t count,
                              double *distances)
 {
-    return krs_distance(frame, points, count, distances);
+    return krs_distance(state, points, count, distances);
 }
 
-KrsStatus krs_probe(KrsState *frame, const double (*points)[3], size_t count, KrsHit *hits)
+KrsStatus krs_probe(KrsState *state, const double (*points)[3], size_t count, KrsHit *hits)
 {
-    (void)frame;
+    (void)state;
     for (size_t i = 0; i < count; i++) {
         double size = fabs(sqrt(points[i][0] * points[i][0] + points[i][1] * points[i][1] +
                                 points[i][2] * points[i][2]));
@@ -78,10 +78,10 @@ KrsStatus krs_probe(KrsState *frame, const double (*points)[3], size_t count, Kr
     return KRS_OK;
 }
 
-KrsStatus krs_device_distance(KrsRendering *rendering, KrsState *frame, const float (*points)[3],
+KrsStatus krs_device_distance(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                               size_t count, float *distances)
 {
-    (void)rendering, (void)frame;
+    (void)rendering, (void)state;
     for (size_t i = 0; i < count; i++) {
         double point[3] = {points[i][0], points[i][1], points[i][2]};
         distances[i]    = (float)(ball(point) + device_error);
@@ -105,7 +105,7 @@ KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *compo
 
 /* What else validate.c calls, with nothing behind it. */
 
-static char something; /* whose address stands for scenes, frames and devices */
+static char something; /* whose address stands for scenes, states and devices */
 
 KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
 {
@@ -114,10 +114,10 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
     return KRS_OK;
 }
 
-KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsState **frame)
+KrsStatus scene_state(const Options *options, const KrsScene *scene, KrsState **state)
 {
     (void)options, (void)scene;
-    *frame = (KrsState *)&something;
+    *state = (KrsState *)&something;
     return KRS_OK;
 }
 
@@ -181,7 +181,7 @@ void scene_print_counts(const DiagnosticSink *sink) { (void)sink; }
 void modules_free(Modules *modules) { (void)modules; }
 void krs_rendering_free(KrsRendering *rendering) { (void)rendering; }
 void krs_renderer_free(KrsRenderer *renderer) { (void)renderer; }
-void krs_state_free(KrsState *frame) { (void)frame; }
+void krs_state_free(KrsState *state) { (void)state; }
 void krs_scene_free(KrsScene *scene) { (void)scene; }
 void stage_enter(RunStage stage) { (void)stage; }
 

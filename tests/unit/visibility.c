@@ -45,9 +45,9 @@ static KrsScene *compile_ball(const double ball[3], const char *projection, bool
 /* Whether a ray of a picture with SIDE x SIDE pixels hits the ball. */
 static bool is_hit(const KrsScene *scene, bool flat)
 {
-    KrsState *frame;
+    KrsState *state;
     bool      any = false;
-    assert_int_equal(krs_state_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     for (int i = 0; i < SIDE * SIDE; i++) {
         double half        = flat ? 2.5 : tan(FOV / 2);
         double u           = ASPECT * half * (2.0 * (i % SIDE) / (SIDE - 1) - 1);
@@ -55,12 +55,12 @@ static bool is_hit(const KrsScene *scene, bool flat)
         double from[1][3]  = {{EYE[0] + flat * u, EYE[1] + flat * v, EYE[2]}};
         double along[1][3] = {{flat ? 0 : u, flat ? 0 : v, -1}};
         KrsHit hit;
-        assert_int_equal(krs_raycast(frame, (const double(*)[3])from, (const double(*)[3])along, 1,
+        assert_int_equal(krs_raycast(state, (const double(*)[3])from, (const double(*)[3])along, 1,
                                      100, 1e-4, &hit),
                          KRS_OK);
         any = any || hit.hit;
     }
-    krs_state_free(frame);
+    krs_state_free(state);
     return any;
 }
 

@@ -96,7 +96,7 @@ static mode_t mode_of(const char *path)
     return info.st_mode & 07777;
 }
 
-/* Of what is replaced; of what is new, as the user's mask has it. */
+/* A file that is replaced keeps them; a new one has them as the user's mask has it. */
 static void permissions_are_kept(void **state)
 {
     (void)state;

@@ -77,19 +77,19 @@ static void zones_cut_distances(void **context)
                                  "    zone { center: [c[0], c[1], c[2]], radius: c[3] } }"
                                  "show sphere(1);");
     Scene by_caller   = scene_of("show sphere(1);");
-    assert_int_equal(krs_state_set_zones(by_caller.frame, ZONES, 3), KRS_OK);
+    assert_int_equal(krs_state_set_zones(by_caller.state, ZONES, 3), KRS_OK);
     for (int i = 0; i < 2000; i++) {
         double point[1][3], a, b;
         random_vector(&chance, 2, point[0]);
-        krs_distance(by_language.frame, (const double(*)[3])point, 1, &a);
-        krs_distance(by_caller.frame, (const double(*)[3])point, 1, &b);
+        krs_distance(by_language.state, (const double(*)[3])point, 1, &a);
+        krs_distance(by_caller.state, (const double(*)[3])point, 1, &b);
         double right = ball_less_zones(point[0], ZONES, 3);
         assert_true(fabs(a - right) < 1e-12 && fabs(b - right) < 1e-12);
     }
     /* A zone of frame time moves with its parameter, and may shrink to nothing. */
     double point[1][3] = {{0.9, 0.1, 0}}, distance;
-    assert_int_equal(krs_state_set(by_language.frame, "r", (double[]){0}, 1), KRS_OK);
-    krs_distance(by_language.frame, (const double(*)[3])point, 1, &distance);
+    assert_int_equal(krs_state_set(by_language.state, "r", (double[]){0}, 1), KRS_OK);
+    krs_distance(by_language.state, (const double(*)[3])point, 1, &distance);
     assert_true(fabs(distance - 0.2) < 1e-12);
     scene_close(by_language);
     scene_close(by_caller);
@@ -101,7 +101,7 @@ static void zones_cut_rays(void **context)
     const double ball[4] = {0, 0, 0, 1};
     Scene        s       = scene_of("show sphere(1);");
     size_t       hits = 0, misses = 0, cut = 0, doubtful = 0;
-    assert_int_equal(krs_state_set_zones(s.frame, ZONES, 3), KRS_OK);
+    assert_int_equal(krs_state_set_zones(s.state, ZONES, 3), KRS_OK);
     for (int i = 0; i < 5000; i++) {
         double origin[3], target[3], unit[3], solid[2], holes[3][2], margin = INFINITY;
         do
@@ -121,7 +121,7 @@ static void zones_cut_rays(void **context)
             doubtful++;
             continue;
         }
-        KrsHit hit = cast(s.frame, origin, unit, 100, 0);
+        KrsHit hit = cast(s.state, origin, unit, 100, 0);
         assert_false(hit.unresolved);
         assert_int_equal(hit.hit, t >= 0);
         if (t >= 0)
@@ -139,9 +139,9 @@ static void a_cut_shows_what_it_goes_through(void **context)
     (void)context;
     Scene  s          = scene_of("show plane([0, 1, 0], -5); show sphere(1).paint(#ff0000);");
     double zone[1][4] = {{0, 0, 2, 1.25}}, origin[3] = {0.3, 0.2, 9}, direction[3] = {0, 0, -1};
-    KrsHit before = cast(s.frame, origin, direction, 100, 0);
-    assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])zone, 1), KRS_OK);
-    KrsHit hit = cast(s.frame, origin, direction, 100, 0);
+    KrsHit before = cast(s.state, origin, direction, 100, 0);
+    assert_int_equal(krs_state_set_zones(s.state, (const double(*)[4])zone, 1), KRS_OK);
+    KrsHit hit = cast(s.state, origin, direction, 100, 0);
     assert_true(before.hit && hit.hit);
     double z = 2 - sqrt(1.25 * 1.25 - 0.3 * 0.3 - 0.2 * 0.2);
     assert_true(fabs(hit.point[2] - z) < 1e-8 && before.t < hit.t - 0.1);
@@ -150,8 +150,8 @@ static void a_cut_shows_what_it_goes_through(void **context)
     /* Outwards of the solid is towards the middle of the zone. */
     for (int k = 0; k < 3; k++)
         assert_true(fabs(hit.normal[k] - (zone[0][k] - hit.point[k]) / 1.25) < 1e-6);
-    assert_int_equal(krs_state_set_zones(s.frame, NULL, 0), KRS_OK);
-    KrsHit after = cast(s.frame, origin, direction, 100, 0);
+    assert_int_equal(krs_state_set_zones(s.state, NULL, 0), KRS_OK);
+    KrsHit after = cast(s.state, origin, direction, 100, 0);
     assert_true(after.t == before.t);
     scene_close(s);
 }
@@ -164,10 +164,10 @@ static void cuts_are_lit_by_their_own_normal(void **context)
                                            "    reflect plane([1, 0, 0], 0); }.smooth_mirrors(1);");
     double zone[1][4] = {{0.2, 0, 1, 0.7}}, point[2][3] = {{0.2, 0, 0.3}, {0.2, 0, 0.8}};
     KrsHit cut, smooth;
-    assert_int_equal(krs_probe(s.frame, (const double(*)[3])point + 1, 1, &smooth), KRS_OK);
+    assert_int_equal(krs_probe(s.state, (const double(*)[3])point + 1, 1, &smooth), KRS_OK);
     assert_true(fabs(smooth.shading[0] - smooth.normal[0]) > 0.1);
-    assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])zone, 1), KRS_OK);
-    assert_int_equal(krs_probe(s.frame, (const double(*)[3])point, 1, &cut), KRS_OK);
+    assert_int_equal(krs_state_set_zones(s.state, (const double(*)[4])zone, 1), KRS_OK);
+    assert_int_equal(krs_probe(s.state, (const double(*)[3])point, 1, &cut), KRS_OK);
     assert_true(fabs(cut.distance) < 1e-12 && fabs(cut.shading[2] - 1) < 1e-6);
     assert_true(memcmp(cut.shading, cut.normal, sizeof cut.normal) == 0);
     scene_close(s);
@@ -187,8 +187,8 @@ static void zones_are_differences(void **context)
     for (int i = 0; i < 2000; i++) {
         double point[1][3], d[2];
         random_vector(&chance, 1.5, point[0]);
-        krs_distance(a.frame, (const double(*)[3])point, 1, &d[0]);
-        krs_distance(b.frame, (const double(*)[3])point, 1, &d[1]);
+        krs_distance(a.state, (const double(*)[3])point, 1, &d[0]);
+        krs_distance(b.state, (const double(*)[3])point, 1, &d[1]);
         assert_true(fabs(d[0] - d[1]) < 1e-12);
     }
     scene_close(a);
@@ -202,15 +202,15 @@ static void bad_zones_change_nothing(void **context)
     const double bad[][4]                   = {{0, 0, 0, -1},  {NAN, 0, 0, 1},  {0, INFINITY, 0, 1},
                                                {0, 0, 0, NAN}, {0, 0, 1e19, 1}, {0, 0, 0, INFINITY}};
     double       many[KRS_MAX_ZONES + 1][4] = {{0}}, point[1][3] = {{0.9, 0.1, 0}}, distance;
-    assert_int_equal(krs_state_set_zones(s.frame, ZONES, 1), KRS_OK);
+    assert_int_equal(krs_state_set_zones(s.state, ZONES, 1), KRS_OK);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        assert_int_equal(krs_state_set_zones(s.frame, &bad[i], 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])many, KRS_MAX_ZONES + 1),
+        assert_int_equal(krs_state_set_zones(s.state, &bad[i], 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_state_set_zones(s.state, (const double(*)[4])many, KRS_MAX_ZONES + 1),
                      KRS_BAD_ARGUMENT);
-    krs_distance(s.frame, (const double(*)[3])point, 1, &distance);
+    krs_distance(s.state, (const double(*)[3])point, 1, &distance);
     assert_true(fabs(distance - 0.5) < 1e-12);
-    assert_int_equal(krs_state_set_zones(s.frame, (const double(*)[4])many, KRS_MAX_ZONES), KRS_OK);
-    krs_distance(s.frame, (const double(*)[3])point, 1, &distance);
+    assert_int_equal(krs_state_set_zones(s.state, (const double(*)[4])many, KRS_MAX_ZONES), KRS_OK);
+    krs_distance(s.state, (const double(*)[3])point, 1, &distance);
     assert_true(fabs(distance - (sqrt(0.82) - 1)) < 1e-12);
     scene_close(s);
 }

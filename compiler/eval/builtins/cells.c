@@ -171,7 +171,7 @@ static Node cell_leaf(Elaboration *e, const uint32_t counts[3])
 /* A slope of the frame would be that of one cell. */
 static bool check_slopes(Elaboration *e, const Cells *cells, size_t first, Node leaf)
 {
-    const FrameSlopes *slopes = &e->scene->slopes;
+    const StateSlopes *slopes = &e->scene->slopes;
     for (size_t i = first; i < slopes->count; i++) {
         if (!depends_on_leaf(e->graph, slopes->items[i].formula, leaf, e->scratch))
             continue;

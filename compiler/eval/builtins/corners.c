@@ -6,7 +6,7 @@
 #include "compiler/lower/outline.h"
 #include "compiler/shape/map.h"
 
-/* Of more corners a figure is as good as round. */
+/* A figure with more corners is as good as round. */
 enum { MAX_CORNERS = 128 };
 
 typedef struct Corners {
@@ -98,7 +98,7 @@ static void turn_around(Corners *corners)
     }
 }
 
-/* Of shapes of the library whose numbers parameters say some are convex whatever they are. */
+/* Tells whether a figure is convex.  Some shapes of the library are, whatever the numbers of their parameters. */
 static bool is_convex(const Elaboration *e, const Shape *shape, Corners *corners)
 {
     static const char *const convex[] = {"rectangle", "regular"};

@@ -32,7 +32,7 @@ static Value reduce(Elaboration *e, Op op, const Value *items, size_t count, con
     return value_map_op(e, op, (Value[]){a, b}, 2, origin);
 }
 
-/* Of the elements of the first argument; `empty` when it has none. */
+/* Reduces the elements of the first argument; `empty` is the value when it has none. */
 static Value reduce_list(Elaboration *e, Call *call, Op op, Value empty)
 {
     if (call->arguments[0].value.type == VALUE_EXPRESSION) { /* a vector known only as a node */
@@ -73,7 +73,7 @@ Value builtin_all(Elaboration *e, Call *call)
     return reduce_list(e, call, OP_and, value_boolean(true));
 }
 
-/* Of all arguments, or of the elements of the only one. */
+/* Finds the least or the greatest of all arguments, or of the elements of the only one. */
 static Value extreme(Elaboration *e, Call *call, Op op)
 {
     if (call->rest_count == 0) {

@@ -265,7 +265,8 @@ static Value method_smooth_mirrors(Elaboration *e, const Shape *shape, Call *cal
     return value_shape(make_smooth(e->builder, shape, width, call->syntax->span));
 }
 
-/* Of an open surface where a distance to it is needed, unless it is given: it looks like a surface. */
+/* Chooses how thick an open surface is where a distance to it is needed and none is given, so that it looks
+   like a surface. */
 static Node open_surface_thickness(Elaboration *e, const Shape *region, const Call *call)
 {
     if (is_given(call, 2))

@@ -127,7 +127,7 @@ Value builtin_random_direction(Elaboration *e, Call *call)
 
 /* ---- noise ---- */
 
-/* Of a number, a straight cut through the noise of the plane, off its zeros. */
+/* Makes the noise of a number as a straight cut through the noise of the plane, off its zeros. */
 static Node noise_of(Graph *g, Node point)
 {
     if (g->items[point].type == TYPE_FLOAT) {

@@ -9,7 +9,7 @@
 #include "compiler/eval/data/from_files.h"
 #include "compiler/outline/letters.h"
 
-/* Of cubic curves, in ems. */
+/* Cubic curves may be off by so much, in ems. */
 #define TOLERANCE 1e-5
 
 enum { STRING, SIZE, FONT, ALIGN, VERTICAL, LINE_HEIGHT, SPACING };

@@ -10,7 +10,7 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/lower/context.h"
 
-/* Of larger trees distances cost too much. */
+/* Larger trees are not tried: distances would cost too much. */
 enum { MAX_TREE = 64 };
 
 /* Cells are halved until they are so small, in widths. */

@@ -21,7 +21,8 @@ typedef struct FilletZone {
     } cells;
 } FilletZone;
 
-/* Of parts whose circular blend differs from their union in this box alone.  So many points are looked at. */
+/* Finds a box outside of which the circular blend of two parts does not differ from their union.  It looks at
+   `most` points. */
 FilletZone fillet_zone(Elaboration *e, const Shape *a, const Shape *b, double width, Box box,
                        size_t most);
 /* Tells whether a convex function of the point, with slope 1, may be above 0 there. */

@@ -13,7 +13,7 @@
 #include "compiler/eval/declared/claims.h"
 #include "compiler/shape/map.h"
 
-/* Of one size; of others, whose number counts by its third power. */
+/* A hull may be of so many balls of one size, or of several: those count by their third power. */
 enum { MAX_POINTS = 4096, MAX_BALLS = 200 };
 
 static const double NEAR = 1e-9;

@@ -22,7 +22,7 @@ typedef struct Sampling {
 static const Sampling samplings[] = {{64, 200, 64}, {32, 100, SIZE_MAX}};
 enum { MAX_SAMPLED_BALLS = 4 };
 
-/* Of many regions the numbers of planes are multiples of this. */
+/* Where regions are many, their numbers of planes are multiples of this. */
 enum { ALIKE = 4 };
 
 /* Up to which distance unit vectors count as one. */

@@ -12,7 +12,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* Of the size of all: what is less is rounding. */
+/* What is less than this part of the size of all is rounding. */
 static const double SLACK = 1e-11;
 /* Shorter arcs leave nothing out that single precision can tell, nor do nearer normals. */
 static const double SHORTEST_ARC = 1e-7, NEAR_NORMALS = 1e-9;

@@ -58,7 +58,8 @@ typedef struct HullSupports {
     } corners;
 } HullSupports;
 
-/* Of one ball at least.  `plane`: centres have z = 0, and directions as well; there are no edges then. */
+/* Finds the supports of one ball at least.  `plane`: centres have z = 0, and directions as well; there are no
+   edges then. */
 HullSupports hull_supports(Arena *arena, const HullBall *balls, size_t count, bool plane);
 /* Tells whether centres lie in one plane, or on one line for `plane`, but for rounding. */
 bool balls_are_flat(const HullBall *balls, size_t count, bool plane);

@@ -5,7 +5,7 @@
 
 /* ---- kinds of lights.def ---- */
 
-static Node ask_way(const Asked *a, const char *name, const double otherwise[4])
+static Node ask_vector(const Asked *a, const char *name, const double otherwise[4])
 {
     return find_property(a->block, "position") ? ask_place(a, name, otherwise)
                                                : ask_axis(a, name, otherwise);
@@ -42,7 +42,7 @@ static Node ask_sides(const Asked *a, const char *name, const double otherwise[4
 
 /* ---- what is refused, or warned of ---- */
 
-/* Of numbers that seem to be in another unit. */
+/* Warns of numbers that seem to be in another unit. */
 static void warn_of_light(const Asked *a)
 {
     static const char *const angles[] = {"softness", "angle"};

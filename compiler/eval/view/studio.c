@@ -1,7 +1,7 @@
 /*
  * studio.c: lights, walls and a floor (compiler/library/studio.krs) for a scene that names neither
  * lights nor a sky nor fog.  Only bounded scenes get them, and only if no camera can be below the floor.
- * The floor is below what is shown at the values of a frame.
+ * The floor is below what is shown at the values of a state.
  */
 #include <math.h>
 #include <string.h>
@@ -15,7 +15,7 @@ void plan_boxes(Elaboration *e)
     const Shape **shapes = arena_new_array(e->arena, const Shape *, count + 1);
     for (size_t i = 0; i < count; i++)
         shapes[i] = scene->components.items[i].shape;
-    frame_boxes_plan(e->builder, shapes, count, &e->scene->boxes);
+    box_plan_states(e->builder, shapes, count, &e->scene->boxes);
 }
 
 /* Around all boxes, or infinite where one of them is. */
@@ -42,13 +42,13 @@ static Box box_of_all_frames(Elaboration *e)
 
 static Box box_of_defaults(Elaboration *e)
 {
-    const FrameBoxes *plan  = &e->scene->boxes;
-    Box              *boxes = arena_new_array(e->arena, Box, plan->shapes.count + 1);
-    frame_boxes_default(e->builder, plan, boxes);
+    const BoxPlan *plan  = &e->scene->boxes;
+    Box           *boxes = arena_new_array(e->arena, Box, plan->shapes.count + 1);
+    box_plan_default(e->builder, plan, boxes);
     return box_around(boxes, e->scene->components.count);
 }
 
-/* Tells whether all cameras are above a height, in all frames. */
+/* Tells whether all cameras are above a height, in all states. */
 static bool cameras_are_above(Elaboration *e, double height)
 {
     for (size_t i = 0; i < e->scene->cameras.count; i++) {
@@ -59,16 +59,16 @@ static bool cameras_are_above(Elaboration *e, double height)
     return true;
 }
 
-/* A height that is found for each frame, in this box as a rule. */
-static Node frame_floor(Elaboration *e, Box box)
+/* A height that is found for each state, in this box as a rule. */
+static Node state_floor(Elaboration *e, Box box)
 {
-    FrameFloor          *floor = &e->scene->floor;
+    StateFloor          *floor = &e->scene->floor;
     const GraphParameter range = {{box.axis[1].low}, {box.axis[1].high}};
     floor->slot                = (uint32_t)e->graph->parameters.count;
     floor->otherwise           = box.axis[1].low;
     for (size_t i = 0; i < e->scene->cameras.count; i++) {
-        const Node        eye    = e->scene->cameras.items[i].nodes.eye;
-        const FrameNumber number = frame_number_plan(e->builder, eye, &e->scene->boxes);
+        const Node          eye    = e->scene->cameras.items[i].nodes.eye;
+        const PlannedNumber number = box_plan_number(e->builder, eye, &e->scene->boxes);
         array_push(e->arena, &floor->eyes, number);
     }
     array_push(e->builder->arena, &e->graph->parameters, range);
@@ -109,7 +109,7 @@ void run_studio(Elaboration *e, const Files *files)
     if (box_is_empty(box) || !box_is_finite(box) || !cameras_are_above(e, box.axis[1].low))
         return;
     set_value(scope, "_bottom",
-              varies ? value_of_node(e, frame_floor(e, box)) : value_number(box.axis[1].low));
+              varies ? value_of_node(e, state_floor(e, box)) : value_number(box.axis[1].low));
     set_value(scope, "_size", value_number(fmax(box_diagonal(box), 1e-9)));
     run_file(e, scope);
     scene->components.items[scene->components.count - 1].name = "floor";

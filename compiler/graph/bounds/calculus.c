@@ -232,8 +232,8 @@ static double slope_sum(int first, int arity, const Fact *operands, const Partia
     return slope;
 }
 
-/* Of numbers the mean of slopes is at most the largest.  Components of vectors may take their
-   terms from different operands: |w|^2 <= |u|^2 + |v|^2. */
+/* The mean of slopes is at most the largest, for numbers.  Components of vectors may take their terms from
+   different operands: |w|^2 <= |u|^2 + |v|^2. */
 static double slope_convex(int arity, const Fact *operands, const Partials *rows, uint32_t size)
 {
     double slope = 0;

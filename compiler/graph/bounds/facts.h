@@ -57,7 +57,7 @@ typedef struct RangeTask {
 /* Task and facts are in the arena; the graph must live as long. */
 RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena);
 void      range_task_run(const RangeTask *task, Box box);
-/* Of a FLOAT that a root needs, over the box of the last run; and how fast it changes there. */
+/* Return the values of a FLOAT that a root needs, over the box of the last run, and how fast it changes there. */
 Range  range_task_value(const RangeTask *task, Node node);
 double range_task_slope(const RangeTask *task, Node node);
 

@@ -76,8 +76,8 @@ static inline Range scaled(double factor, Range a)
 
 static inline bool is_finite(Range a) { return isfinite(a.low) && isfinite(a.high); }
 
-/* Of p less whole periods, as many as lead nearest to 0, but not below `first` nor above `last`; where the period is not
-   above 0, of p. */
+/* Holds the values of p less whole periods, as many as lead nearest to 0, but not below `first` nor above
+   `last`. Where the period is not above 0 it holds those of p. */
 Range range_in_cell(Range p, Range period, Range first, Range last);
 
 #endif

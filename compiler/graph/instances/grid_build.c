@@ -440,7 +440,7 @@ static void mark_box(const Builder *b, const Box *box, double *squares, Slab sla
                 squares[((size_t)z * grid->cells[1] + y) * grid->cells[0] + x] = 0;
 }
 
-/* Of all boxes. */
+/* The task of marking all boxes. */
 typedef struct Marking {
     const Builder *builder;
     double        *squares;

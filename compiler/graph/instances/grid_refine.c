@@ -115,7 +115,7 @@ typedef struct Cells {
     bool            fill;
 } Cells;
 
-/* Of a refined cell in a coarse one, along an axis. */
+/* Returns the place of a refined cell in a coarse one, along an axis. */
 static size_t refined_along(uint32_t number, int axis)
 {
     return 2 * (number >> (3 + axis) & 1) + (number >> axis & 1);

@@ -19,7 +19,7 @@
 /* Levels of cubes; the entries of lists, and the distances of instances in eight points, of a processor. */
 enum { MAX_LEVELS = 16, MAX_ENTRIES = 1 << 21, MAX_EVALUATED = 1 << 22 };
 
-/* Of the first levels all processors find all, so that they can share the cubes below. */
+/* All processors find all of the first levels, so that they can share the cubes below. */
 enum { SHARED_LEVELS = 2 };
 
 /* What all levels together may leave out of what all halvings may; those of grid_refine.c have the rest. */

@@ -158,7 +158,7 @@ static Range unit_part(const Run *run, uint32_t operand, Range length)
     return corner ? range_hull(unit, minus(unit)) : unit;
 }
 
-/* Of one number alone, whose sign is known, it is that number or its complement. */
+/* Where one number alone is not 0, and its sign is known, the length is that number or its complement. */
 static bool length_of_one(const Run *run, LaneHessian *hessian)
 {
     uint32_t only = lane_only_operand(run->tape, run->ranges, run->step);
@@ -259,7 +259,7 @@ static LaneHessian hessian_of_blend(const Run *run)
                : UNKNOWN_BEND;
 }
 
-/* Of those that may have a share in the box. */
+/* Adds what the operands contribute that may have a share in the box. */
 static LaneHessian hessian_of_shares(const Run *run, const LaneCall *call, const Expr *e)
 {
     const uint32_t vectors = e->operand_count - 1u, width = call->operands[vectors][0];
@@ -280,7 +280,7 @@ static LaneHessian hessian_of_shares(const Run *run, const LaneCall *call, const
 
 /* ---- runs ---- */
 
-/* Of one of these operands; where there are several there may be a corner. */
+/* Takes the Hessian of one of these operands; where there are several there may be a corner. */
 static LaneHessian hessian_of_chosen(const Run *run, unsigned chosen)
 {
     uint32_t only = lane_only_of(run->step, chosen);
@@ -308,7 +308,7 @@ static LaneHessian hessian_of_step(const Run *run)
     return row->arity ? hessian_by_partials(run, row, o) : UNKNOWN_BEND;
 }
 
-/* Of the distance to an outline. */
+/* Finds the Hessian of the distance to an outline. */
 static LaneHessian hessian_of_call(const Run *run)
 {
     LaneHessian sum = NO_BEND;

@@ -324,7 +324,7 @@ static void emit_nodes(Builder *b)
 
 /* ---- bodies ---- */
 
-/* Of an instance function; those that it calls have smaller numbers, and bodies already. */
+/* Makes the body of an instance function; those that it calls have smaller numbers, and bodies already. */
 static LaneBody *make_body(const Tape *tape, uint32_t id, const LaneBody **bodies, Arena *arena)
 {
     const Instances        *instances = tape->graph->instances;

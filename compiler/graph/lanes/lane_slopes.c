@@ -67,7 +67,7 @@ static void add_times(LaneSlope *sum, Range factor, LaneSlope slope)
             sum->by[j] = range_add(sum->by[j], range_mul(factor, slope.by[j]));
 }
 
-/* Of one of these operands. */
+/* Holds the slopes of each of these operands. */
 static LaneSlope slope_of_any(const Run *run, unsigned operands)
 {
     LaneSlope hull = {{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}}};

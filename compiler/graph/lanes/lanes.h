@@ -217,7 +217,7 @@ Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box);
 /* The same, but narrower where steps know how fast they change.  Turned boxes grow, so ranges of a chain of turns are
    wide; balls do not.  It takes twice the time. */
 Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box box);
-/* Of an output, after a run. */
+/* Returns the range of an output, after a run. */
 Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output);
 
 /* Ranges of the derivatives of a value by x, y and z. */

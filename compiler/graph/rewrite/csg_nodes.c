@@ -257,7 +257,7 @@ static Node greatest_of(Graph *g, const Node *sides, uint32_t count)
     return greatest;
 }
 
-/* Of two sides. */
+/* Makes the distance to the corner of two sides. */
 static Node corner_of(Graph *g, const Node *sides)
 {
     Node zero = graph_number(g, 0), outside[2];

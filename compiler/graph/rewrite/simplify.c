@@ -85,8 +85,7 @@ static Node gather(const Rewrite *s, Op op, Node x, Op join, Node c, Node d)
     if (condition)              \
     return (result)
 
-/* Of operations that may take their operands in either order: the older first, a constant
-   last. */
+/* Orders operands of operations that may take them in either order: the older comes first, a constant last. */
 static void order_operands(Rewrite *s)
 {
     bool swap = constant(s, s->o[0]) ? !constant(s, s->o[1])

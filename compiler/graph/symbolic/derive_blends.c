@@ -132,7 +132,7 @@ static Weights by_steps(Blending *x)
     static Weights weights_of_##name(Blending *x) { return weights; }
 #include "compiler/graph/blends.def"
 
-/* Of those whose width is above 0. */
+/* Finds the weights of blends whose width is above 0. */
 static Weights (*const weights_of[OP_COUNT])(Blending *x) = {
 #define BLEND(name, ...) [OP_smin_##name] = weights_of_##name,
 #include "compiler/graph/blends.def"

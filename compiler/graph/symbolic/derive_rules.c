@@ -72,8 +72,8 @@ static Node atan2_slope(Derivation *d, Node a, Node b, Node numerator)
     return over(g, numerator, squares);
 }
 
-/* Of h^2 (3 - 2 h), h = (c - a) / (b - a) clamped: by c it is 6 h (1 - h) / (b - a), by the edges
-   the same less what they contribute to h. */
+/* Derives h^2 (3 - 2 h), h = (c - a) / (b - a) clamped: by c it is 6 h (1 - h) / (b - a), by the edges the same
+   less what they contribute to h. */
 static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 {
     Graph *g    = d->graph;

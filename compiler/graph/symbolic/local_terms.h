@@ -30,7 +30,7 @@ Node slope_here(const BallContext *x, const BallTerm *a);
 /* Slope in the ball. */
 Node steepness(const BallContext *x, const BallTerm *a);
 
-/* Of a node `value`: that of a number which is the same all over the ball, */
+/* Make the term of a node `value`: as a number which is the same all over the ball, */
 BallTerm constant_term(const BallContext *x, Node value);
 /* and of one of which nothing is known but its slope over the box. */
 BallTerm opaque_term(BallContext *x, Node value);

@@ -68,7 +68,7 @@ static Parity leaf_parity(const Expr *e, uint32_t axis)
     return parity;
 }
 
-/* Of a vector whether all components are even, whatever their signs. */
+/* Tells whether all components of a vector are even, whatever their signs. */
 static uint8_t length_parity(const Parity *vector, uint32_t size)
 {
     uint8_t parity = EVEN;

@@ -24,7 +24,7 @@ typedef struct SeriesElement {
     double hessian[3][3];
 } SeriesElement;
 
-/* Of a number, or of the components of a vector. */
+/* The series of a number, or of the components of a vector. */
 typedef struct SeriesElements {
     uint32_t       count;
     SeriesElement *items;
@@ -255,7 +255,7 @@ static bool series_none(Expansion *x, Node node, const SeriesElements *operands,
     return false;
 }
 
-/* Of a sum or a difference. */
+/* Expands a sum or a difference. */
 static bool expand_sum(Expansion *x, const SeriesElements *operands, bool minus,
                        SeriesElements *result)
 {

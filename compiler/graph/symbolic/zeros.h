@@ -14,7 +14,7 @@ typedef struct ZeroBox {
     int sign; /* of the polynomial outside of it; 0: the box is infinite on all sides */
 } ZeroBox;
 
-/* Of a FLOAT that is a polynomial of the point, for all values of the parameters. */
+/* Finds a box around the zeros of a FLOAT that is a polynomial of the point, for all values of the parameters. */
 ZeroBox graph_zero_box(Graph *graph, Node polynomial, Arena *scratch);
 
 #endif

@@ -195,7 +195,7 @@ static Node crossing_of(Lowering *l, const RayImage *image, Node axis, Node dist
     Node inner   = mul(g, distance, rest);
     inner        = sub(g, graph_op1(g, OP_square, half), inner);
     Node root    = graph_op1(g, OP_sqrt, larger(l, inner, graph_number(g, 0)));
-    /* Of two forms of the root, take the one that adds terms of the same sign. */
+    /* Take the one of two forms of the root that adds terms of the same sign. */
     Node divisor = add(g, half, root);
     divisor      = larger(l, divisor, graph_number(g, TINY));
     Node leaving = over(g, neg(g, rest), divisor);

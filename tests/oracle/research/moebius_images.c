@@ -19,16 +19,16 @@ static Asked asked_new(Product product, ResearchMethod method)
     KrsScene *scene = product.scene;
     Asked     asked = {product, research_roots(&scene->roots, method)[0], {0}};
     asked.tape      = tape_new(scene->graph, &asked.root, 1, &scene->arena);
-    state_refresh(product.frame);
-    tape_run_frame(&asked.tape, product.frame->parameters, product.frame->values);
+    state_refresh(product.state);
+    tape_run_frame(&asked.tape, product.state->parameters, product.state->values);
     return asked;
 }
 
 static double ask(const Asked *asked, Vec p, Vec direction, double radius)
 {
     double at[3] = {p.x, p.y, p.z}, v[3] = {direction.x, direction.y, direction.z};
-    tape_run_surface(&asked->tape, at, v, radius, asked->product.frame->values);
-    return asked->product.frame->values[asked->root].v[0];
+    tape_run_surface(&asked->tape, at, v, radius, asked->product.state->values);
+    return asked->product.state->values[asked->root].v[0];
 }
 
 /* Whether something of the chain is on the segment of this length, but for its last millionth. */

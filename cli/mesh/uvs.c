@@ -1,5 +1,5 @@
 /*
- * places.c: where triangles are in textures.
+ * uvs.c: where triangles are in textures.
  *
  * Coordinates of surfaces jump, as an angle does where it has gone around.  A triangle across such a seam must not
  * have both ends of the picture.  So each triangle has its own at its corners: its middle's, continued up to them.
@@ -134,7 +134,7 @@ static bool any_number(const double (*places)[2], size_t count)
     return false;
 }
 
-KrsStatus find_places(const Meshing *meshing, MeshParts *parts)
+KrsStatus find_uvs(const Meshing *meshing, MeshParts *parts)
 {
     Arena *arena    = meshing->options->arena;
     size_t vertices = parts_vertex_count(parts), triangles = parts_triangle_count(parts);

@@ -1,7 +1,7 @@
 /*
- * frame_values.c: packs values of the frame into slots, and finds them.
+ * state_values.c: packs values of the state into slots, and finds them.
  */
-#include "compiler/print/frame_values.h"
+#include "compiler/print/state_values.h"
 
 #include <float.h>
 #include <math.h>
@@ -15,36 +15,36 @@ static uint32_t width_of(const Graph *graph, Node node)
     return type <= TYPE_VEC4 ? (uint32_t)type : 1;
 }
 
-bool frame_value_is_given(const Graph *graph, Node node)
+bool state_value_is_given(const Graph *graph, Node node)
 {
     const Expr *e = &graph->items[node];
     return e->op == OP_PARAMETER ||
            (e->op == OP_COMPONENT && graph->items[e->operands[0]].op == OP_PARAMETER);
 }
 
-bool frame_value_is_arranged(const Graph *graph, Node node)
+bool state_value_is_arranged(const Graph *graph, Node node)
 {
     Op op = (Op)graph->items[node].op;
     return op_has_traits(op, BUILDS) || op == OP_neg;
 }
 
-typedef struct FrameNodes {
+typedef struct StateNodes {
     Node  *items;
     size_t count, capacity;
-} FrameNodes;
+} StateNodes;
 
 /* What is wanted, or what that arranges. */
-static FrameNodes find_values(const Graph *graph, const Node *wanted, size_t count, Arena *scratch)
+static StateNodes find_values(const Graph *graph, const Node *wanted, size_t count, Arena *scratch)
 {
     bool      *seen = arena_new_array(scratch, bool, graph->count + 1);
-    FrameNodes rest = {0}, found = {0};
+    StateNodes rest = {0}, found = {0};
     for (size_t i = count; i-- > 0;)
         array_push(scratch, &rest, wanted[i]);
     while (rest.count > 0) {
         Node        node     = rest.items[--rest.count];
         const Expr *e        = &graph->items[node];
-        bool        arranged = frame_value_is_arranged(graph, node);
-        if (seen[node] || e->time != TIME_FRAME || frame_value_is_given(graph, node))
+        bool        arranged = state_value_is_arranged(graph, node);
+        if (seen[node] || e->time != TIME_FRAME || state_value_is_given(graph, node))
             continue;
         seen[node] = true;
         for (uint32_t k = e->operand_count; k-- > 0 && arranged;)
@@ -78,21 +78,21 @@ static Fact find_fact(const Tape *tape, size_t at, const Fact *facts)
     return fact;
 }
 
-void frame_values_assign(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,
+void state_values_assign(StateValues *values, const Graph *graph, const Node *wanted, size_t count,
                          Arena *arena, Arena *scratch)
 {
-    FrameNodes found = find_values(graph, wanted, count, scratch);
+    StateNodes found = find_values(graph, wanted, count, scratch);
     uint32_t   used  = 4 * values->first_slot;
     values->count    = found.count;
-    values->items    = arena_new_array(arena, FrameValue, found.count + 1);
+    values->items    = arena_new_array(arena, StateValue, found.count + 1);
     values->tape     = tape_new(graph, found.items, found.count, arena);
     Fact *facts      = arena_new_array(scratch, Fact, values->tape.count + 1);
     for (size_t i = 0; i < values->tape.count; i++)
         facts[i] = find_fact(&values->tape, i, facts);
     for (size_t i = 0; i < found.count; i++) {
-        FrameValue *value = &values->items[i];
+        StateValue *value = &values->items[i];
         const Fact *fact  = &facts[tape_index(&values->tape, found.items[i])];
-        *value = (FrameValue){.node = found.items[i], .width = width_of(graph, found.items[i])};
+        *value = (StateValue){.node = found.items[i], .width = width_of(graph, found.items[i])};
         for (uint32_t k = 0; k < value->width; k++) {
             bool same          = range_is_single(fact->value[k]) && isfinite(fact->value[k].low);
             value->at[k]       = same ? NO_PLACE : used++;
@@ -108,14 +108,14 @@ static float to_single(double number)
     return (float)(number > FLT_MAX ? FLT_MAX : number < -FLT_MAX ? -FLT_MAX : number);
 }
 
-void frame_values_find(const FrameValues *values, const NodeValue *parameters, NodeValue *room,
+void state_values_find(const StateValues *values, const NodeValue *parameters, NodeValue *room,
                        float (*block)[4])
 {
     const Graph *graph = values->tape.graph;
     tape_run_frame(&values->tape, parameters, room);
     memset(block, 0, values->slots * sizeof *block);
     for (size_t i = 0; i < values->count; i++) {
-        const FrameValue *value = &values->items[i];
+        const StateValue *value = &values->items[i];
         const double     *found = room[value->node].v;
         for (uint32_t k = 0; k < value->width; k++) {
             if (value->at[k] == NO_PLACE)

@@ -1,8 +1,8 @@
 /*
- * frame_boxes.c: boxes of shapes at the values that parameters have in a frame, by the rules of their
+ * box_plan.c: boxes of shapes at the values that parameters have in a state, by the rules of their
  * kinds.
  */
-#include "compiler/shape/frame_boxes.h"
+#include "compiler/shape/box_plan.h"
 
 #include <string.h>
 
@@ -10,36 +10,36 @@
 #include "compiler/graph/op_values.h"
 #include "compiler/shape/sequence_box.h"
 
-/* Shapes that are looked at, each where it is used, and those that are planned: what a frame does for
+/* Shapes that are looked at, each where it is used, and those that are planned: what a state does for
    them should take less than a millisecond. */
 enum { MAX_VISITED = 1 << 16, MAX_PLANNED = 1 << 12 };
-/* Of a sequence: the search for its reach takes a frame some milliseconds, then. */
+/* So many stages of a sequence at most: the search for its reach takes a state some milliseconds, then. */
 enum { MAX_STAGES = 40 };
 
 /* What a node depends on. */
 enum { ON_PARAMETERS = 1, ON_TIME = 2 };
 
-typedef struct Plan {
+typedef struct Planning {
     ShapeBuilder  *builder;
     Arena         *arena;
-    FrameBoxes    *boxes;
+    BoxPlan       *boxes;
     Node           leaf;    /* of iterations, which counts as the one parameter; or NODE_NONE */
     unsigned char *depends; /* by nodes, */
-    size_t *places; /* where they are among those that frames are asked for, from 1; 0: not yet */
+    size_t *places; /* where they are among those that states are asked for, from 1; 0: not yet */
     size_t  visited;
     bool    failed; /* a box that depends on the leaf has no rule */
-} Plan;
+} Planning;
 
 /* ---- numbers ---- */
 
-static int parameter_depends(const Plan *plan, Node node)
+static int parameter_depends(const Planning *plan, Node node)
 {
     if (plan->leaf != NODE_NONE)
         return node == plan->leaf ? ON_PARAMETERS : 0;
     return plan->builder->graph->items[node].index == 0 ? ON_TIME : ON_PARAMETERS;
 }
 
-static unsigned char *find_depends(const Plan *plan)
+static unsigned char *find_depends(const Planning *plan)
 {
     const Graph   *graph   = plan->builder->graph;
     unsigned char *depends = arena_new_array(plan->arena, unsigned char, graph->count);
@@ -53,15 +53,15 @@ static unsigned char *find_depends(const Plan *plan)
     return depends;
 }
 
-static Plan plan_new(ShapeBuilder *builder, Node leaf, Arena *arena, FrameBoxes *boxes)
+static Planning planning_new(ShapeBuilder *builder, Node leaf, Arena *arena, BoxPlan *boxes)
 {
-    Plan plan    = {.builder = builder, .arena = arena, .boxes = boxes, .leaf = leaf};
-    plan.depends = find_depends(&plan);
-    plan.places  = arena_new_array(arena, size_t, builder->graph->count);
+    Planning plan = {.builder = builder, .arena = arena, .boxes = boxes, .leaf = leaf};
+    plan.depends  = find_depends(&plan);
+    plan.places   = arena_new_array(arena, size_t, builder->graph->count);
     return plan;
 }
 
-static size_t place_of(const Plan *plan, Node node)
+static size_t place_of(const Planning *plan, Node node)
 {
     if (plan->places[node] == 0) {
         array_push(plan->arena, &plan->boxes->nodes, node);
@@ -70,10 +70,10 @@ static size_t place_of(const Plan *plan, Node node)
     return plan->places[node] - 1;
 }
 
-static FrameNumber plan_number(const Plan *plan, Node node)
+static PlannedNumber plan_number(const Planning *plan, Node node)
 {
     ShapeBuilder  *builder = plan->builder;
-    FrameNumber    number  = {.node = node, .asked = plan->depends[node] == ON_PARAMETERS};
+    PlannedNumber  number  = {.node = node, .asked = plan->depends[node] == ON_PARAMETERS};
     const uint32_t size    = components((GraphType)builder->graph->items[node].type);
     if (number.asked)
         number.place = place_of(plan, node);
@@ -83,14 +83,14 @@ static FrameNumber plan_number(const Plan *plan, Node node)
     return number;
 }
 
-FrameNumber frame_number_plan(ShapeBuilder *builder, Node node, FrameBoxes *boxes)
+PlannedNumber box_plan_number(ShapeBuilder *builder, Node node, BoxPlan *boxes)
 {
-    const Plan plan = plan_new(builder, NODE_NONE, builder->arena, boxes);
+    const Planning plan = planning_new(builder, NODE_NONE, builder->arena, boxes);
     return plan_number(&plan, node);
 }
 
-Range frame_number_range(const FrameNumber *number, uint32_t component, const Node *nodes,
-                         const NodeValue *values)
+Range planned_range(const PlannedNumber *number, uint32_t component, const Node *nodes,
+                    const NodeValue *values)
 {
     return number->asked && values ? range_of(values[nodes[number->place]].v[component])
                                    : number->ranges[component];
@@ -99,10 +99,10 @@ Range frame_number_range(const FrameNumber *number, uint32_t component, const No
 /* ---- shapes ---- */
 
 /* Places for shapes that are found one after the other: the first of them. */
-static size_t add_shapes(Plan *plan, size_t count)
+static size_t add_shapes(Planning *plan, size_t count)
 {
-    const FrameShape none  = {.number_count = 0};
-    const size_t     first = plan->boxes->shapes.count;
+    const PlannedShape none  = {.number_count = 0};
+    const size_t       first = plan->boxes->shapes.count;
     for (size_t i = 0; i < count; i++)
         array_push(plan->arena, &plan->boxes->shapes, none);
     return first;
@@ -134,7 +134,7 @@ static Shape shape_for_rule(const Shape *shape, Arena *arena)
     return copy;
 }
 
-static bool any_node_depends(const Plan *plan, const Node *nodes, uint32_t count)
+static bool any_node_depends(const Planning *plan, const Node *nodes, uint32_t count)
 {
     bool found = false;
     for (uint32_t i = 0; i < count; i++)
@@ -142,7 +142,7 @@ static bool any_node_depends(const Plan *plan, const Node *nodes, uint32_t count
     return found;
 }
 
-static bool stage_depends(const Plan *plan, const SequenceStage *stage)
+static bool stage_depends(const Planning *plan, const SequenceStage *stage)
 {
     const Map *map = &stage->map;
     Node       nodes[MAX_BOX_NODES];
@@ -157,7 +157,7 @@ static bool stage_depends(const Plan *plan, const SequenceStage *stage)
 }
 
 /* Tells whether anything in the tree of a shape depends on the leaf. */
-static bool any_depends(const Plan *plan, const Shape *shape)
+static bool any_depends(const Planning *plan, const Shape *shape)
 {
     const Node others[] = {shape->distance, shape->bound, shape->formula, shape->blend.steps,
                            shape->map.scale != NODE_NONE ? shape->map.pole : NODE_NONE};
@@ -173,7 +173,7 @@ static bool any_depends(const Plan *plan, const Shape *shape)
 
 /* Tells whether a rule tells the box.  A search for the reach of a sequence would take too long for many
    iterations. */
-static bool is_planned(const Plan *plan, const Shape *shape)
+static bool is_planned(const Planning *plan, const Shape *shape)
 {
     return (has_box_rule(shape) || (plan->leaf == NODE_NONE && is_sequence(shape))) &&
            plan->visited <= MAX_VISITED &&
@@ -181,9 +181,9 @@ static bool is_planned(const Plan *plan, const Shape *shape)
 }
 
 /* Tells whether the box depends on parameters alone; only then its parts and numbers are planned. */
-static bool plan_shape(Plan *plan, const Shape *shape, size_t at)
+static bool plan_shape(Planning *plan, const Shape *shape, size_t at)
 {
-    FrameBoxes *boxes             = plan->boxes;
+    BoxPlan *boxes                = plan->boxes;
     boxes->shapes.items[at].shape = shape_for_rule(shape, plan->arena);
     plan->visited++;
     const uint32_t parts = box_part_count(shape);
@@ -204,25 +204,25 @@ static bool plan_shape(Plan *plan, const Shape *shape, size_t at)
         boxes->shapes.count = first;
         return false;
     }
-    FrameShape *planned   = &boxes->shapes.items[at];
+    PlannedShape *planned = &boxes->shapes.items[at];
     planned->first_part   = first;
     planned->part_count   = parts;
     planned->first_number = boxes->numbers.count;
     planned->number_count = count;
     for (uint32_t i = 0; i < count; i++) {
-        const FrameNumber number = plan_number(plan, nodes[i]);
+        const PlannedNumber number = plan_number(plan, nodes[i]);
         array_push(plan->arena, &boxes->numbers, number);
     }
     return true;
 }
 
-void frame_boxes_plan(ShapeBuilder *builder, const Shape *const *shapes, size_t count,
-                      FrameBoxes *boxes)
+void box_plan_states(ShapeBuilder *builder, const Shape *const *shapes, size_t count,
+                     BoxPlan *boxes)
 {
-    *boxes = (FrameBoxes){.nodes.count = 0};
+    *boxes = (BoxPlan){.nodes.count = 0};
     if (builder->parameters->count == 0 || count > MAX_PLANNED)
         return;
-    Plan plan        = plan_new(builder, NODE_NONE, builder->arena, boxes);
+    Planning plan    = planning_new(builder, NODE_NONE, builder->arena, boxes);
     boxes->asked_for = count;
     add_shapes(&plan, count);
     for (size_t i = 0; i < count; i++)
@@ -231,28 +231,28 @@ void frame_boxes_plan(ShapeBuilder *builder, const Shape *const *shapes, size_t 
         boxes->shapes.count = boxes->asked_for = 0;
 }
 
-bool frame_boxes_plan_iterations(ShapeBuilder *builder, const Shape *shape, Node leaf, Arena *arena,
-                                 FrameBoxes *boxes)
+bool box_plan_iterations(ShapeBuilder *builder, const Shape *shape, Node leaf, Arena *arena,
+                         BoxPlan *boxes)
 {
-    *boxes    = (FrameBoxes){.asked_for = 1};
-    Plan plan = plan_new(builder, leaf, arena, boxes);
+    *boxes        = (BoxPlan){.asked_for = 1};
+    Planning plan = planning_new(builder, leaf, arena, boxes);
     add_shapes(&plan, 1);
     plan_shape(&plan, shape, 0);
     return !plan.failed;
 }
 
-FrameBoxes frame_boxes_copy(const FrameBoxes *plan, Arena *arena)
+BoxPlan box_plan_copy(const BoxPlan *plan, Arena *arena)
 {
-    FrameBoxes copy    = *plan;
+    BoxPlan copy       = *plan;
     copy.nodes.items   = arena_new_array(arena, Node, plan->nodes.count + 1);
-    copy.numbers.items = arena_new_array(arena, FrameNumber, plan->numbers.count + 1);
-    copy.shapes.items  = arena_new_array(arena, FrameShape, plan->shapes.count + 1);
+    copy.numbers.items = arena_new_array(arena, PlannedNumber, plan->numbers.count + 1);
+    copy.shapes.items  = arena_new_array(arena, PlannedShape, plan->shapes.count + 1);
     for (size_t i = 0; i < plan->nodes.count; i++)
         copy.nodes.items[i] = plan->nodes.items[i];
     for (size_t i = 0; i < plan->numbers.count; i++)
         copy.numbers.items[i] = plan->numbers.items[i];
     for (size_t i = 0; i < plan->shapes.count; i++) {
-        FrameShape *shape   = &copy.shapes.items[i];
+        PlannedShape *shape = &copy.shapes.items[i];
         *shape              = plan->shapes.items[i];
         shape->shape.stages = shape->shape.stages ? copy_stages(&shape->shape, arena) : NULL;
     }
@@ -262,19 +262,19 @@ FrameBoxes frame_boxes_copy(const FrameBoxes *plan, Arena *arena)
 /* ---- boxes ---- */
 
 typedef struct Finding {
-    BoxNumbers         numbers; /* those of `current` */
-    const FrameNumber *current;
-    const Node        *nodes;
-    const NodeValue   *values;
+    BoxNumbers           numbers; /* those of `current` */
+    const PlannedNumber *current;
+    const Node          *nodes;
+    const NodeValue     *values;
 } Finding;
 
-static Range range_in_frame(const BoxNumbers *numbers, Node node, uint32_t component)
+static Range range_in_state(const BoxNumbers *numbers, Node node, uint32_t component)
 {
-    const Finding     *finding = (const Finding *)numbers;
-    const FrameNumber *number  = finding->current;
+    const Finding       *finding = (const Finding *)numbers;
+    const PlannedNumber *number  = finding->current;
     while (number->node != node)
         number++;
-    return frame_number_range(number, component, finding->nodes, finding->values);
+    return planned_range(number, component, finding->nodes, finding->values);
 }
 
 static Box box_by_rule(const BoxInput *in)
@@ -283,21 +283,20 @@ static Box box_by_rule(const BoxInput *in)
     return in->shape->kind == SHAPE_KRS ? sequence_box(in, reach, NULL) : shape_box(in);
 }
 
-void frame_boxes_find(const FrameBoxes *plan, const Node *nodes, const NodeValue *values,
-                      Box *boxes)
+void box_plan_find(const BoxPlan *plan, const Node *nodes, const NodeValue *values, Box *boxes)
 {
-    Finding finding = {{range_in_frame}, NULL, nodes, values};
+    Finding finding = {{range_in_state}, NULL, nodes, values};
     for (size_t i = plan->shapes.count; i-- > 0;) {
-        const FrameShape *planned = &plan->shapes.items[i];
-        finding.current           = plan->numbers.items + planned->first_number;
-        boxes[i]                  = planned->shape.box;
+        const PlannedShape *planned = &plan->shapes.items[i];
+        finding.current             = plan->numbers.items + planned->first_number;
+        boxes[i]                    = planned->shape.box;
         if (planned->part_count + planned->number_count > 0)
             boxes[i] = box_by_rule(
                 &(BoxInput){&finding.numbers, &planned->shape, boxes + planned->first_part, 1});
     }
 }
 
-void frame_boxes_default(ShapeBuilder *builder, const FrameBoxes *plan, Box *boxes)
+void box_plan_default(ShapeBuilder *builder, const BoxPlan *plan, Box *boxes)
 {
     const Graph      *graph = builder->graph;
     const Parameters *all   = builder->parameters;
@@ -307,5 +306,5 @@ void frame_boxes_default(ShapeBuilder *builder, const FrameBoxes *plan, Box *box
     for (size_t i = 0; i < all->count; i++)
         memcpy(parameters[all->items[i].slot].v, all->items[i].value, sizeof all->items[i].value);
     tape_run_frame(&tape, parameters, values);
-    frame_boxes_find(plan, plan->nodes.items, values, boxes);
+    box_plan_find(plan, plan->nodes.items, values, boxes);
 }

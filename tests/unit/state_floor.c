@@ -1,6 +1,6 @@
 /*
- * frame_floor.c: the floor of a scene without surroundings, and the camera of one without cameras, at
- * the values that parameters have in a frame: where they are if these are numbers of the text.
+ * state_floor.c: the floor of a scene without surroundings, and the camera of one without cameras, at
+ * the values that parameters have in a state: where they are if these are numbers of the text.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -19,7 +19,7 @@ enum { MAX_TEXT = 1024 };
 
 typedef struct Opened {
     KrsScene *scene;
-    KrsState *frame;
+    KrsState *state;
 } Opened;
 
 static Opened open_scene(const char *head, const char *text, uint32_t specialize)
@@ -30,13 +30,13 @@ static Opened open_scene(const char *head, const char *text, uint32_t specialize
     snprintf(whole, sizeof whole, "%s%s", head, text);
     if (krs_compile_text(whole, strlen(whole), "scene.krs", &options, &opened.scene) != KRS_OK)
         fail_msg("%s is refused", whole);
-    assert_int_equal(krs_state_new(opened.scene, &opened.frame), KRS_OK);
+    assert_int_equal(krs_state_new(opened.scene, &opened.state), KRS_OK);
     return opened;
 }
 
 static void close_scene(Opened opened)
 {
-    krs_state_free(opened.frame);
+    krs_state_free(opened.state);
     krs_scene_free(opened.scene);
 }
 
@@ -49,14 +49,14 @@ static double floor_height(Opened opened)
     assert_int_equal(krs_component(opened.scene, krs_component_count(opened.scene) - 1, &component),
                      KRS_OK);
     assert_string_equal(component.name, "floor");
-    assert_int_equal(krs_raycast(opened.frame, origin, down, 1, 1e5, 0, &hit), KRS_OK);
+    assert_int_equal(krs_raycast(opened.state, origin, down, 1, 1e5, 0, &hit), KRS_OK);
     assert_true(hit.hit);
     return hit.point[1];
 }
 
 static void set_height(Opened opened, double height)
 {
-    assert_int_equal(krs_state_set(opened.frame, "h", &height, 1), KRS_OK);
+    assert_int_equal(krs_state_set(opened.state, "h", &height, 1), KRS_OK);
 }
 
 /* Scenes of all kinds of shapes whose box has a rule, with a parameter h from 0.5 to 4. */
@@ -96,23 +96,23 @@ static const char *const scenes[] = {
 static void compare_boxes(Opened asked, Opened fixed)
 {
     double found[2][3], truth[2][3];
-    assert_true(krs_state_box(asked.frame, found[0], found[1]));
-    assert_true(krs_state_box(fixed.frame, truth[0], truth[1]));
+    assert_true(krs_state_box(asked.state, found[0], found[1]));
+    assert_true(krs_state_box(fixed.state, truth[0], truth[1]));
     for (int side = 0; side < 2; side++)
         for (int k = 0; k < 3; k++)
             assert_true(fabs(found[side][k] - truth[side][k]) < 1e-6);
     for (size_t i = 0; i < krs_component_count(fixed.scene); i++) {
-        const bool ends = krs_state_component_box(fixed.frame, i, truth[0], truth[1]);
-        assert_int_equal(krs_state_component_box(asked.frame, i, found[0], found[1]), ends);
+        const bool ends = krs_state_component_box(fixed.state, i, truth[0], truth[1]);
+        assert_int_equal(krs_state_component_box(asked.state, i, found[0], found[1]), ends);
         for (int k = 0; ends && k < 3; k++)
             assert_true(fabs(found[0][k] - truth[0][k]) < 1e-6 &&
                         fabs(found[1][k] - truth[1][k]) < 1e-6);
     }
     assert_false(
-        krs_state_component_box(fixed.frame, krs_component_count(fixed.scene), found[0], found[1]));
+        krs_state_component_box(fixed.state, krs_component_count(fixed.scene), found[0], found[1]));
 }
 
-/* Of a scene with a parameter, for some values of it: as of the text with these numbers. */
+/* Compares a scene with a parameter, for some values of it, with the text with these numbers. */
 static void compare_floors(const char *head, const char *text, uint32_t specialize)
 {
     const double values[] = {1, 0.5, 3.3, 4};
@@ -132,9 +132,9 @@ static void compare_floors(const char *head, const char *text, uint32_t speciali
     close_scene(asked);
 }
 
-static void follows_parameters(void **state)
+static void follows_parameters(void **context)
 {
-    (void)state;
+    (void)context;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         compare_floors("param h = 1 in [0.5, 4];", scenes[i], KRS_SPECIALIZE_NUMBERS);
         compare_floors("param h = 1 in [0.5, 4];", scenes[i], KRS_SPECIALIZE_STRUCTURE);
@@ -142,28 +142,28 @@ static void follows_parameters(void **state)
 }
 
 /* The box for all values of the parameter is endless. */
-static void follows_parameters_without_a_range(void **state)
+static void follows_parameters_without_a_range(void **context)
 {
-    (void)state;
+    (void)context;
     compare_floors("param h = 1;", "show box([1, h, 1]);", KRS_SPECIALIZE_NUMBERS);
     compare_floors("param h = 1;", "show sphere(1).move([0, h, 0]);", KRS_SPECIALIZE_NUMBERS);
 }
 
-static void camera_follows_where_it_is_asked_to(void **state)
+static void camera_follows_where_it_is_asked_to(void **context)
 {
-    (void)state;
+    (void)context;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         const Opened asked = open_scene("param h = 1 in [0.5, 4];", scenes[i], 0);
         const Opened fixed = open_scene("let h = 3.3;", scenes[i], 0);
         KrsCamera    first, before, after, truth;
         double       error = 0, moved = 0, away = 0;
-        assert_int_equal(krs_state_camera(asked.frame, 0, &first), KRS_OK);
+        assert_int_equal(krs_state_camera(asked.state, 0, &first), KRS_OK);
         set_height(asked, 3.3);
-        assert_int_equal(krs_state_camera(asked.frame, 0, &before), KRS_OK);
+        assert_int_equal(krs_state_camera(asked.state, 0, &before), KRS_OK);
         assert_memory_equal(first.eye, before.eye, sizeof first.eye);
-        assert_int_equal(krs_state_fit_camera(asked.frame), KRS_OK);
-        assert_int_equal(krs_state_camera(asked.frame, 0, &after), KRS_OK);
-        assert_int_equal(krs_state_camera(fixed.frame, 0, &truth), KRS_OK);
+        assert_int_equal(krs_state_fit_camera(asked.state), KRS_OK);
+        assert_int_equal(krs_state_camera(asked.state, 0, &after), KRS_OK);
+        assert_int_equal(krs_state_camera(fixed.state, 0, &truth), KRS_OK);
         for (int k = 0; k < 3; k++) {
             error = fmax(error, fabs(after.eye[k] - truth.eye[k]));
             moved = fmax(moved, fabs(after.eye[k] - before.eye[k]));
@@ -179,13 +179,13 @@ static void camera_follows_where_it_is_asked_to(void **state)
 }
 
 /* What moves with the time stands on one floor for all times; what is set moves that. */
-static void stays_with_the_time(void **state)
+static void stays_with_the_time(void **context)
 {
     const Opened opened = open_scene("param h = 1 in [0.5, 4];",
                                      "show box([1, h, 1]).move([0, 3 * sin(time), 0]);", 0);
-    (void)state;
+    (void)context;
     for (int i = 0; i < 5; i++) {
-        assert_int_equal(krs_state_set_time(opened.frame, 0.7 * i), KRS_OK);
+        assert_int_equal(krs_state_set_time(opened.state, 0.7 * i), KRS_OK);
         set_height(opened, 1);
         assert_true(fabs(floor_height(opened) + 3.5) < 1e-6);
         set_height(opened, 2);
@@ -195,11 +195,11 @@ static void stays_with_the_time(void **state)
 }
 
 /* A camera of the scene is never below the floor. */
-static void stays_below_cameras(void **state)
+static void stays_below_cameras(void **context)
 {
     const char *const text   = "show sphere(1).move([0, h, 0]); camera { eye: [0, 1, 8] }";
     const Opened      opened = open_scene("param h = 0 in [0, 5];", text, 0);
-    (void)state;
+    (void)context;
     assert_true(fabs(floor_height(opened) + 1) < 1e-6);
     set_height(opened, 1.5);
     assert_true(fabs(floor_height(opened) - 0.5) < 1e-6);
@@ -209,7 +209,7 @@ static void stays_below_cameras(void **state)
 }
 
 /* The box of mirrors that turn with the time is ten times too large, and rays hit little but the floor. */
-static void camera_finds_a_small_thing_in_a_large_box(void **state)
+static void camera_finds_a_small_thing_in_a_large_box(void **context)
 {
     const char *const text     = "show krs {"
                                  "kernel cylinder(0.1, 1).move([0, 0.5, 0]);"
@@ -220,10 +220,10 @@ static void camera_finds_a_small_thing_in_a_large_box(void **state)
     KrsComponent      component;
     KrsCamera         camera;
     double            away = 0;
-    (void)state;
+    (void)context;
     assert_int_equal(krs_component(opened.scene, 0, &component), KRS_OK);
     assert_true(component.low[0] < -10 && component.high[0] > 10);
-    assert_int_equal(krs_state_camera(opened.frame, 0, &camera), KRS_OK);
+    assert_int_equal(krs_state_camera(opened.state, 0, &camera), KRS_OK);
     for (int k = 0; k < 3; k++) {
         assert_true(lower[k] < camera.target[k] && camera.target[k] < upper[k]);
         away = hypot(away, camera.eye[k] - camera.target[k]);
@@ -240,5 +240,5 @@ int main(void)
                                        cmocka_unit_test(stays_with_the_time),
                                        cmocka_unit_test(stays_below_cameras),
                                        cmocka_unit_test(camera_finds_a_small_thing_in_a_large_box)};
-    return cmocka_run_group_tests_name("frame_floor", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("state_floor", tests, NULL, NULL);
 }

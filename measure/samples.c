@@ -1,5 +1,5 @@
 /*
- * places.c: places of the surface, their normals and walls.
+ * samples.c: samples of the surface, their normals and walls.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -9,10 +9,10 @@
 #include "compiler/field/roots.h"
 #include "measure/measure.h"
 
-/* About as many places as there are if the mesh has fewer triangles. */
-static const double MAX_PLACES = 20000;
-/* Of the size: of steps by which normals are found, and how far roots are known.  Of the mesh's error: the least step inwards, so
-   gaps of less are none. */
+/* About as many samples as there are if the mesh has fewer triangles. */
+static const double MAX_SAMPLES = 20000;
+/* Parts of the size: of steps by which normals are found, and how far roots are known.  A part of the mesh's
+   error: the least step inwards, so gaps of less are none. */
 static const double NORMAL_STEP = 1e-6, ENOUGH = 1e-13, MIN_STEP = 1e-3;
 /* Cosine of 30 degrees: of both sides of a wall. */
 static const double OPPOSITE = 0.8660254037844386;
@@ -41,13 +41,13 @@ static void find_normal(const double corners[3][3], double normal[3])
     cross3(a, b, normal);
 }
 
-static void add_place(Measurer *m, const double corners[3][3], const double normal[3], double area)
+static void add_sample(Measurer *m, const double corners[3][3], const double normal[3], double area)
 {
-    Place place = {.area = area, .wall = INFINITY};
+    Sample sample = {.area = area, .wall = INFINITY};
     for (int k = 0; k < 3; k++)
-        place.at[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
-    memcpy(place.normal, normal, sizeof place.normal);
-    array_push(&m->arena, &m->places, place);
+        sample.at[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
+    memcpy(sample.normal, normal, sizeof sample.normal);
+    array_push(&m->arena, &m->samples, sample);
 }
 
 static void halve_triangle(Measurer *m, const double corners[3][3], const double normal[3],
@@ -56,7 +56,7 @@ static void halve_triangle(Measurer *m, const double corners[3][3], const double
     double length;
     int    k = longest_edge(corners, &length), next = (k + 1) % 3;
     if (length <= spacing) {
-        add_place(m, corners, normal, area);
+        add_sample(m, corners, normal, area);
         return;
     }
     double part[3][3], middle[3];
@@ -93,7 +93,8 @@ static void add_area(Measurer *m, const double corners[3][3], const double norma
     m->measures->area += area;
 }
 
-static void add_places(Measurer *m, const double corners[3][3], const double normal[3], double area)
+static void add_samples(Measurer *m, const double corners[3][3], const double normal[3],
+                        double area)
 {
     halve_triangle(m, corners, normal, area, m->measures->spacing);
 }
@@ -117,66 +118,66 @@ static Searcher searcher_of(const Measurer *m, size_t part)
                       MIN_STEP * m->mesh->error};
 }
 
-/* The place on the surface that a search along the normal found. */
-static void settle_at(const Searcher *s, Place *place, const RootSearch *search)
+/* The sample on the surface that a search along the normal found. */
+static void snap_at(const Searcher *s, Sample *sample, const RootSearch *search)
 {
     double normal[3];
-    add_scaled3(place->at, search->from, search->low, search->along);
-    place->settled = true;
+    add_scaled3(sample->at, search->from, search->low, search->along);
+    sample->snapped = true;
     /* Over an edge the mean of both sides would be neither's. */
-    if (field_normal(s->field, place->at, s->normal_step, normal) &&
-        dot3(normal, place->normal) > 0)
-        memcpy(place->normal, normal, sizeof normal);
+    if (field_normal(s->field, sample->at, s->normal_step, normal) &&
+        dot3(normal, sample->normal) > 0)
+        memcpy(sample->normal, normal, sizeof normal);
 }
 
-/* Moves places that are not settled along their normals to the surface, if it is within reach. */
-static void settle_within(const Searcher *s, Place *places, size_t count, double reach)
+/* Moves samples that are not snapped along their normals to the surface, if it is within reach. */
+static void snap_within(const Searcher *s, Sample *samples, size_t count, double reach)
 {
     RootSearch searches[MAX_FIELD_POINTS];
     bool       found[MAX_FIELD_POINTS];
     double     ends[2][MAX_FIELD_POINTS][3], values[2][MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
         for (int side = 0; side < 2; side++)
-            add_scaled3(ends[side][i], places[i].at, side ? reach : -reach, places[i].normal);
+            add_scaled3(ends[side][i], samples[i].at, side ? reach : -reach, samples[i].normal);
     for (int side = 0; side < 2; side++)
         field_distances(s->field, (const double(*)[3])ends[side], count, values[side]);
     for (size_t i = 0; i < count; i++) {
-        found[i]    = !places[i].settled && values[0][i] <= 0 && values[1][i] > 0;
+        found[i]    = !samples[i].snapped && values[0][i] <= 0 && values[1][i] > 0;
         searches[i] = (RootSearch){.length  = 1,
                                    .high    = 2 * reach,
                                    .at_low  = values[0][i],
                                    .at_high = values[1][i],
                                    .done    = !found[i]};
         memcpy(searches[i].from, ends[0][i], sizeof searches[i].from);
-        memcpy(searches[i].along, places[i].normal, sizeof searches[i].along);
+        memcpy(searches[i].along, samples[i].normal, sizeof searches[i].along);
     }
     find_roots(s->field, searches, count, s->enough);
     for (size_t i = 0; i < count; i++)
         if (found[i])
-            settle_at(s, &places[i], &searches[i]);
+            snap_at(s, &samples[i], &searches[i]);
 }
 
-/* Gives places the surface's position and normal where it is near.  First nearby: behind a thin wall it is outside, too. */
-static void settle(const Searcher *s, Place *places, size_t count)
+/* Gives samples the surface's position and normal where it is near.  First nearby: behind a thin wall it is outside, too. */
+static void snap(const Searcher *s, Sample *samples, size_t count)
 {
     for (double part = 1.0 / 256; part <= 1; part *= 4)
-        settle_within(s, places, count, part * s->reach);
+        snap_within(s, samples, count, part * s->reach);
 }
 
-/* Walks inwards from each place as far as it is inside; `searches` then have where it ends. */
-static void walk_inwards(const Searcher *s, const Place *places, size_t count,
+/* Walks inwards from each sample as far as it is inside; `searches` then have where it ends. */
+static void walk_inwards(const Searcher *s, const Sample *samples, size_t count,
                          RootSearch searches[MAX_FIELD_POINTS])
 {
     enum { MAX_STEPS = 2000 };
     for (size_t i = 0; i < count; i++) {
-        searches[i] = (RootSearch){.length = 1, .high = s->min_step, .done = !places[i].settled};
-        memcpy(searches[i].from, places[i].at, sizeof searches[i].from);
+        searches[i] = (RootSearch){.length = 1, .high = s->min_step, .done = !samples[i].snapped};
+        memcpy(searches[i].from, samples[i].at, sizeof searches[i].from);
         for (int k = 0; k < 3; k++)
-            searches[i].along[k] = -places[i].normal[k];
+            searches[i].along[k] = -samples[i].normal[k];
     }
     bool walking[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
-        walking[i] = places[i].settled;
+        walking[i] = samples[i].snapped;
     for (int step = 0; step < MAX_STEPS; step++) {
         double points[MAX_FIELD_POINTS][3], values[MAX_FIELD_POINTS];
         size_t open[MAX_FIELD_POINTS], left = 0;
@@ -205,72 +206,72 @@ static void walk_inwards(const Searcher *s, const Place *places, size_t count,
         searches[i].done = searches[i].done || walking[i];
 }
 
-static void find_walls(const Searcher *s, Place *places, size_t count)
+static void find_walls(const Searcher *s, Sample *samples, size_t count)
 {
     RootSearch searches[MAX_FIELD_POINTS];
     bool       ends[MAX_FIELD_POINTS];
-    walk_inwards(s, places, count, searches);
+    walk_inwards(s, samples, count, searches);
     for (size_t i = 0; i < count; i++)
         ends[i] = !searches[i].done;
     find_roots(s->field, searches, count, s->enough);
     for (size_t i = 0; i < count; i++) {
         double end[3], normal[3];
-        places[i].wall = INFINITY;
+        samples[i].wall = INFINITY;
         if (!ends[i])
             continue;
         add_scaled3(end, searches[i].from, searches[i].high, searches[i].along);
         if (field_normal(s->field, end, s->normal_step, normal) &&
             dot3(normal, searches[i].along) >= OPPOSITE)
-            places[i].wall = searches[i].high;
+            samples[i].wall = searches[i].high;
     }
 }
 
-static void take_places(void *task, size_t part, size_t parts)
+static void take_samples(void *task, size_t part, size_t parts)
 {
     Measurer *m = task;
     Searcher  s = searcher_of(m, part);
     size_t    i;
     (void)parts;
     while (part < m->parts &&
-           (i = atomic_fetch_add(&m->next, MAX_FIELD_POINTS)) < m->places.count) {
-        size_t left  = m->places.count - i,
+           (i = atomic_fetch_add(&m->next, MAX_FIELD_POINTS)) < m->samples.count) {
+        size_t left  = m->samples.count - i,
                count = left < MAX_FIELD_POINTS ? left : MAX_FIELD_POINTS;
-        settle(&s, m->places.items + i, count);
-        find_walls(&s, m->places.items + i, count);
-        if (!measurer_goes_on(m, part, (double)i / (double)m->places.count))
+        snap(&s, m->samples.items + i, count);
+        find_walls(&s, m->samples.items + i, count);
+        if (!measurer_goes_on(m, part, (double)i / (double)m->samples.count))
             return;
     }
 }
 
 /* ---- the thinnest wall ---- */
 
-/* Looks around a place for a thinner wall, by steps that become shorter.  Neighbours are looked at all at once. */
-static void slide_to_thinnest(const Searcher *s, Place *place, double step)
+/* Looks around a sample for a thinner wall, by steps that become shorter.  Neighbours are looked at all at once. */
+static void slide_to_thinnest(const Searcher *s, Sample *sample, double step)
 {
     enum { DIRECTIONS = 8, HALVINGS = 40, MAX_SLIDES = 200 };
     for (int halvings = 0, slides = 0; halvings < HALVINGS && slides < MAX_SLIDES; slides++) {
-        Place  around[DIRECTIONS];
+        Sample around[DIRECTIONS];
         double u[3], v[3], least[3] = {0};
-        int    axis = fabs(place->normal[0]) < 0.6 ? 0 : fabs(place->normal[1]) < 0.6 ? 1 : 2;
+        int    axis = fabs(sample->normal[0]) < 0.6 ? 0 : fabs(sample->normal[1]) < 0.6 ? 1 : 2;
         int    best = -1;
         least[axis] = 1;
-        cross3(place->normal, least, u);
+        cross3(sample->normal, least, u);
         normalize3(u);
-        cross3(place->normal, u, v);
+        cross3(sample->normal, u, v);
         for (int i = 0; i < DIRECTIONS; i++) {
             double angle      = 2 * M_PI * i / DIRECTIONS;
-            around[i]         = *place;
-            around[i].settled = false;
+            around[i]         = *sample;
+            around[i].snapped = false;
             add_scaled3(around[i].at, around[i].at, step * cos(angle), u);
             add_scaled3(around[i].at, around[i].at, step * sin(angle), v);
         }
-        settle(s, around, DIRECTIONS);
+        snap(s, around, DIRECTIONS);
         find_walls(s, around, DIRECTIONS);
         for (int i = 0; i < DIRECTIONS; i++)
-            if (around[i].wall < (best < 0 ? place->wall : around[best].wall))
+            if (around[i].wall < (best < 0 ? sample->wall : around[best].wall))
                 best = i;
         if (best >= 0) {
-            *place = around[best];
+            *sample = around[best];
         } else {
             step *= 0.5;
             halvings++;
@@ -280,21 +281,21 @@ static void slide_to_thinnest(const Searcher *s, Place *place, double step)
 
 static bool is_thinner(const void *a, const void *b)
 {
-    return ((const Place *)a)->wall < ((const Place *)b)->wall;
+    return ((const Sample *)a)->wall < ((const Sample *)b)->wall;
 }
 
-/* The thinnest of all places that are no neighbours of `count` others; NULL: no further wall. */
-static const Place *thinnest_apart(const Measurer *m, const Place *others, size_t count,
-                                   double apart)
+/* The thinnest of all samples that are no neighbours of `count` others; NULL: no further wall. */
+static const Sample *thinnest_apart(const Measurer *m, const Sample *others, size_t count,
+                                    double apart)
 {
-    const Place *thinnest = NULL;
-    for (size_t i = 0; i < m->places.count; i++) {
-        const Place *place = &m->places.items[i];
-        bool         near  = !isfinite(place->wall);
+    const Sample *thinnest = NULL;
+    for (size_t i = 0; i < m->samples.count; i++) {
+        const Sample *sample = &m->samples.items[i];
+        bool          near   = !isfinite(sample->wall);
         for (size_t k = 0; k < count && !near; k++)
-            near = distance3(place->at, others[k].at) < apart;
-        if (!near && (!thinnest || is_thinner(place, thinnest)))
-            thinnest = place;
+            near = distance3(sample->at, others[k].at) < apart;
+        if (!near && (!thinnest || is_thinner(sample, thinnest)))
+            thinnest = sample;
     }
     return thinnest;
 }
@@ -304,9 +305,9 @@ static void find_thinnest(Measurer *m)
     enum { STARTS = 12 };
     KrsMeasures *measures = m->measures;
     Searcher     s        = searcher_of(m, 0);
-    Place        starts[STARTS];
+    Sample       starts[STARTS];
     size_t       count = 0;
-    for (const Place *next; count < STARTS; count++) {
+    for (const Sample *next; count < STARTS; count++) {
         next = thinnest_apart(m, starts, count, 4 * measures->spacing);
         if (!next)
             break;
@@ -322,20 +323,20 @@ static void find_thinnest(Measurer *m)
     }
 }
 
-void measure_places(Measurer *m)
+void measure_samples(Measurer *m)
 {
     static const double EQUAL    = 1e-6; /* walls as thick as the nozzle are not thinner */
     KrsMeasures        *measures = m->measures;
     measures->wall.thickness     = INFINITY;
     visit_triangles(m, add_area);
-    measures->spacing = 2 * sqrt(measures->area / MAX_PLACES);
-    visit_triangles(m, add_places);
+    measures->spacing = 2 * sqrt(measures->area / MAX_SAMPLES);
+    visit_triangles(m, add_samples);
     atomic_store(&m->next, 0);
-    run_in_parallel(take_places, m);
+    run_in_parallel(take_samples, m);
     if (atomic_load(&m->stopped))
         return;
-    for (size_t i = 0; i < m->places.count; i++)
-        if (m->places.items[i].wall < (1 - EQUAL) * m->options->nozzle)
-            measures->thin_area += m->places.items[i].area;
+    for (size_t i = 0; i < m->samples.count; i++)
+        if (m->samples.items[i].wall < (1 - EQUAL) * m->options->nozzle)
+            measures->thin_area += m->samples.items[i].area;
     find_thinnest(m);
 }

@@ -1,41 +1,41 @@
 /*
- * frame_values.h: where the host puts what depends on the frame alone.
+ * state_values.h: where the host puts what depends on the state alone.
  *
  * Shaders that computed it would do so in every lane.  The host finds it once, in double precision,
  * and packs it into slots of the parameter block.
  */
-#ifndef KRS_FRAME_VALUES_H
-#define KRS_FRAME_VALUES_H
+#ifndef KRS_STATE_VALUES_H
+#define KRS_STATE_VALUES_H
 
 #include "compiler/graph/evaluate.h"
 
 /* A value and the places of its components: numbers of the block, four to a slot.  Truth values are 0
-   or 1, a UINT has its bits there.  What is the same in all frames has no place: shaders save
+   or 1, a UINT has its bits there.  What is the same in all states has no place: shaders save
    operations where they know a constant. */
-typedef struct FrameValue {
+typedef struct StateValue {
     Node     node;
     uint32_t width;
     uint32_t at[4]; /* or NO_PLACE: */
     double   constant[4];
-} FrameValue;
+} StateValue;
 #define NO_PLACE UINT32_MAX
 
-typedef struct FrameValues {
-    FrameValue *items;
+typedef struct StateValues {
+    StateValue *items;
     size_t      count;
     uint32_t    first_slot, slots; /* the first, and how many */
     Tape        tape;              /* of all of them */
-} FrameValues;
+} StateValues;
 
 /* Tells whether shaders read it where it is already: a parameter, or a component of one. */
-bool frame_value_is_given(const Graph *graph, Node node);
+bool state_value_is_given(const Graph *graph, Node node);
 /* Tells whether it only arranges its operands: shaders do that. */
-bool frame_value_is_arranged(const Graph *graph, Node node);
+bool state_value_is_arranged(const Graph *graph, Node node);
 /* Places for `wanted`, or for what those arrange. */
-void frame_values_assign(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,
+void state_values_assign(StateValues *values, const Graph *graph, const Node *wanted, size_t count,
                          Arena *arena, Arena *scratch);
 /* Finds them all; `block` has room for `slots`. */
-void frame_values_find(const FrameValues *values, const NodeValue *parameters, NodeValue *room,
+void state_values_find(const StateValues *values, const NodeValue *parameters, NodeValue *room,
                        float (*block)[4]);
 
 #endif
