@@ -89,7 +89,8 @@ HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(CLIENTS:%.c=$(B)/%.o) $(BRIDGE:%.cpp=$(B)/%.o) $(B)/library_files.o \
-            $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o $(B)/fingerprints.o
+            $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o \
+            $(B)/albedo_tables.o $(B)/fingerprints.o
 
 # Programs of this project are linked with the library's parts; others with the library, which shows its API alone.
 INTERNAL := $(B)/libkrs-internal.a
@@ -196,6 +197,12 @@ $(B)/modules/%-SKY_MAP.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	$(call MAKE_MODULE,SKY_MAP)
 $(B)/modules/%-SKY_MAP-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	$(call MAKE_MODULE,SKY_MAP FRAME_TEXELS)
+# Tables of the light that rough surfaces reflect are means over many points, rounded.
+$(B)/albedo_tables.c: $(B)/albedo_tables
+	@$(B)/albedo_tables >$@
+$(B)/albedo_tables: tools/albedo_tables.c runtime/tracer/albedos.h runtime/shared/blocks.h
+	@mkdir -p $(@D)
+	@$(CC) $(STYLE) $(CPPFLAGS) -O3 -ffast-math $(LDFLAGS) -o $@ $< -lm
 $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
 	@$(CC) $(STYLE) $(CPPFLAGS) -O1 $(LDFLAGS) -o $@ $<

@@ -87,7 +87,7 @@ const float BODY_HEAD_ON = 0.04; // with an index of refraction of 1.5
 
 // The part of light from around that microfacets send back: of those that mirror all, and of those that
 // mirror by Schlick's factor alone.  The first is a fit, off by a tenth at most and 0.03 in root mean
-// square (albedo_table.def has the numbers), the second that of the split-sum integral (Karis 2014).
+// square (albedos.h tells of them), the second that of the split-sum integral (Karis 2014).
 vec2 find_sent_back(float cosine, float roughness)
 {
     float root = sqrt(cosine);

@@ -406,8 +406,8 @@ CONSTANT(LIGHT_POSITIONAL, 1);
 CONSTANT(LIGHT_CASTS_SHADOWS, 2);
 CONSTANT(LIGHT_SPOT, 4);
 CONSTANT(LIGHT_FIRST_TYPE, 8);
-/* Before the lights is albedo_table.def: ALBEDO_SIDE * ALBEDO_SIDE rows.  Behind that are balls,
-   and then anisotropic_albedo_table.def: a row for each cosine, roughness and anisotropy. */
+/* Before the lights are the albedos of albedos.h: ALBEDO_SIDE * ALBEDO_SIDE rows.  Behind them are balls,
+   and then the wide albedos: a row for each cosine, roughness and anisotropy. */
 CONSTANT(ALBEDO_SIDE, 64);
 CONSTANT(ALBEDO_ROWS, 4096);
 CONSTANT(MAX_EMISSIVE, 32); /* KRS_MAX_EMISSIVE */

@@ -4,24 +4,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "runtime/tracer/albedos.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
-
-/* Numbers of albedo_table.def, before the lights. */
-static const float albedos[ALBEDO_ROWS][RESULT_NUMBERS] = {
-#define KRS_ALBEDO(mirrored, at_the_edge, sheen) {mirrored, at_the_edge, sheen, 0},
-#include "runtime/shared/albedo_table.def"
-#undef KRS_ALBEDO
-};
-
-/* The same for microfacets that are wider along a tangent: in thousandths, two rows each. */
-enum { WIDE_SHARES = 8 };
-static const uint16_t wide_albedos[WIDE_ALBEDO_ROWS / 2][2 * WIDE_SHARES] = {
-#define KRS_ALBEDO(...) {__VA_ARGS__},
-#include "runtime/shared/anisotropic_albedo_table.def"
-#undef KRS_ALBEDO
-};
 
 static char *row_of_inputs(const KrsRendering *rendering, uint32_t row)
 {
@@ -33,14 +19,14 @@ static LightBlock *lights_of(const KrsRendering *rendering)
     return (LightBlock *)row_of_inputs(rendering, LIGHTS_AT);
 }
 
-/* Copies the tables of albedos.  The second is in parts of 65535. */
+/* Copies the tables of albedos, which are before the lights.  The second is in parts of 65535. */
 static void set_albedos(const KrsRendering *rendering)
 {
     memcpy(rendering->inputs.bytes, albedos, sizeof albedos);
     char *to = row_of_inputs(rendering, WIDE_ALBEDOS_AT);
-    for (size_t i = 0; i < WIDE_ALBEDO_ROWS / 2; i++) {
-        uint16_t parts[2 * WIDE_SHARES];
-        for (size_t k = 0; k < 2 * WIDE_SHARES; k++)
+    for (size_t i = 0; i < WIDE_ALBEDO_ROWS; i++) {
+        uint16_t parts[2 * WIDE_AZIMUTHS];
+        for (size_t k = 0; k < 2 * WIDE_AZIMUTHS; k++)
             parts[k] = (uint16_t)((wide_albedos[i][k] * UINT16_MAX + 500) / 1000);
         memcpy(to + i * sizeof parts, parts, sizeof parts);
     }

@@ -2,7 +2,7 @@
  * albedo.c: the table of how much light microfacets and sheen reflect, held against integrals in
  * double precision.
  *
- * The table is made of means over visible normals (tools/albedo_table.py).  Here all normals count,
+ * The table is made of means over visible normals (tools/albedo_tables.c).  Here all normals count,
  * by the density of GGX as Walter et al. (2007) write it, with Smith's masking and shadowing; sheen
  * is integrated over the hemisphere of light.
  */
@@ -15,14 +15,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/shared/blocks.h"
+#include "runtime/tracer/albedos.h"
 #include "tests/oracle/brute.h"
-
-static const double table[ALBEDO_ROWS][3] = {
-#define KRS_ALBEDO(mirrored, at_the_edge, sheen) {mirrored, at_the_edge, sheen},
-#include "runtime/shared/albedo_table.def"
-#undef KRS_ALBEDO
-};
 
 enum { MIRRORED, AT_THE_EDGE, SHEEN };
 static const char *const names[] = {"mirrored", "mirrored at the edge", "sheen"};
@@ -81,7 +75,7 @@ static void integrate(double cosine, double roughness, double sums[3])
         }
 }
 
-static size_t compare(const double found[3], double cosine, double roughness, double permitted)
+static size_t compare(const float found[3], double cosine, double roughness, double permitted)
 {
     double right[3];
     size_t wrong = 0;
@@ -102,7 +96,7 @@ static void the_table_is_right(void **state)
     for (int row = 0; row < (int)ALBEDO_SIDE; row++)
         for (int column = 0; column < (int)ALBEDO_SIDE; column++) {
             double cosine = square(column / (ALBEDO_SIDE - 1.0));
-            wrong += compare(table[row * (int)ALBEDO_SIDE + column],
+            wrong += compare(albedos[row * (int)ALBEDO_SIDE + column],
                              fmin(fmax(cosine, 1e-4), 0.999999), row / (ALBEDO_SIDE - 1.0), RIGHT);
         }
     assert_int_equal(wrong, 0);
@@ -111,9 +105,9 @@ static void the_table_is_right(void **state)
 static void a_wrong_number_is_found(void **state)
 {
     (void)state;
-    const double(*middle)  = table[ALBEDO_ROWS / 2 + ALBEDO_SIDE / 2];
+    const float *middle    = albedos[ALBEDO_ROWS / 2 + ALBEDO_SIDE / 2];
     const double roughness = ALBEDO_SIDE / 2 / (ALBEDO_SIDE - 1.0), cosine = square(roughness);
-    const double wrong[3] = {middle[0], middle[1], middle[2] + 0.003};
+    const float  wrong[3] = {middle[0], middle[1], middle[2] + 0.003F};
     assert_int_equal(compare(middle, cosine, roughness, RIGHT), 0);
     assert_int_equal(compare(wrong, cosine, roughness, RIGHT), 1);
 }
@@ -131,8 +125,8 @@ static void the_table_is_fine_enough(void **state)
     size_t wrong = 0;
     for (int row = 0; row + 1 < (int)ALBEDO_SIDE; row++)
         for (int column = 1; column + 1 < (int)ALBEDO_SIDE; column++) { /* no eye is lower */
-            const double(*cell)[3] = &table[row * (int)ALBEDO_SIDE + column];
-            double mean[3];
+            const float(*cell)[RESULT_NUMBERS] = &albedos[row * (int)ALBEDO_SIDE + column];
+            float mean[3];
             for (int i = 0; i < 3; i++)
                 mean[i] = (cell[0][i] + cell[1][i] + cell[ALBEDO_SIDE][i] +
                            cell[ALBEDO_SIDE + 1][i]) /

@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "runtime/shared/blocks.h"
+#include "runtime/tracer/albedos.h"
 #include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
@@ -78,14 +78,6 @@ static void reflect_all(Vec eye, Widths w, int points, double sums[2])
 
 /* ---- The table ---- */
 
-enum { SHARES = 8, AZIMUTHS = 4 };
-
-static const double table[WIDE_ALBEDO_ROWS / 2][2 * SHARES] = {
-#define KRS_ALBEDO(...) {__VA_ARGS__},
-#include "runtime/shared/anisotropic_albedo_table.def"
-#undef KRS_ALBEDO
-};
-
 #define RIGHT 3e-3 /* what may be wrong in the table, of 1 */
 
 static size_t compare_cell(int anisotropy, int roughness, int column)
@@ -95,18 +87,18 @@ static size_t compare_cell(int anisotropy, int roughness, int column)
                                     anisotropy / (WIDE_ANISOTROPIES - 1.0));
     const int    number = (anisotropy * (int)WIDE_ROUGHNESSES + roughness) * (int)WIDE_COSINES +
                        column;
-    const double *shares = &table[number / 2][SHARES * (number % 2)];
-    size_t        wrong  = 0;
-    for (int i = 0; i < AZIMUTHS; i++) {
+    const uint16_t *shares = wide_albedos[number];
+    size_t          wrong  = 0;
+    for (int i = 0; i < WIDE_AZIMUTHS; i++) {
         const double sine = sqrt(1 - square(cosine)), along = sqrt(i / 3.0);
         double       right[2];
         reflect_all(vec(sine * along, sine * sqrt(1 - square(along)), cosine), w, 72, right);
         for (int k = 0; k < 2; k++)
-            if (!(fabs(shares[AZIMUTHS * k + i] / 1000 - right[k]) <= RIGHT)) {
+            if (!(fabs(shares[WIDE_AZIMUTHS * k + i] / 1000.0 - right[k]) <= RIGHT)) {
                 print_message("# cosine %.3f, azimuth %d, roughness %d, anisotropy %d: %.4f "
                               "instead of %.4f\n",
-                              cosine, i, roughness, anisotropy, shares[AZIMUTHS * k + i] / 1000,
-                              right[k]);
+                              cosine, i, roughness, anisotropy,
+                              shares[WIDE_AZIMUTHS * k + i] / 1000.0, right[k]);
                 wrong++;
             }
     }
