@@ -15,6 +15,17 @@ bool sized_take(void *own, size_t own_size, const void *given, size_t size);
 /* Copies a struct to the program, unless `given` is NULL; members that the library does not know become 0. */
 void sized_give(void *given, size_t size, const void *own, size_t own_size);
 
+/* A function that makes something of another by options. */
+#define MADE_BY_OPTIONS(function, Owner, Options, Made)                                        \
+    KrsStatus function##_sized(Owner *owner, const Options *options, size_t size, Made **made) \
+    {                                                                                          \
+        Options own;                                                                           \
+        *made = NULL;                                                                          \
+        if (!sized_take(&own, sizeof own, options, size))                                      \
+            return KRS_BAD_ARGUMENT;                                                           \
+        return function(owner, options ? &own : NULL, made);                                   \
+    }
+
 /* An array of the program, and one of the library to be filled in its stead. */
 typedef struct SizedArray {
     void  *given, *own; /* the same where both know the same members, or there is none */

@@ -83,24 +83,27 @@ ASKED_BY_INDEX(krs_camera_location, const KrsScene, KrsLocation)
 ASKED_BY_INDEX(krs_state_camera, KrsState, KrsCamera)
 ASKED_BY_INDEX(krs_component, const KrsScene, KrsComponent)
 ASKED_BY_INDEX(krs_state_light, KrsState, KrsLight)
+ASKED_BY_INDEX(krs_component_motion, const KrsScene, KrsMotion)
 
-KrsStatus krs_state_sky_sized(KrsState *state, KrsSky *sky, size_t size)
-{
-    KrsSky          own;
-    const KrsStatus status = krs_state_sky(state, &own);
-    if (status == KRS_OK)
-        sized_give(sky, size, &own, sizeof own);
-    return status;
-}
+/* A function that tells the only struct of a state. */
+#define ASKED(function, Struct)                                              \
+    KrsStatus function##_sized(KrsState *state, Struct *answer, size_t size) \
+    {                                                                        \
+        Struct          own;                                                 \
+        const KrsStatus status = function(state, &own);                      \
+        if (status == KRS_OK)                                                \
+            sized_give(answer, size, &own, sizeof own);                      \
+        return status;                                                       \
+    }
+ASKED(krs_state_sky, KrsSky)
+ASKED(krs_state_fog, KrsFog)
 
-KrsStatus krs_state_fog_sized(KrsState *state, KrsFog *fog, size_t size)
-{
-    KrsFog          own;
-    const KrsStatus status = krs_state_fog(state, &own);
-    if (status == KRS_OK)
-        sized_give(fog, size, &own, sizeof own);
-    return status;
-}
+MADE_BY_OPTIONS(krs_mesh, KrsState, KrsMeshOptions, KrsMesh)
+MADE_BY_OPTIONS(krs_mesh_simplify, const KrsMesh, KrsMeshOptions, KrsMesh)
+MADE_BY_OPTIONS(krs_assemble, KrsState, KrsMeshOptions, KrsAssembly)
+MADE_BY_OPTIONS(krs_grid_new, KrsState, KrsGridOptions, KrsGrid)
+MADE_BY_OPTIONS(krs_slicer_new, KrsState, KrsSliceOptions, KrsSlicer)
+MADE_BY_OPTIONS(krs_measure, KrsState, KrsMeasureOptions, KrsMeasures)
 
 KrsStatus krs_text_sized(const KrsScene *scene, KrsTarget target, const KrsTextOptions *options,
                          size_t size, char **text)
@@ -152,78 +155,8 @@ KrsStatus krs_raycast_sized(KrsState *state, const double (*origins)[3],
     return status;
 }
 
-KrsStatus krs_mesh_sized(KrsState *state, const KrsMeshOptions *options, size_t size,
-                         KrsMesh **mesh)
-{
-    KrsMeshOptions own;
-    *mesh = NULL;
-    if (!sized_take(&own, sizeof own, options, size))
-        return KRS_BAD_ARGUMENT;
-    return krs_mesh(state, options ? &own : NULL, mesh);
-}
-
-KrsStatus krs_mesh_simplify_sized(const KrsMesh *mesh, const KrsMeshOptions *options, size_t size,
-                                  KrsMesh **simplified)
-{
-    KrsMeshOptions own;
-    *simplified = NULL;
-    if (!sized_take(&own, sizeof own, options, size))
-        return KRS_BAD_ARGUMENT;
-    return krs_mesh_simplify(mesh, options ? &own : NULL, simplified);
-}
-
-KrsStatus krs_assemble_sized(KrsState *state, const KrsMeshOptions *options, size_t size,
-                             KrsAssembly **assembly)
-{
-    KrsMeshOptions own;
-    *assembly = NULL;
-    if (!sized_take(&own, sizeof own, options, size))
-        return KRS_BAD_ARGUMENT;
-    return krs_assemble(state, options ? &own : NULL, assembly);
-}
-
-KrsStatus krs_component_motion_sized(const KrsScene *scene, size_t index, KrsMotion *motion,
-                                     size_t size)
-{
-    KrsMotion       own;
-    const KrsStatus status = krs_component_motion(scene, index, &own);
-    if (status == KRS_OK)
-        sized_give(motion, size, &own, sizeof own);
-    return status;
-}
-
-KrsStatus krs_grid_new_sized(KrsState *state, const KrsGridOptions *options, size_t size,
-                             KrsGrid **grid)
-{
-    KrsGridOptions own;
-    *grid = NULL;
-    if (!sized_take(&own, sizeof own, options, size))
-        return KRS_BAD_ARGUMENT;
-    return krs_grid_new(state, options ? &own : NULL, grid);
-}
-
 void krs_grid_shape_sized(const KrsGrid *grid, KrsGridShape *shape, size_t size)
 {
     const KrsGridShape own = krs_grid_shape(grid);
     sized_give(shape, size, &own, sizeof own);
-}
-
-KrsStatus krs_slicer_new_sized(KrsState *state, const KrsSliceOptions *options, size_t size,
-                               KrsSlicer **slicer)
-{
-    KrsSliceOptions own;
-    *slicer = NULL;
-    if (!sized_take(&own, sizeof own, options, size))
-        return KRS_BAD_ARGUMENT;
-    return krs_slicer_new(state, options ? &own : NULL, slicer);
-}
-
-KrsStatus krs_measure_sized(KrsState *state, const KrsMeasureOptions *options, size_t size,
-                            KrsMeasures **measures)
-{
-    KrsMeasureOptions own;
-    *measures = NULL;
-    if (!sized_take(&own, sizeof own, options, size))
-        return KRS_BAD_ARGUMENT;
-    return krs_measure(state, options ? &own : NULL, measures);
 }

@@ -53,15 +53,7 @@ KrsStatus krs_render_sized(KrsRendering *rendering, KrsState *state,
     return krs_render(rendering, state, options ? &own : NULL, picture);
 }
 
-KrsStatus krs_film_new_sized(KrsRendering *rendering, const KrsRenderOptions *options, size_t size,
-                             KrsFilm **film)
-{
-    KrsRenderOptions own;
-    *film = NULL;
-    if (!sized_take(&own, sizeof own, options, size))
-        return KRS_BAD_ARGUMENT;
-    return krs_film_new(rendering, options ? &own : NULL, film);
-}
+MADE_BY_OPTIONS(krs_film_new, KrsRendering, KrsRenderOptions, KrsFilm)
 
 KrsStatus krs_film_add_sized(KrsFilm *film, KrsState *state, const KrsCamera *camera, size_t size,
                              uint32_t samples)
