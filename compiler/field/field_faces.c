@@ -10,8 +10,7 @@ bool field_is_lesser(const LaneStep *step) { return step->op == OP_min || step->
 
 static bool is_zero_in(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
 {
-    return range_is_zero(operand & LANE_SCALAR ? range_of(tape->scalars[operand & ~LANE_SCALAR])
-                                               : ranges->ranges[operand]);
+    return range_is_zero(lane_range_at(tape, ranges, operand));
 }
 
 bool field_has_face(const FieldFaces *faces, uint32_t operand)

@@ -22,8 +22,7 @@ typedef struct Finding {
 
 static Range range_of_operand(const Finding *f, uint32_t operand)
 {
-    return operand & LANE_SCALAR ? range_of(f->tape->scalars[operand & ~LANE_SCALAR])
-                                 : f->field->ranges.ranges[operand];
+    return lane_range_at(f->tape, &f->field->ranges, operand);
 }
 
 static bool add_step(Finding *f, int step)

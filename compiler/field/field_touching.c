@@ -53,8 +53,7 @@ typedef struct Forms {
 
 static Range range_of_operand(const Forms *forms, uint32_t operand)
 {
-    return operand & LANE_SCALAR ? range_of(forms->tape->scalars[operand & ~LANE_SCALAR])
-                                 : forms->ranges->ranges[operand];
+    return lane_range_at(forms->tape, forms->ranges, operand);
 }
 
 /* The one that is the lesser or the greater all over the box; NODE_NONE: either may be, or the step is no choice. */

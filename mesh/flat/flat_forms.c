@@ -157,8 +157,7 @@ Range form_range(const Finding *f, const Form *form)
 
 static Range range_of_operand(const Finding *f, uint32_t operand)
 {
-    return operand & LANE_SCALAR ? range_of(f->tape->scalars[operand & ~LANE_SCALAR])
-                                 : f->field->ranges.ranges[operand];
+    return lane_range_at(f->tape, &f->field->ranges, operand);
 }
 
 static Form kink_form(uint32_t operand)

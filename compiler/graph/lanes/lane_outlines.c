@@ -25,12 +25,6 @@ typedef struct View {
     double               farthest; /* the nearest curve is not farther, anywhere */
 } View;
 
-static Range operand_range(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
-{
-    return operand & LANE_SCALAR ? range_of(tape->scalars[operand & ~LANE_SCALAR])
-                                 : ranges->ranges[operand];
-}
-
 /* False: it is no outline, or one does not know how far. */
 static bool look(const LaneTape *tape, const LaneRanges *ranges, size_t step, View *view)
 {
@@ -44,7 +38,7 @@ static bool look(const LaneTape *tape, const LaneRanges *ranges, size_t step, Vi
     view->farthest = range_largest(value);
     double size    = view->farthest;
     for (int k = 0; k < 2; k++) {
-        Range at        = operand_range(tape, ranges, view->call->operands[1][k]);
+        Range at        = lane_range_at(tape, ranges, view->call->operands[1][k]);
         view->middle[k] = 0.5 * (at.low + at.high);
         view->radius    = hypot_upward(view->radius, 0.5 * (at.high - at.low));
         size            = max2(size, range_largest(at));

@@ -18,13 +18,6 @@ static inline const NumberRow *lane_row(const LaneStep *step)
                                                    : OP_CONSTANT];
 }
 
-static inline Range lane_range_at(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
-{
-    if (operand & LANE_SCALAR)
-        return range_of(tape->scalars[operand & ~LANE_SCALAR]);
-    return ranges->ranges[operand];
-}
-
 static inline bool lane_is_sure(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
 {
     if (operand & LANE_SCALAR)

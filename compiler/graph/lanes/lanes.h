@@ -187,11 +187,6 @@ size_t lane_sets(const LaneSet **sets);
 /* For tests: only this one is used, by all threads; NULL: the best. */
 void lane_use_set(const LaneSet *set);
 
-/* The derivatives of output 0 by central differences, as normals of queries are found; its values,
-   unless NULL. */
-void lane_gradients(const LaneTape *tape, const LaneWork *work, const double (*points)[3],
-                    size_t count, double (*gradients)[3], double *values);
-
 /* ---- boxes ---- */
 
 /* The ranges of values over a box, by one thread.  `sure`: it is a number in every point of the box. */
@@ -219,6 +214,14 @@ Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box);
 Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box box);
 /* Returns the range of an output, after a run. */
 Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output);
+
+/* Returns the range of an operand, which may be a scalar, after a run. */
+static inline Range lane_range_at(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
+{
+    if (operand & LANE_SCALAR)
+        return range_of(tape->scalars[operand & ~LANE_SCALAR]);
+    return ranges->ranges[operand];
+}
 
 /* Ranges of the derivatives of a value by x, y and z. */
 typedef struct LaneSlope {
