@@ -263,9 +263,6 @@ void state_tables_free(KrsState *state);
 void state_tables_change(KrsState *state);
 void state_tables_refresh(const KrsState *state);
 
-/* The distance of a component, counted from 1, or of all (0), cut by the zones; state_refresh_points
-   was called before. */
-double state_component_distance(KrsState *state, size_t component, const double point[3]);
 /* The component that is nearest, counted from 1; 0: there is none. */
 uint32_t state_nearest_component(KrsState *state, const double point[3]);
 /* A value of the state, used by points or the view, that is not finite; NODE_NONE: there is

@@ -62,16 +62,6 @@ static double distance_at(KrsState *state, const double point[3], uint32_t *near
     return distance_by(state, &state->tapes.distance, point, nearest);
 }
 
-double state_component_distance(KrsState *state, size_t component, const double point[3])
-{
-    uint32_t nearest  = 0;
-    double   distance = distance_at(state, point, &nearest);
-    if (component == 0)
-        return distance;
-    return fmax(state->values[distance_root(&state->scene->roots, component - 1)].v[0],
-                zone_depth(state, point));
-}
-
 uint32_t state_nearest_component(KrsState *state, const double point[3])
 {
     uint32_t nearest = 0;

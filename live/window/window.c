@@ -287,11 +287,6 @@ bool window_key_is_held(const Window *window, int key)
     return !gui_has_keys() && !gui_navigates() && glfwGetKey(window->glfw, key) == GLFW_PRESS;
 }
 
-void window_set_title(Window *window, const char *title)
-{
-    glfwSetWindowTitle(window->glfw, title);
-}
-
 void window_navigate(Window *window)
 {
     (void)window;

@@ -50,7 +50,6 @@ void window_size(const Window *window, uint32_t *width, uint32_t *height);
 /* Where the mouse is, in parts of the picture's width and height from its top left. */
 void window_mouse(const Window *window, double *x, double *y);
 bool window_key_is_held(const Window *window, int key);
-void window_set_title(Window *window, const char *title);
 /* Keys go to the panel from now on, until F2 or Esc. */
 void window_navigate(Window *window);
 void window_copy(Window *window, const char *text); /* to the clipboard */

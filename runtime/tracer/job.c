@@ -19,11 +19,6 @@ bool job_refuse(Job *job, const char *words)
     return false;
 }
 
-double job_pixel(const Job *job, double distance)
-{
-    return view_width(&job->view.camera, job->rays, job->options.height, distance);
-}
-
 const Shader *job_pixel_shader(const Job *job, PixelShader shader)
 {
     return &job->rendering->renderer->pixels[job->rendering->rays][shader];

@@ -71,8 +71,6 @@ bool job_refuse(Job *job, const char *words);
 /* Reads a state: lights, parameters, and the camera or the rays of a list.  `camera` may be NULL
    for that of the options, which must be complete (settings.h). */
 bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera);
-/* The width at a distance: of a pixel in the middle of the picture, or of a ray of the list. */
-double job_pixel(const Job *job, double distance);
 /* The shader without a scene for the rays of this frame. */
 const Shader *job_pixel_shader(const Job *job, PixelShader shader);
 /* Tells whether beams march the empty space that the rays of a tile share. */
