@@ -74,7 +74,6 @@ static KrsStatus check_file(const Gridding *gridding, const char *path)
 {
     const Options    *options = gridding->options;
     const GridFormat *format  = grid_format(path);
-    OutputError       error;
     if (!format)
         return say_usage(options, "`%s` is no grid: its name must end in " GRID_ENDINGS, path);
     if (options->grid_material && !format->has_material)
@@ -86,11 +85,7 @@ static KrsStatus check_file(const Gridding *gridding, const char *path)
         if (output_is_same(options->outputs.items[i], path))
             return say_usage(options, "`%s` and `%s` are one file", options->outputs.items[i],
                              path);
-    KrsStatus status = check_scene_not_overwritten(options, path);
-    if (status == KRS_OK && output_check(path, &error) != KRS_OK) {
-        say("%s", error.message);
-        status = error.status;
-    }
+    KrsStatus status = check_output(options, path);
     if (status == KRS_OK && format->begin == grid_begin_vdb)
         status = grid_check_vdb(path);
     return status;

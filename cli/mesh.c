@@ -269,7 +269,6 @@ KrsStatus check_mesh_outputs(const Meshing *meshing)
 {
     for (size_t i = 0; i < output_count(meshing); i++) {
         const char *path = output_path(meshing, i);
-        OutputError error;
         if (!mesh_format(path))
             return say_usage(meshing->options,
                              "`%s` is no mesh: its name must end in " MESH_ENDINGS, path);
@@ -279,13 +278,9 @@ KrsStatus check_mesh_outputs(const Meshing *meshing)
         if (copies_in(meshing->options, mesh_format(path)) == COPIES_INSTANCES &&
             !mesh_format(path)->has_copies)
             return say_usage(meshing->options, "`%s` has no instances; .glb and .3mf have", path);
-        KrsStatus status = check_scene_not_overwritten(meshing->options, path);
+        KrsStatus status = check_output(meshing->options, path);
         if (status != KRS_OK)
             return status;
-        if (output_check(path, &error) != KRS_OK) {
-            say("%s", error.message);
-            return error.status;
-        }
     }
     return KRS_OK;
 }

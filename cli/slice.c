@@ -82,12 +82,11 @@ static bool are_one_output(const Options *options, const char *a, const char *b)
     return one;
 }
 
-static KrsStatus check_output(const Slicing *slicing, const char *path)
+static KrsStatus check_section(const Slicing *slicing, const char *path)
 {
     const Options     *options = slicing->options;
     const SliceFormat *format  = slice_format(path);
     const char        *first   = numbered_path(options, path, 1);
-    OutputError        error;
     if (!format)
         return say_usage(options, "`%s` is no section: its name must end in " SLICE_ENDINGS, path);
     if (frame_places(path) > 1)
@@ -104,12 +103,7 @@ static KrsStatus check_output(const Slicing *slicing, const char *path)
         return say_usage(
             options, "`%s` would have one layer; with %%04d in its name there is a file for each",
             path);
-    KrsStatus status = check_scene_not_overwritten(options, first);
-    if (status == KRS_OK && output_check(first, &error) != KRS_OK) {
-        say("%s", error.message);
-        status = error.status;
-    }
-    return status;
+    return check_output(options, first);
 }
 
 static KrsStatus check_options(Slicing *slicing)
@@ -125,7 +119,7 @@ static KrsStatus check_options(Slicing *slicing)
     slicing->outputs      = arena_new_array(options->arena, SliceOutput, slicing->output_count);
     for (size_t i = 0; i < slicing->output_count && status == KRS_OK; i++) {
         const char *path    = output_name(slicing, i);
-        status              = check_output(slicing, path);
+        status              = check_section(slicing, path);
         slicing->outputs[i] = (SliceOutput){slice_format(path), path, NULL};
     }
     return status;

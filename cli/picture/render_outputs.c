@@ -95,16 +95,11 @@ static KrsStatus check_outputs(const Render *render)
         return raw;
     for (size_t i = 0; i < render->output_count; i++) {
         const char *path = frame_path(options, render->outputs[i], options->first_frame);
-        OutputError error;
         KrsStatus   status = check_name(render, i);
         if (status == KRS_OK)
-            status = check_scene_not_overwritten(options, path);
+            status = check_output(options, path);
         if (status != KRS_OK)
             return status;
-        if (output_check(path, &error) != KRS_OK) {
-            say("%s", error.message);
-            return error.status;
-        }
     }
     return KRS_OK;
 }

@@ -26,6 +26,8 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
 KrsStatus scene_readable(const Options *options, const char *path);
 /* KRS_OK, or wrong usage and words: `output` is the file that is read, by whatever name. */
 KrsStatus check_scene_not_overwritten(const Options *options, const char *output);
+/* The same, and KRS_IO_ERROR and words where the output cannot be written. */
+KrsStatus check_output(const Options *options, const char *output);
 
 /* Prints diagnostics as they come, and counts them. */
 typedef struct DiagnosticSink {

@@ -13,6 +13,7 @@
 #include "cli/shell/console.h"
 #include "cli/shell/input.h"
 #include "cli/shell/supervise.h"
+#include "runtime/writer/atomic.h"
 
 /* "error[E0203]: message" of the first line; the rest is drawn in ASCII and stays plain. */
 static void print_colored(const KrsDiagnostic *diagnostic)
@@ -129,6 +130,16 @@ KrsStatus check_scene_not_overwritten(const Options *options, const char *output
         from.st_dev != to.st_dev || from.st_ino != to.st_ino)
         return KRS_OK;
     return say_usage(options, "the output `%s` would take the place of `%s`", output, path);
+}
+
+KrsStatus check_output(const Options *options, const char *output)
+{
+    OutputError error;
+    KrsStatus   status = check_scene_not_overwritten(options, output);
+    if (status != KRS_OK || output_check(output, &error) == KRS_OK)
+        return status;
+    say("%s", error.message);
+    return error.status;
 }
 
 KrsStatus say_status(KrsStatus status, const char *path)
