@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <signal.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -16,28 +15,12 @@
 #include "cli/picture/cryptomatte.h"
 #include "cli/shell/supervise.h"
 #include "runtime/writer/exr.h"
+#include "runtime/writer/picture_aovs.h"
 #include "runtime/writer/png.h"
 
-/* An array of KrsPicture: how many numbers it has per pixel, and the channel of an EXR for each. */
-typedef struct PlaneArray {
-    KrsAov      aov;
-    size_t      offset, numbers;
-    SampleType  type;
-    const char *channels[4];
-} PlaneArray;
-
-static const PlaneArray plane_arrays[] = {
-#define KRS_AOV(id, bit, aov, about, arrays) arrays
-#define KRS_ARRAY(aov, member, type, numbers, row, first, sample, ...) \
-    {KRS_AOV_##aov, offsetof(KrsPicture, member), numbers, SAMPLE_##sample, {__VA_ARGS__}},
-#include "krs/aovs.def"
-#undef KRS_ARRAY
-};
-#undef KRS_AOV
 enum {
-    PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays,
-    CHANNELS     = 4 * PLANE_ARRAYS + MATTE_CHANNELS, /* at most */
-    TEXTS        = 8 + MATTE_TEXTS
+    CHANNELS = AOV_CHANNELS + MATTE_CHANNELS, /* at most */
+    TEXTS    = 8 + MATTE_TEXTS
 };
 
 FileForm file_form(const char *path)
@@ -123,25 +106,6 @@ static size_t collect_texts(const Options *options, const KrsPicture *source,
     return count;
 }
 
-static size_t collect_channels(const Options *options, const KrsPicture *source,
-                               PictureChannel channels[CHANNELS])
-{
-    size_t count = 0;
-    for (size_t i = 0; i < PLANE_ARRAYS; i++) {
-        const PlaneArray *array = &plane_arrays[i];
-        if (!(array->aov & picture_aovs(options, true)))
-            continue;
-        const char *samples; /* floats and integers alike: the pointer is taken as bytes */
-        memcpy(&samples, (const char *)source + array->offset, sizeof samples);
-        for (size_t k = 0; samples && k < array->numbers; k++)
-            channels[count++] = (PictureChannel){.name    = array->channels[k],
-                                                 .type    = array->type,
-                                                 .samples = samples + k * sizeof(float),
-                                                 .stride  = array->numbers};
-    }
-    return count;
-}
-
 typedef struct Contents {
     const Options *options;
     const Picture *picture;
@@ -221,7 +185,7 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
     memcpy(to_camera.m, source->world_to_camera, sizeof to_camera.m);
     memcpy(to_ndc.m, source->world_to_ndc, sizeof to_ndc.m);
     picture->channels        = channels;
-    picture->channel_count   = collect_channels(options, source, channels);
+    picture->channel_count   = aov_channels(source, picture_aovs(options, true), channels);
     picture->world_to_camera = options->stereo >= 0 ? NULL : &to_camera; /* there are two cameras */
     picture->world_to_ndc    = options->stereo >= 0 ? NULL : &to_ndc;
     for (size_t i = 0; i < groups->channel_count; i++)

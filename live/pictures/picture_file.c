@@ -3,57 +3,24 @@
  */
 #include "live/pictures/picture_file.h"
 
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "runtime/writer/exr.h"
+#include "runtime/writer/picture_aovs.h"
 #include "runtime/writer/png.h"
-
-/* An array of KrsPicture: how many numbers a pixel has, and the channel of an EXR for each. */
-typedef struct PlaneArray {
-    size_t      offset, numbers;
-    SampleType  type;
-    const char *channels[4];
-} PlaneArray;
-
-static const PlaneArray plane_arrays[] = {
-#define KRS_AOV(id, bit, aov, about, arrays) arrays
-#define KRS_ARRAY(aov, member, type, numbers, row, first, sample, ...) \
-    {offsetof(KrsPicture, member), numbers, SAMPLE_##sample, {__VA_ARGS__}},
-#include "krs/aovs.def"
-#undef KRS_ARRAY
-#undef KRS_AOV
-};
-enum { PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays, CHANNELS = 4 * PLANE_ARRAYS };
-
-static size_t collect_channels(const KrsPicture *picture, PictureChannel channels[CHANNELS])
-{
-    size_t count = 0;
-    for (size_t i = 0; i < PLANE_ARRAYS; i++) {
-        const PlaneArray *array = &plane_arrays[i];
-        const char       *samples; /* floats and integers alike: the pointer is taken as bytes */
-        memcpy(&samples, (const char *)picture + array->offset, sizeof samples);
-        for (size_t k = 0; samples && k < array->numbers; k++)
-            channels[count++] = (PictureChannel){.name    = array->channels[k],
-                                                 .type    = array->type,
-                                                 .samples = samples + k * sizeof(float),
-                                                 .stride  = array->numbers};
-    }
-    return count;
-}
 
 static bool write_exr(Picture *file, const KrsPicture *picture, OutputFile *output,
                       OutputError *error)
 {
-    PictureChannel channels[CHANNELS];
+    PictureChannel channels[AOV_CHANNELS];
     PictureMatrix  to_camera, to_ndc;
     memcpy(to_camera.m, picture->world_to_camera, sizeof to_camera.m);
     memcpy(to_ndc.m, picture->world_to_ndc, sizeof to_ndc.m);
     file->channels        = channels;
-    file->channel_count   = collect_channels(picture, channels);
+    file->channel_count   = aov_channels(picture, UINT32_MAX, channels);
     file->world_to_camera = &to_camera;
     file->world_to_ndc    = &to_ndc;
     return exr_write(file, output, error);
