@@ -304,7 +304,8 @@ static bool find_secondary(Preview *p)
     if (!needs_secondary(p->job))
         return true;
     p->by_roots  = rendering_has_roots(p->job->rendering, options->methods.trace);
-    p->secondary = rendering_secondary(p->job->rendering, options->methods.schedule, p->by_roots);
+    p->secondary = rendering_secondary(p->job->rendering, options->methods.schedule, p->by_roots,
+                                       job_light_meets_planes(p->job));
     if (!options->no_occlusion)
         p->occluders = rendering_occluders(p->job->rendering);
     return p->secondary && (options->no_occlusion || p->occluders);

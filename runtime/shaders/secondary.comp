@@ -11,6 +11,9 @@
  * is empty.  Then all points of the light are visible, from the pixels around as well.
  *
  * STEPS: there is krs_steps, by which rays go from root to root of what has any.
+ *
+ * PLANES: distances leave out planes.  What starts outside of a plane, and does not fall towards it,
+ * never meets it.  Else a ray is marched up to there, and ends blocked.  The box is that around all else.
  */
 #ifndef REFILL // chosen by the renderer; this choice suits every device
 #define REFILL 0
@@ -70,6 +73,10 @@ HitPoint hit;
 vec3  start, direction; // the next distance is evaluated at start + t direction
 float t;
 float end;         // of the ray
+float free_start;  // nothing is before
+#ifdef PLANES
+float plane_t;     // where the ray meets a plane before it ends; INFINITE: nowhere
+#endif
 float facing;      // cosine between the normal and the direction
 float lift;        // height of the start above the surface
 bool  is_cone;     // else a ray
@@ -97,11 +104,21 @@ void begin_ray(vec3 normal, vec3 toward)
 {
     direction = toward;
     facing = dot(normal, direction);
-    float box_end = clip_ray(start, direction, end).y;
+    free_start = 0.0;
+#ifdef PLANES
+    plane_t = max(krs_plane_t(start, direction), 0.0);
+    plane_t = plane_t < end ? plane_t : INFINITE;
+    end = min(end, plane_t);
+#endif
+    vec2 range = clip_ray(start, direction, end);
     // A ray from inside of a solid that reaches the box around all solids has met a wall there.
-    blocked = (hit.side < 0.0 || is_in_medium()) && box_end < end;
-    end = min(end, box_end);
+    blocked = (hit.side < 0.0 || is_in_medium()) && range.y < end;
+    end = min(end, range.y);
     step_limit = blocked || below_horizon ? 0u : MAX_STEPS;
+#ifdef PLANES
+    free_start = range.x;
+    step_limit = free_start < end ? step_limit : 0u;
+#endif
 }
 
 // A point of the unit square, for the light or the hemisphere of the dispatch.
@@ -154,7 +171,11 @@ void aim_at_light(vec3 normal, vec2 square, vec2 disc)
         spread = radius / light_distance;
         margin = CONE_MARGIN * hit.width / turned;
         end = min(to_light, find_end_of_cone());
+        free_start = 0.0;
         blocked = blocked || facing <= 2.0 * spread;
+#ifdef PLANES
+        blocked = blocked || krs_plane_cosine(direction) < 1.01 * spread + 1e-6;
+#endif
         step_limit = blocked ? 0u : MAX_STEPS;
     }
 }
@@ -250,7 +271,7 @@ void begin_item(uint number, bool saved)
 #endif
     blocked = blocked || !exists;
     step_limit = exists ? step_limit : 0u;
-    t = 0.0;
+    t = free_start;
     slope = facing;
     step_count = 0u;
     last_distance = last_step = 0.0;
@@ -325,7 +346,7 @@ float hurry(float distance)
 #ifdef PATH_RAYS
     return 0.0;
 #else
-    bool recedes = control.phase == RAYS_OVER_HEMISPHERE && distance > last_distance;
+    bool recedes = control.phase == RAYS_OVER_HEMISPHERE && last_step > 0.0 && distance > last_distance;
     return recedes ? (t > FAR_REACHES * frame.occlusion_reach ? 1.0 : MIN_OF_LENGTH) * t : 0.0;
 #endif
 }
@@ -340,6 +361,9 @@ void take_distance(float distance)
     step_count++;
     float first = clamp(distance / lift, 0.0625, 1.0);
     start_ratio = step_count == 1u ? first : start_ratio;
+#ifdef PLANES // distances do not tell of the plane that it starts at
+    slope = step_count == 1u && distance > 2.0 * lift ? -1.0 : slope;
+#endif
 #ifdef PATH_RAYS // rounding may put it behind the surface where it starts, as in trace.comp
     if (last_step == 0.0 && is_blocked(distance) && t <= LEAVING_IN_PIXELS * hit.width) {
         t += max(t, lift);
@@ -400,6 +424,12 @@ void list_occluder()
 void end_ray()
 {
     unresolved += step_limit > 0u ? 1u : 0u;
+#ifdef PLANES
+    if (!blocked && plane_t < INFINITE) {
+        blocked = true;
+        t = plane_t;
+    }
+#endif
 #ifdef PATH_RAYS
     if (!blocked && !below_horizon)
         add_light_to(row, index_of(pixel_of(hit.slot)), clamped(added));
