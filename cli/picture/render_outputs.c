@@ -94,7 +94,7 @@ static KrsStatus check_outputs(const Render *render)
     if (raw != KRS_OK)
         return raw;
     for (size_t i = 0; i < render->output_count; i++) {
-        const char *path = frame_path(options, render->outputs[i], options->first_frame);
+        const char *path   = frame_path(options, render->outputs[i], options->first_frame);
         KrsStatus   status = check_name(render, i);
         if (status == KRS_OK)
             status = check_output(options, path);

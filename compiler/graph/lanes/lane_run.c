@@ -145,4 +145,3 @@ void lane_run(const LaneTape *tape, const LaneWork *work, LanePrecision precisio
                 results[(begin + i) * outputs + k] = output_at(tape, work, precision, first + k, i);
     }
 }
-
