@@ -59,8 +59,8 @@ static bool find_direction(const Cube *cube, double direction[3])
     return normalize3(direction);
 }
 
-/* Whether distances inside, or those outside, are linear along a direction; and their slope: a bound may have another
-   one on each side. */
+/* Tells whether distances inside, or those outside, are linear along a direction; and their slope: a bound may
+   have another one on each side. */
 static bool is_side_straight(const Cube *cube, const double direction[3], bool inside,
                              double *slope)
 {

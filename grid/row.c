@@ -39,8 +39,8 @@ static Box asked_box(const Row *row, Box box)
     return box;
 }
 
-/* Whether all of the box is farther from the surface than what is near, by the distance at its middle, which changes no
-   faster than points move, or by its range. */
+/* Tells whether all of the box is farther from the surface than what is near, by the distance at its middle, which
+   changes no faster than points move, or by its range. */
 static bool is_far(const Row *row, Box box, double *distance)
 {
     double middle[3], half[3], near = row->grid->near;

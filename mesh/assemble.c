@@ -22,7 +22,7 @@ typedef struct Assembler {
     KrsAssembly          *to;
     ReachSearch           search;
     double               *scales;         /* of items: how much larger a copy is, at most */
-    bool                 *apart;          /* of the components that are lowered: taken apart */
+    bool                 *separate;       /* of the components that are lowered: taken apart */
     size_t                meshed, meshes; /* for the fraction of the work */
 } Assembler;
 
@@ -81,8 +81,8 @@ static bool copy_items(Assembler *a)
                                      sizeof *to->transforms);
     a->search.bounds = calloc(items + 2, sizeof *a->search.bounds);
     a->scales        = calloc(items + 2, sizeof *a->scales);
-    a->apart         = calloc(components + 1, sizeof *a->apart);
-    if (!to->items || !to->transforms || !a->search.bounds || !a->scales || !a->apart)
+    a->separate      = calloc(components + 1, sizeof *a->separate);
+    if (!to->items || !to->transforms || !a->search.bounds || !a->scales || !a->separate)
         return false;
     to->item_count      = items;
     to->transform_count = a->from->transforms.count;
@@ -112,7 +112,7 @@ static bool is_cut(Assembler *a, const AssemblyTransform *transform)
     return reach_along(&a->search, transform->item, similarity_identity, normal, most) > most;
 }
 
-/* Whether an item, or one that it is made of, is cut; `asked` has answers + 1. */
+/* Tells whether an item, or one that it is made of, is cut; `asked` has answers + 1. */
 static bool has_cuts(Assembler *a, size_t number, char *asked)
 {
     const AssemblyItem *item = &a->from->items.items[number];
@@ -139,10 +139,10 @@ static bool choose_components(Assembler *a, char *asked)
     const uint32_t *of_component = a->from->of_component;
     bool            any          = false;
     for (size_t i = 0; i < a->state->scene->component_count; i++) {
-        a->apart[i] = is_wanted(a, i) && of_component[i] != NO_ITEM &&
-                      !isinf(a->search.bounds[of_component[i]].ball.radius) &&
-                      !has_cuts(a, of_component[i], asked);
-        any = any || a->apart[i];
+        a->separate[i] = is_wanted(a, i) && of_component[i] != NO_ITEM &&
+                         !isinf(a->search.bounds[of_component[i]].ball.radius) &&
+                         !has_cuts(a, of_component[i], asked);
+        any = any || a->separate[i];
     }
     return any;
 }
@@ -162,10 +162,10 @@ static void add_last_items(Assembler *a)
     KrsAssembly *to    = a->to;
     size_t       first = to->transform_count;
     for (size_t i = 0; i < a->state->scene->component_count; i++)
-        if (a->apart[i])
+        if (a->separate[i])
             place_still(to, a->from->of_component[i]);
     for (size_t i = 0; i < a->state->scene->component_count; i++)
-        if (is_wanted(a, i) && !a->apart[i]) {
+        if (is_wanted(a, i) && !a->separate[i]) {
             place_still(to, to->item_count++);
             break;
         }
@@ -237,7 +237,7 @@ static KrsStatus mesh_rest(Assembler *a, size_t number)
     bool           *wanted = calloc(scene->component_count + 1, sizeof *wanted);
     KrsStatus       status = KRS_OUT_OF_MEMORY;
     for (size_t i = 0; wanted && i < scene->component_count; i++)
-        wanted[i] = is_wanted(a, i) && !a->apart[i];
+        wanted[i] = is_wanted(a, i) && !a->separate[i];
     if (wanted && solid.roots) {
         solid_of_components(scene, wanted, &solid);
         status = mesh_item(a, number, &solid);
@@ -287,7 +287,7 @@ static void find_box(Assembler *a)
 static bool stands_still(const Assembler *a)
 {
     for (size_t i = 0; a->from->motions && i < a->state->scene->component_count; i++)
-        if (is_wanted(a, i) && !(a->apart && a->apart[i]) && a->from->motions[i].moves)
+        if (is_wanted(a, i) && !(a->separate && a->separate[i]) && a->from->motions[i].moves)
             return true;
     return false;
 }
@@ -340,11 +340,11 @@ KrsStatus krs_assemble(KrsState *state, const KrsMeshOptions *options, KrsAssemb
         krs_assembly_free(a.to);
     free(a.search.bounds);
     free(a.scales);
-    free(a.apart);
+    free(a.separate);
     return status;
 }
 
-/* Whether a mirror cuts what a copy is made of. */
+/* Tells whether a mirror cuts what a copy is made of. */
 static bool any_is_cut(Assembler *a)
 {
     for (size_t i = 0; i < a->to->item_count; i++)

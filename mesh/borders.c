@@ -205,7 +205,7 @@ static void ask(const Look *look)
         atomic_store(&b->stopped, true);
 }
 
-/* Whether another material is somewhere than in the middle. */
+/* Tells whether another material is somewhere than in the middle. */
 static bool has_two(Look *look)
 {
     static const Row MIDDLE = {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 0};

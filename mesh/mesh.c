@@ -14,9 +14,9 @@
 
 static const double DEFAULT_ERROR = 1.0 / 200, MIN_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */
-/* Errors besides, at each turn: tetrahedra lie otherwise then. */
-enum { TURNS = 3 };
-static const double MORE_SIDE[TURNS] = {4, 6, 9.5};
+/* Errors besides, at each attempt: tetrahedra lie otherwise then. */
+enum { ATTEMPTS = 3 };
+static const double MORE_SIDE[ATTEMPTS] = {4, 6, 9.5};
 /* The part of the error that is for leaving out triangles. */
 static const double SPARED = 0.5;
 
@@ -117,7 +117,7 @@ static void count_handles(Mesher *m)
     m->handles = count;
 }
 
-/* Whether triangles may be as few as the shape permits. */
+/* Tells whether triangles may be as few as the shape permits. */
 static bool may_be_few(const Mesher *m)
 {
     return !m->options->even && (m->solid->plain || m->solid->steps || m->options->shape);
@@ -168,7 +168,7 @@ static KrsStatus run(Mesher *m, KrsState *state, KrsMesh **mesh)
     return status;
 }
 
-static bool options_are_valid(Mesher *m, int turn)
+static bool options_are_valid(Mesher *m, int attempt)
 {
     const KrsMeshOptions *options = m->options;
     double                longest = 0;
@@ -177,7 +177,7 @@ static bool options_are_valid(Mesher *m, int turn)
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, m->high[k] - m->low[k]);
     m->error  = options->error > 0 ? options->error : DEFAULT_ERROR * longest;
-    m->side   = CUBE_SIDE * longest + MORE_SIDE[turn] * m->error;
+    m->side   = CUBE_SIDE * longest + MORE_SIDE[attempt] * m->error;
     m->spared = options->simplify && may_be_few(m) ? SPARED * m->error : 0;
     return is_nothing(m) || m->error >= MIN_ERROR * m->side;
 }
@@ -225,8 +225,8 @@ static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh
 }
 
 /* `*spared`: of the error, for leaving out triangles; `*handles`: as of Mesher. */
-static KrsStatus mesh_in_turn(KrsState *state, const KrsMeshOptions *options,
-                              const MeshSolid *solid, int turn, KrsMesh **mesh, double *spared,
+static KrsStatus mesh_attempt(KrsState *state, const KrsMeshOptions *options,
+                              const MeshSolid *solid, int attempt, KrsMesh **mesh, double *spared,
                               size_t *handles)
 {
     Mesher *m = calloc(1, sizeof *m);
@@ -238,7 +238,7 @@ static KrsStatus mesh_in_turn(KrsState *state, const KrsMeshOptions *options,
     m->memory.used   = 0;
     m->memory.limit  = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
     m->arena.memory  = &m->memory;
-    KrsStatus status = options_are_valid(m, turn) ? run(m, state, mesh) : KRS_BAD_ARGUMENT;
+    KrsStatus status = options_are_valid(m, attempt) ? run(m, state, mesh) : KRS_BAD_ARGUMENT;
     *spared          = m->spared;
     *handles         = m->handles;
     close_mesher(m);
@@ -255,10 +255,10 @@ static KrsStatus mesh_once(KrsState *state, const KrsMeshOptions *options, const
     double         spared  = 0;
     size_t         handles = 1;
     *mesh                  = NULL;
-    for (int turn = 0; turn < TURNS && status == KRS_OK && handles > 0; turn++) {
+    for (int attempt = 0; attempt < ATTEMPTS && status == KRS_OK && handles > 0; attempt++) {
         krs_mesh_free(*mesh);
         *mesh  = NULL;
-        status = mesh_in_turn(state, &these, solid, turn, mesh, &spared, &handles);
+        status = mesh_attempt(state, &these, solid, attempt, mesh, &spared, &handles);
     }
     return status == KRS_OK && spared > 0 ? leave_out(options, spared, mesh) : status;
 }

@@ -17,7 +17,7 @@
 #include "mesh/proof/bounds.h"
 #include "mesh/proof/draft.h"
 
-enum { PATIENCE = 16 }; /* groups between two questions */
+enum { ASK_EVERY = 16 }; /* groups between two questions */
 /* The cube's corner is nowhere in particular, so that planes of the scene seldom have points of the
    grid. */
 static const double CUBE_CORNER[3] = {0.04417, 0.04731, 0.04553};
@@ -151,7 +151,7 @@ static void work_on_groups(void *task, size_t part, size_t parts)
         size_t next = atomic_fetch_add(&m->next_group, 1);
         if (next >= m->groups.list.count)
             return;
-        if (part == 0 && asked++ % PATIENCE == 0) {
+        if (part == 0 && asked++ % ASK_EVERY == 0) {
             advance(m, (double)next / (double)m->groups.list.count);
             if (!is_wanted(m))
                 atomic_store(&m->stopped, true);
@@ -183,7 +183,7 @@ static const double MIN_OFF_SURFACE = 1;
    tell. */
 static const double OFF_SURFACE = 0.15;
 
-/* Whether its mesh passes near the surface, or it is too small to be bisected for that. */
+/* Tells whether its mesh passes near the surface, or it is too small to be bisected for that. */
 static bool is_near_surface(const Mesher *m, const Tet *tet)
 {
     return tet->triangle_count == 0 ||

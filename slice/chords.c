@@ -134,8 +134,8 @@ static void note_crossing(Section *s, const uint32_t at[2], int axis, uint32_t s
     }
 }
 
-/* Whether the border of a cell, counter-clockwise, leaves the solid at a crossing: x grows along the lower edge, y
-   along the right one. */
+/* Tells whether the border of a cell, counter-clockwise, leaves the solid at a crossing: x grows along the lower
+   edge, y along the right one. */
 static bool is_exit(const Cell *cell, const Crossing *crossing)
 {
     bool ahead = crossing->axis == 0 ? crossing->at[1] == cell->at[1]

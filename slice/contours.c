@@ -74,7 +74,8 @@ static bool is_crumb(Section *s, const OutlinePoint *points, size_t count)
     return crumb;
 }
 
-/* Whether a contour is one of rounding, where nothing thin was found; or of what is thinner than what is looked for. */
+/* Tells whether a contour is one of rounding, where nothing thin was found; or of what is thinner than what is
+   looked for. */
 static bool is_dust(Section *s, const OutlinePoint *points, size_t count, double width)
 {
     static const double LEAST = 1e-3;

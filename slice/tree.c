@@ -203,8 +203,8 @@ typedef struct Fan {
     int    rounds; /* each looks around the deepest direction of the one before */
 } Fan;
 
-/* Whether what is thin at a place is joined to where it is so deep, so far off; then the fan is at the deepest of these
-   places, and its angle leads there. */
+/* Tells whether what is thin at a place is joined to where it is so deep, so far off; then the fan is at the
+   deepest of these places, and its angle leads there. */
 static bool leads_to(const Section *s, Fan *fan, bool inside, double reach, double depth)
 {
     enum { DIRECTIONS = MAX_FIELD_POINTS };
@@ -247,8 +247,8 @@ static bool is_end(const Section *s, const double at[2], bool inside, double thi
     return end;
 }
 
-/* Whether it only does so, as at corners: a neck between two thick parts goes on behind the place, and a wall on a thick
-   part does. */
+/* Tells whether it only does so, as at corners: a neck between two thick parts goes on behind the place, and a
+   wall on a thick part does. */
 static bool is_tip(const Section *s, const double at[2], bool inside, double thick)
 {
     enum { STEPS = 4 };
@@ -303,8 +303,8 @@ static double find_thinnest(const Section *s, const Cell *cell, bool same, doubl
     return thinnest;
 }
 
-/* Whether a cell of the least size is split for what is thinner: corners do not tell what goes on between them.  What no
-   split would find is counted. */
+/* Tells whether a cell of the least size is split for what is thinner: corners do not tell what goes on between
+   them.  What no split would find is counted. */
 static bool hides_thin(Section *s, const Cell *cell)
 {
     const bool inside = is_inside(find_corner(s, cell->at)->distance);
@@ -349,8 +349,8 @@ static bool is_plain_edge(const Section *s, const Cell *cell, int axis, uint32_t
            (known && is_monotone(&slope, axis == 0 ? s->plane.right : s->plane.up));
 }
 
-/* Whether signs at corners tell where the outline is: both derivatives keep their sign; or one does, so that it is crossed
-   once at most on each line along that axis, and both edges across are plain. */
+/* Tells whether signs at corners tell where the outline is: both derivatives keep their sign; or one does, so that
+   it is crossed once at most on each line along that axis, and both edges across are plain. */
 static bool is_told_by_corners(const Section *s, const Cell *cell, const LaneSlope *slope)
 {
     bool right = is_monotone(slope, s->plane.right), up = is_monotone(slope, s->plane.up);

@@ -55,7 +55,7 @@ static Real estimate(Formula *formula, const Real p[3], Real f, int order)
     return (sqrtl(slope * slope + 2 * bend * f) - slope) / bend;
 }
 
-/* Whether a ray from outside gets inside within the ball; steps are a 64th of a pixel at least. */
+/* Tells whether a ray from outside gets inside within the ball; steps are a 64th of a pixel at least. */
 static bool march(const Subject *subject, Vec origin, Vec direction, Real least, int order,
                   Tally *tally)
 {

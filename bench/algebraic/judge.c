@@ -75,7 +75,7 @@ static const unsigned char *find_fates(const Subject *subject, const View *view,
     return k->fates;
 }
 
-/* Whether a pixel next to this one should be seen so. */
+/* Tells whether a pixel next to this one should be seen so. */
 static bool is_at_outline(const Subject *subject, const View *view, Drawn drawn, int x, int y,
                           bool seen)
 {

@@ -48,7 +48,7 @@ static bool is_hit(int x, int y)
     return false;
 }
 
-/* Whether the pixel or a neighbour of it should show what the picture does. */
+/* Tells whether the pixel or a neighbour of it should show what the picture does. */
 static bool is_near(int x, int y, bool seen)
 {
     for (int i = 0; i < 9; i++)

@@ -57,7 +57,7 @@ void number_edit_write(NumberEdit *edit)
     free(text.text);
 }
 
-/* Whether the document is read, and has the shaders that it had. */
+/* Tells whether the document is read, and has the shaders that it had. */
 static bool changes_values(Document *document)
 {
     Version       *before    = document_version(document);

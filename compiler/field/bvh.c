@@ -100,7 +100,8 @@ static double square_to_box(const BvhNode *node, const double point[3])
     return square;
 }
 
-/* Whether a triangle's box or its plane is farther away: most are, which costs less than to find the nearest point. */
+/* Tells whether a triangle's box or its plane is farther away: most are, which costs less than to find the nearest
+   point. */
 static bool is_clearly_far(const double corners[3][3], const double point[3], double radius)
 {
     double edges[2][3], offset[3], normal[3];

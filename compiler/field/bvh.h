@@ -36,13 +36,13 @@ bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *v
 /* The same for those whose boxes meet a box. */
 bool bvh_visit_box(const Bvh *bvh, const double low[3], const double high[3], BvhVisit *visit,
                    void *user);
-/* Whether a triangle comes within the radius of a point, and its nearest point then. */
+/* Tells whether a triangle comes within the radius of a point, and its nearest point then. */
 bool bvh_triangle_is_near(const Bvh *bvh, uint32_t triangle, const double point[3], double radius,
                           double nearest[3]);
-/* Whether any does.  `last` is one that may, which is tried first, and becomes the one that does. */
+/* Tells whether any does.  `last` is one that may, which is tried first, and becomes the one that does. */
 bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t *last);
 
-/* Whether any does, and the nearest then. */
+/* Tells whether any does, and the nearest then. */
 bool bvh_find_nearest(const Bvh *bvh, const double point[3], double radius, uint32_t *found);
 
 /* How far it is, and `found` then; the radius if none is nearer than that.  The radius may be infinite. */

@@ -73,7 +73,7 @@ uint32_t field_origin(const MeshField *field, Box box);
 bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slope,
                    LaneHessian *hessian);
 
-/* Whether what cuts the components may be what is least in the box. */
+/* Tells whether what cuts the components may be what is least in the box. */
 bool field_is_cut(const MeshField *field, Box box);
 /* Keeps values of the tape that was entered last, to be found at points. */
 bool field_keep(MeshField *field, uint32_t *outputs, size_t count);
@@ -123,7 +123,7 @@ bool field_inside(const LaneTape *tape, const LaneRanges *ranges, uint32_t opera
                   FieldFaces *faces, double *part);
 bool field_has_face(const FieldFaces *faces, uint32_t operand);
 
-/* Whether a step takes the greater or the lesser of two numbers. */
+/* Tells whether a step takes the greater or the lesser of two numbers. */
 bool field_is_greater(const LaneStep *step);
 bool field_is_lesser(const LaneStep *step);
 

@@ -483,7 +483,7 @@ static bool find_pieces(Finding *f, const Sum *sum)
 
 /* ---- how many there are at least ---- */
 
-/* Whether it is never taken apart: it is a piece, or there are none. */
+/* Tells whether it is never taken apart: it is a piece, or there are none. */
 static bool is_whole(const LaneStep *step)
 {
     return !field_is_greater(step) && !field_is_lesser(step) && step->op != OP_abs &&

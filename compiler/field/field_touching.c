@@ -140,7 +140,7 @@ static Form form_of(const Forms *forms, const FieldPieces *pieces, const uint32_
     return form;
 }
 
-/* Whether the sum of two is nowhere above 0, or, by the sign, nowhere below; but for what rounding explains. */
+/* Tells whether the sum of two is nowhere above 0, or, by the sign, nowhere below; but for what rounding explains. */
 static bool are_opposite(const Form *a, const Form *b, double sign)
 {
     static const double ROUNDING = 1e-13;

@@ -20,7 +20,7 @@ typedef struct MeshSolid {
 
 /* All components, or those that are `wanted`, by their index among the lowered. */
 void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *solid);
-/* Whether they have one material, which is the same everywhere. */
+/* Tells whether they have one material, which is the same everywhere. */
 bool has_one_material(const KrsScene *scene, const bool *wanted);
 /* Bytes of `roots` that is enough. */
 size_t solid_root_bytes(const KrsScene *scene);

@@ -6,11 +6,11 @@
 
 #include "compiler/scene/program.h"
 
-/* Whether around almost every point all properties of the materials stay the same: those of parts in one paint each, and
-   patterns of such.  `wanted`: components by their index among the lowered, or NULL for all. */
+/* Tells whether around almost every point all properties of the materials stay the same: those of parts in one
+   paint each, and patterns of such.  `wanted`: components by their index among the lowered, or NULL for all. */
 bool materials_step(const KrsScene *scene, const bool *wanted);
 
-/* Whether some material may depend on the normal of the surface. */
+/* Tells whether some material may depend on the normal of the surface. */
 bool materials_have_normals(const KrsScene *scene);
 
 #endif

@@ -204,8 +204,8 @@ bool emit_keeps_plane(const Emitter *e, uint32_t component);
 bool emit_wants_gradient(const Emitter *e);
 /* Tells whether the gradient of a component is known by derivatives. */
 bool emit_has_gradient(const Emitter *e, uint32_t component);
-/* Whether krs_surface takes the plane of that gradient for the distance.  Outside of the box around the component the
-   box counts: far away polynomials are beyond all numbers. */
+/* Tells whether krs_surface takes the plane of that gradient for the distance.  Outside of the box around the
+   component the box counts: far away polynomials are beyond all numbers. */
 bool emit_has_tangent(const Emitter *e, uint32_t component);
 /* The distance to the box around a component, which is finite; 0 inside. */
 const char *emit_box_distance(Emitter *e, uint32_t component);

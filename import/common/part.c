@@ -124,7 +124,7 @@ static size_t seen_items(const Part *part)
     return part->join == PART_CLIP ? 1 : part->parts.count;
 }
 
-/* Whether a part, or what it is made of, has looks of its own: all of it,
+/* Tells whether a part, or what it is made of, has looks of its own: all of it,
  * nothing, or some. */
 static int part_painted(Part *part)
 {

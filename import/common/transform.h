@@ -26,7 +26,7 @@ bool transform_invert(Transform *transform);
 void transform_apply(const Transform *transform, const double q[3], double to[3]);
 /* The factor by which all lengths grow; 0 where it differs by direction. */
 double transform_factor(const Transform *transform);
-/* Whether figures in x and y stay there; makes it the plain map of space that
+/* Tells whether figures in x and y stay there; makes it the plain map of space that
  * does the same. */
 bool transform_flatten(Transform *transform);
 

@@ -28,9 +28,9 @@ typedef void ReportTriangle(void *user, uint32_t triangle);
 
 /* Reports triangles with an edge that is not in two triangles with opposite directions. */
 void report_open(const TriangleEdges *edges, ReportTriangle *report, void *user);
-/* Whether the triangles around a vertex are one ring, or none has it. */
+/* Tells whether the triangles around a vertex are one ring, or none has it. */
 bool is_one_ring(const TriangleEdges *edges, const uint32_t (*triangles)[3], uint32_t vertex);
-/* Whether a triangle has points in common with another but corners and edges that both have; as well where
+/* Tells whether a triangle has points in common with another but corners and edges that both have; as well where
    rounding does not tell.  Both may be within each other by `depth`: above 0 what only touches does not cross. */
 bool triangle_crosses(const Bvh *bvh, uint32_t triangle, double depth);
 

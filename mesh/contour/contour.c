@@ -322,7 +322,7 @@ static uint32_t take_line(Contour *contour, uint32_t first, uint32_t second)
     return number;
 }
 
-/* Whether points 1 to 3 are in the positive order, seen from point 0. */
+/* Tells whether points 1 to 3 are in the positive order, seen from point 0. */
 static bool is_positive(const Tets *tets, const uint32_t points[4])
 {
     double edges[3][3], cross[3];

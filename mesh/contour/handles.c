@@ -143,7 +143,8 @@ static void add_to_box(const Handles *h, uint32_t triangle, double low[3], doubl
         }
 }
 
-/* Whether what is beyond an edge of the border ends as a thin spike or flap, so that what goes around it can be drawn off. */
+/* Tells whether what is beyond an edge of the border ends as a thin spike or flap, so that what goes around it can
+   be drawn off. */
 static bool is_thin_end(Handles *h, uint32_t place, uint32_t start)
 {
     static const double LARGEST = 60,
@@ -175,7 +176,8 @@ static bool is_thin_end(Handles *h, uint32_t place, uint32_t start)
            euler_number(h, h->beyond.items, h->beyond.count, number) == 1;
 }
 
-/* Whether the part around a vertex is all of a part of the mesh, or has a handle, or goes around a rod or through a hole that goes on at two borders or more. */
+/* Tells whether the part around a vertex is all of a part of the mesh, or has a handle, or goes around a rod or
+   through a hole that goes on at two borders or more. */
 static bool goes_around(Handles *h, uint32_t place)
 {
     long   euler = euler_number(h, h->patch.items, h->patch.count, place), borders = 0, going = 0;

@@ -52,7 +52,7 @@ static uint32_t number_of(Place *place, uint32_t point)
     return number;
 }
 
-/* Whether no tetrahedron that has a point is longer than that, and not many have it. */
+/* Tells whether no tetrahedron that has a point is longer than that, and not many have it. */
 static bool is_fine(const Tets *tets, uint32_t point, double longest)
 {
     int count = 0;
@@ -185,8 +185,8 @@ static long euler_of_cone(const uint32_t parts[2])
 
 /* ---- to one side and back ---- */
 
-/* Whether a point would join nothing that already hangs together if it were on that side; `other`: parts of the other side that are
-   around it. */
+/* Tells whether a point would join nothing that already hangs together if it were on that side; `other`: parts of
+   the other side that are around it. */
 static bool may_go(const Place *place, const Link *link, bool inside, uint32_t *leaders,
                    uint32_t *wholes, uint32_t *other)
 {

@@ -207,7 +207,7 @@ void tets_bisect(Tets *tets, size_t index)
             link_point(tets, second.points[k], added);
 }
 
-/* Whether an edge has been bisected by a neighbour, which was after all met last. */
+/* Tells whether an edge has been bisected by a neighbour, which was after all met last. */
 static bool has_hanging_point(const Tets *tets, const Tet *tet)
 {
     uint32_t middle[3];

@@ -91,11 +91,11 @@ typedef struct Tets {
 void tets_new(Tets *tets, const double origin[3], double side, Arena *arena);
 /* Bisects a tetrahedron: one part takes its place, the other is the last. */
 void tets_bisect(Tets *tets, size_t index);
-/* Whether it is so large that it can be bisected. */
+/* Tells whether it is so large that it can be bisected. */
 bool tets_can_bisect(const Tets *tets, size_t index);
 /* Has all that have a point looked at again, as if they were new, but for the bounds of the distance. */
 void tets_renew(Tets *tets, uint32_t point);
-/* Whether one has a point that was moved to the other side. */
+/* Tells whether one has a point that was moved to the other side. */
 bool tets_is_moved(const Tets *tets, const Tet *tet);
 /* From now on none is fresh. */
 void tets_forget_fresh(Tets *tets);

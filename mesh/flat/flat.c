@@ -17,12 +17,12 @@ enum {
     MAX_BOXES_OF_DRAFT = 40000,
     MAX_HALVINGS       = 45,
     HALVINGS_OF_REGION = 3,
-    PATIENCE           = 256
+    ASK_EVERY          = 256
 };
 /* Boxes that were looked at when more than a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
-/* At each turn planes are moved otherwise; at the last ones short edges stay, so that solids that touch stay apart. */
-enum { TURNS = 4, APART_FROM = 2 };
+/* At each attempt planes are moved otherwise; at the last ones short edges stay, so that solids that touch stay apart. */
+enum { ATTEMPTS = 4, SEPARATE_FROM = 2 };
 static const double MIN_KNOWN = 0.02;
 /* Parts of the size: how far faces are moved so that no four meet, about. */
 static const double ROUNDING_OF_FACES = 1e-6, MIN_SHORT = 1e-9, TOUCHING = 1e-8;
@@ -36,7 +36,7 @@ typedef struct Halving {
     FlatWork   work;
     FlatBoxes  round_boxes;
     size_t     boxes, known;
-    uint32_t   turn;
+    uint32_t   attempt;
 } Halving;
 
 static bool halve(Halving *h, Box box, int halvings);
@@ -65,12 +65,12 @@ static bool is_wanted(Mesher *m)
 static bool is_given_up(Halving *h, int halvings)
 {
     h->boxes++;
-    return (h->boxes % PATIENCE == 0 && !is_wanted(h->m)) || halvings > MAX_HALVINGS ||
+    return (h->boxes % ASK_EVERY == 0 && !is_wanted(h->m)) || halvings > MAX_HALVINGS ||
            h->boxes > (h->m->options->draft ? MAX_BOXES_OF_DRAFT : MAX_BOXES) ||
            (h->boxes > FIRST_BOXES && (double)h->known < MIN_KNOWN * (double)h->boxes);
 }
 
-/* Whether faces will be found once more, with the right numbers of sides. */
+/* Tells whether faces will be found once more, with the right numbers of sides. */
 static bool is_only_looked_at(const Halving *h)
 {
     return !h->rounds.counted && h->rounds.list.count > 0;
@@ -107,7 +107,7 @@ static bool halve(Halving *h, Box box, int halvings)
     return done;
 }
 
-/* Whether the surface is in the middle of each triangle: so all that was taken for a face is one. */
+/* Tells whether the surface is in the middle of each triangle: so all that was taken for a face is one. */
 static bool is_on_surface(Mesher *m, const FlatVertices *vertices, const Triangles *triangles,
                           double near)
 {
@@ -140,8 +140,9 @@ static bool halve_all(Halving *h)
     }
     h->faces       = (FlatFaces){.arena    = &m->arena,
                                  .size     = m->side,
-                                 .shortest = h->turn < APART_FROM ? spare_of(m) : MIN_SHORT * m->side,
-                                 .turn     = h->turn};
+                                 .shortest = h->attempt < SEPARATE_FROM ? spare_of(m)
+                                                                        : MIN_SHORT * m->side,
+                                 .attempt  = h->attempt};
     h->round_boxes = (FlatBoxes){NULL, 0, 0};
     h->boxes       = 0;
     h->known       = 0;
@@ -219,7 +220,7 @@ static bool finish(Halving *h, FlatVertices *vertices, Triangles *triangles)
            !is_sound(h, vertices, triangles)) {
         *vertices  = (FlatVertices){NULL, 0, 0};
         *triangles = (Triangles){NULL, 0, 0};
-        if (++h->turn == TURNS || !halve_all(h))
+        if (++h->attempt == ATTEMPTS || !halve_all(h))
             return false;
     }
     return true;

@@ -10,7 +10,7 @@
 /* Where rest + factor length is below 0. */
 int flat_solid_of_length(Finding *f, const Form *rest, double factor, const LaneStep *step);
 
-/* Whether a form has a length of several numbers in it. */
+/* Tells whether a form has a length of several numbers in it. */
 bool form_has_round(const Finding *f, const Form *form);
 /* How fast a form changes, about. */
 double form_steepness(const Finding *f, const Form *form);

@@ -17,10 +17,10 @@ static const double MOVE = 1e-7, NARROW = 1e-14, SAME = 1e-13, TOUCHING = 1e-10;
 
 /* ---- planes ---- */
 
-/* A number from -1 to 1 for each plane, another one at each turn. */
-static double jitter(uint32_t number, uint32_t turn)
+/* A number from -1 to 1 for each plane, another one at each attempt. */
+static double jitter(uint32_t number, uint32_t attempt)
 {
-    uint32_t h = (number + 1) * 2654435761u + turn * 3266489917u;
+    uint32_t h = (number + 1) * 2654435761u + attempt * 3266489917u;
     h ^= h >> 15;
     h *= 2246822519u;
     h ^= h >> 13;
@@ -58,7 +58,7 @@ static uint32_t find_plane(FlatFaces *faces, const HalfSpace *plane, int *sign)
                 return at;
     uint32_t  number = (uint32_t)faces->planes.count;
     uint32_t  first  = numbering_take(&faces->marks, (NumberKey){(uint64_t)slot, 0}, number);
-    FlatPlane fresh  = {*plane, plane->offset + MOVE * faces->size * jitter(number, faces->turn),
+    FlatPlane fresh  = {*plane, plane->offset + MOVE * faces->size * jitter(number, faces->attempt),
                         NO_NUMBER};
     array_push_large(faces->arena, &faces->planes, fresh);
     if (first != number) {

@@ -36,7 +36,7 @@ typedef struct FlatFaces {
     double   size;     /* of what is meshed */
     double   shortest; /* edges that are not made a point */
     double   joined;   /* the longest that is made a point */
-    uint32_t turn;     /* at another one planes are moved otherwise */
+    uint32_t attempt;  /* at another one planes are moved otherwise */
     struct {
         FlatPlane *items;
         size_t     count, capacity;

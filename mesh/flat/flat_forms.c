@@ -218,7 +218,7 @@ static Form quotient_of(const Finding *f, const Form *a, const Form *b)
     return form;
 }
 
-/* Whether it is a number over a divisor. */
+/* Tells whether it is a number over a divisor. */
 static bool is_reciprocal(const Form *form)
 {
     return form->divided && form->kink_count == 0 && is_level(form);
@@ -265,7 +265,7 @@ static Form length_form(const Finding *f, const LaneStep *step, uint32_t value)
     return size_form(f, &form, value);
 }
 
-/* Whether it is what a distance to a box is the sum of. */
+/* Tells whether it is what a distance to a box is the sum of. */
 static bool is_box_distance(const Finding *f, const LaneStep *step)
 {
     for (int k = 0; k < 2; k++) {
@@ -330,5 +330,5 @@ void find_forms(Finding *f)
         f->forms[LANE_INPUTS + i] = form_of_step(f, i);
 }
 
-/* Whether a form is a kink and what is added to it. */
+/* Tells whether a form is a kink and what is added to it. */
 bool form_is_kink_alone(const Form *form) { return form->kink_count == 1 && is_level(form); }

@@ -57,7 +57,7 @@ bool form_is_constant(const Form *form);
 Form form_sum(Form a, double factor, const Form *b);
 Form form_scaled(double factor, const Form *form);
 void form_drop_kink(Form *form, int i);
-/* Whether it is a kink and a number that is added to it. */
+/* Tells whether it is a kink and a number that is added to it. */
 bool form_is_kink_alone(const Form *form);
 /* The values of what it is divided by. */
 Range form_divisor(const Finding *f, const Form *form);

@@ -12,7 +12,7 @@ enum {
     MAX_HARD                 = 10000,
     MAX_LOOKS                = 600000,
     MAX_LOOKS_WHERE_UNPROVEN = 100, /* for each box; all will be looked at again */
-    PATIENCE                 = 256,
+    ASK_EVERY                = 256,
     HALVINGS_OF_REGION       = 3
 };
 /* In errors: boxes that are not halved any more, first and after some have been left; and those in which ways may be shorter than
@@ -58,7 +58,7 @@ static bool goes_on(Looking *l)
 {
     Mesher   *m    = l->w->m;
     NearPart *part = l->part;
-    if (++part->looks % PATIENCE == 0 && l->asks && m->options->progress &&
+    if (++part->looks % ASK_EVERY == 0 && l->asks && m->options->progress &&
         !m->options->progress(m->options->user, 0))
         atomic_store(&m->stopped, true);
     return !atomic_load(&m->stopped) && part->looks < MAX_LOOKS &&

@@ -76,7 +76,7 @@ static Chord find_chord(const InstanceArc *arc, double i, double count)
     return chord;
 }
 
-/* Whether a chord, or what is so far from it, does not come into the place. */
+/* Tells whether a chord, or what is so far from it, does not come into the place. */
 static bool lies_beyond(const Place *place, const Chord *chord, double off)
 {
     double middle[2], half[2], way[2], margin = place->margin + off;
@@ -109,7 +109,7 @@ static void look_at_side(Place *place, const Chord *chord)
     }
 }
 
-/* Whether the middle is on the left of the nearest. */
+/* Tells whether the middle is on the left of the nearest. */
 static bool is_left_of_nearest(const Place *place)
 {
     double way[2], from[2];
@@ -241,7 +241,7 @@ static int solid_of_chain(Finding *f, const Place *place, const Chord *chords, s
                                                               : flat_either(f, first, second);
 }
 
-/* Whether a chord that goes on straight, behind its end or before its beginning, meets another. */
+/* Tells whether a chord that goes on straight, behind its end or before its beginning, meets another. */
 static bool goes_through(const Chord *chord, bool behind, const Chord *other)
 {
     double way[2], across[2], from[2], to[2];
@@ -259,7 +259,7 @@ static bool goes_through(const Chord *chord, bool behind, const Chord *other)
     return way[0] * (from[0] + part * across[0]) + way[1] * (from[1] + part * across[1]) > 0;
 }
 
-/* Whether both ends can go on straight. */
+/* Tells whether both ends can go on straight. */
 static bool has_free_ends(const Chord *chords, size_t count)
 {
     for (size_t i = 0; i < count; i++)
@@ -269,7 +269,7 @@ static bool has_free_ends(const Chord *chords, size_t count)
     return true;
 }
 
-/* Whether a point is on the left of a chain. */
+/* Tells whether a point is on the left of a chain. */
 static bool is_left(const Place *place, const Chord *chords, size_t count, const double point[2])
 {
     Place near = {.distance = INFINITY, .margin = place->margin};
@@ -297,7 +297,8 @@ static bool find_chains(Place *place, Chains *chains)
     return true;
 }
 
-/* Whether chains are on the left of each other, as those of a thin part are, or none is, as on both sides of a gap. */
+/* Tells whether chains are on the left of each other, as those of a thin part are, or none is, as on both sides of
+   a gap. */
 static bool lie_alike(const Place *place, const Chains *chains, bool left)
 {
     for (size_t i = 0; i < chains->count; i++)

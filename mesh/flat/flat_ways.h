@@ -34,7 +34,7 @@ FlatGrowth flat_growth(const FlatPieces *pieces, size_t plane, int sign, const B
 /* What is exact and has the solid on both sides must not change at all. */
 void flat_growths_level(FlatGrowths *growths, const double normal[3]);
 
-/* Whether there is one, no longer than that. */
+/* Tells whether there is one, no longer than that. */
 bool flat_has_way(const FlatGrowths *growths, double most);
 
 #endif

@@ -111,7 +111,7 @@ static bool find_outer(Cutting *c, Ring *hole)
     return found;
 }
 
-/* Whether two points are on different sides of the line a to b, or one of them is on it. */
+/* Tells whether two points are on different sides of the line a to b, or one of them is on it. */
 static bool line_parts(const double a[2], const double b[2], const double c[2], const double d[2],
                        double tiny)
 {
@@ -119,7 +119,7 @@ static bool line_parts(const double a[2], const double b[2], const double c[2], 
     return (first >= 0) != (second >= 0) || fabs(first) <= tiny || fabs(second) <= tiny;
 }
 
-/* Whether the lines a to b and c to d cross, or one has an end on the other, but for a common end. */
+/* Tells whether the lines a to b and c to d cross, or one has an end on the other, but for a common end. */
 static bool lines_cross(const double a[2], const double b[2], const double c[2], const double d[2],
                         double tiny)
 {
@@ -141,7 +141,7 @@ static bool ring_blocks(const Ring *ring, const double a[2], const double b[2], 
     return false;
 }
 
-/* Whether a line from corner i of a ring to a point begins inside. */
+/* Tells whether a line from corner i of a ring to a point begins inside. */
 static bool goes_inside(const Ring *ring, size_t i, const double to[2])
 {
     const double *at     = ring->items[i].at;
@@ -300,7 +300,7 @@ static void fill_buckets(Buckets *buckets, const Ring *ring, Arena *arena)
     }
 }
 
-/* Whether some corner that is left is in a triangle, or touches it. */
+/* Tells whether some corner that is left is in a triangle, or touches it. */
 static bool has_corner(const Buckets *buckets, const Ring *ring, const double *const corners[3],
                        double touching)
 {

@@ -100,7 +100,7 @@ static void measure_in_cell(Mesher *m, const Verifier *verifier, const SmoothCel
     }
 }
 
-/* Whether one that does not fit would by a share of the error, were bounds what they are at best. */
+/* Tells whether one that does not fit would by a share of the error, were bounds what they are at best. */
 static bool one_may_fit(Mesher *m, const SmoothCell *middle, double share, const Placed *placed,
                         size_t count)
 {

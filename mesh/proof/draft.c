@@ -70,7 +70,7 @@ static void step_probes(const MeshField *field, double error, Probe probes[PROBE
     }
 }
 
-/* Whether a point is nearer than that to the polygon `loop`, or to the fan between it and `apex`. */
+/* Tells whether a point is nearer than that to the polygon `loop`, or to the fan between it and `apex`. */
 static bool is_near_loop(const double *const *loop, size_t count, const double *apex,
                          const double point[3], double distance)
 {
@@ -102,7 +102,7 @@ static bool is_near_patch(const Contour *contour, const Patch *patch, const doub
     return is_near_loop(loop, count, patch->fan ? patch->apex : NULL, point, distance);
 }
 
-/* Whether the surface is in it where it has no triangles. */
+/* Tells whether the surface is in it where it has no triangles. */
 static bool misses_surface(const Mesher *m, const MeshField *field, const Tet *tet,
                            const Patch *patch)
 {
@@ -152,8 +152,8 @@ static void find_edges(const Mesher *m, const Tet *tet, Edges *edges)
         }
 }
 
-/* Whether an edge goes through the surface and back, as through a wall.  Beside a plane the distance is linear, so it does
-   also where that is much less than between the ends. */
+/* Tells whether an edge goes through the surface and back, as through a wall.  Beside a plane the distance is
+   linear, so it does also where that is much less than between the ends. */
 static bool goes_through(const Mesher *m, const MeshField *field, const Tet *tet)
 {
     static const double BENT = 1, BENT_PART = 0.3;

@@ -22,12 +22,12 @@ bool find_lens_by_balls(const Verifier *verifier, Lens *lens);
    need not be below the error. */
 void find_lens_by_slope(const Gradient *gradient, const double center[3], double distance,
                         Lens *lens);
-/* Whether the mesh goes through the lens: then it is a graph over all of its disc, since it is closed
+/* Tells whether the mesh goes through the lens: then it is a graph over all of its disc, since it is closed
    and its triangles all face to one side.  So it is as near as it is at any point. */
 bool mesh_fills_lens(const Verifier *verifier, const Lens *lens);
 /* How far from its centre that asks for triangles. */
 double lens_reach(const Verifier *verifier, const Lens *lens);
-/* Whether all corners are above the lens, or all below. */
+/* Tells whether all corners are above the lens, or all below. */
 bool is_beside_lens(const Lens *lens, const double corners[4][3]);
 
 #endif

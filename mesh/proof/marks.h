@@ -15,7 +15,7 @@ typedef struct Marks {
 
 void marks_clear(Marks *marks);
 void marks_set(Marks *marks, const MarkBox *box);
-/* Whether a cell of the box is marked. */
+/* Tells whether a cell of the box is marked. */
 bool marks_touch(const Marks *marks, const MarkBox *box);
 
 /* Nowhere, and a box that has another as well. */

@@ -24,7 +24,7 @@ static double growth(const FieldPieces *pieces, size_t i, const double direction
 /* A direction in which all grow, from that of their mean, turned to the one that grows least. */
 static double find_slope(const FieldPieces *pieces)
 {
-    enum { TURNS = 24 };
+    enum { ROUNDS = 24 };
     double direction[3] = {0, 0, 0}, own[MAX_PIECES][3], best = 0;
     for (size_t i = 0; i < pieces->count; i++) {
         for (int k = 0; k < 3; k++)
@@ -34,7 +34,7 @@ static double find_slope(const FieldPieces *pieces)
             return 0;
         add_scaled3(direction, direction, 1, own[i]);
     }
-    for (int turn = 0; turn < TURNS && normalize3(direction); turn++) {
+    for (int round = 0; round < ROUNDS && normalize3(direction); round++) {
         double least = INFINITY;
         size_t worst = 0;
         for (size_t i = 0; i < pieces->count; i++) {
@@ -45,7 +45,7 @@ static double find_slope(const FieldPieces *pieces)
             }
         }
         best = max2(best, least);
-        add_scaled3(direction, direction, 0.5 / (turn + 1), own[worst]);
+        add_scaled3(direction, direction, 0.5 / (round + 1), own[worst]);
     }
     return best / ROUNDING;
 }

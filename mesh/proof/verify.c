@@ -78,7 +78,7 @@ static bool is_near_mesh(Verifier *verifier, const double place[3], double radiu
     return true;
 }
 
-/* Whether the mesh fills a lens that a proof needs. */
+/* Tells whether the mesh fills a lens that a proof needs. */
 static bool fills_lens(Verifier *verifier, const Lens *lens)
 {
     note_need(verifier, lens->center, ROUNDING * lens_reach(verifier, lens));
@@ -238,8 +238,8 @@ static bool is_flat(Verifier *verifier, const Cell *cell, CellView *view)
                             &view->has_gradient);
 }
 
-/* Whether there is no surface, since solids overlap there by less than cells are large, or gaps do.  Where pieces did not tell that
-   so often they are not asked any more. */
+/* Tells whether there is no surface, since solids overlap there by less than cells are large, or gaps do.  Where
+   pieces did not tell that so often they are not asked any more. */
 static bool is_on_one_side(Verifier *verifier, const Cell *cell, const CellView *view)
 {
     enum { MAX_IN_VAIN = 32 };
@@ -317,7 +317,7 @@ static bool surface_is_near_mesh(Verifier *verifier, const Cell *whole, int side
 
 /* ---- from the mesh to the surface ---- */
 
-/* Whether the surface is between two points on both sides of a third. */
+/* Tells whether the surface is between two points on both sides of a third. */
 static bool is_crossed(const Verifier *verifier, const double center[3], double far,
                        const double direction[3])
 {

@@ -10,7 +10,7 @@
 #include "compiler/field/bvh.h"
 #include "mesh/simplify/fans.h"
 
-enum { MAX_STAR = 48, PATIENCE = 32 };
+enum { MAX_STAR = 48, ASK_EVERY = 32 };
 #define NO_VERTEX UINT32_MAX
 /* Height over the longest edge, of triangles that are made. */
 static const double THIN = 1e-5;
@@ -239,7 +239,7 @@ static double find_nearest(const Collapse *c, const Made *made, uint32_t vertex,
     return least;
 }
 
-/* Whether all that is made is within the error of the mesh that is simplified. */
+/* Tells whether all that is made is within the error of the mesh that is simplified. */
 static bool are_made_near(const Collapse *c, Made *made)
 {
     made->off = 0;
@@ -252,7 +252,7 @@ static bool are_made_near(const Collapse *c, Made *made)
     return true;
 }
 
-/* Whether vertices of that mesh are within the error of what is made. */
+/* Tells whether vertices of that mesh are within the error of what is made. */
 static bool are_points_near(const Collapse *c, const uint32_t *star, size_t count, uint32_t from,
                             Made *made)
 {
@@ -374,7 +374,7 @@ static void collapse_all(Collapse *c)
 {
     size_t tried = 0, most = c->heap.count;
     while (c->heap.count > 0) {
-        if (tried++ % PATIENCE == 0 &&
+        if (tried++ % ASK_EVERY == 0 &&
             !c->rules->is_wanted(c->rules->user, 1 - (double)c->heap.count / (double)most))
             return;
         Candidate candidate = pop(c);

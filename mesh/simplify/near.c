@@ -105,7 +105,7 @@ static void see(const Frame *frame, const double point[3], Seen *seen)
     seen->height    = dot3(offset, frame->height);
 }
 
-/* Whether points between two are above or below the triangle. */
+/* Tells whether points between two are above or below the triangle. */
 static bool is_edge_seen(const Frame *frame, const Seen *a, const Seen *b)
 {
     double low = 0, high = 1;
@@ -154,7 +154,7 @@ static int clip_all(const Seen triangle[3], double least, Seen corners[MAX_CORNE
     return count;
 }
 
-/* Whether it surely faces the side that the given triangle faces. */
+/* Tells whether it surely faces the side that the given triangle faces. */
 static bool faces_same_side(const Frame *frame, const Seen corners[3])
 {
     double a      = corners[1].shares[1] - corners[0].shares[1],
@@ -255,7 +255,7 @@ static void see_triangle(const NearMesh *mesh, const Frame *frame, uint32_t tria
         see(frame, mesh->bvh.vertices[mesh->bvh.triangles[triangle][c]], &seen[c]);
 }
 
-/* Whether it surely is above or below some of the triangle. */
+/* Tells whether it surely is above or below some of the triangle. */
 static bool is_faced(const NearMesh *mesh, const Frame *frame, uint32_t triangle)
 {
     Seen seen[3], corners[MAX_CORNERS + 1];
@@ -265,7 +265,7 @@ static bool is_faced(const NearMesh *mesh, const Frame *frame, uint32_t triangle
 
 typedef enum Verdict { IS_NEAR, IS_FAR, IS_UNDECIDED } Verdict;
 
-/* Whether a point of the triangle is surely farther away. */
+/* Tells whether a point of the triangle is surely farther away. */
 static bool is_far(const NearMesh *mesh, const double corners[3][3], double error, const Seen *seen,
                    NearLook *look)
 {

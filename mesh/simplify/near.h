@@ -31,11 +31,11 @@ typedef struct NearLook {
     uint32_t slots[FACED_SLOTS]; /* `faced` by hash: number + 1 */
 } NearLook;
 
-/* Whether a triangle is within the error of one of a mesh. */
+/* Tells whether a triangle is within the error of one of a mesh. */
 bool is_near_triangle(const NearMesh *mesh, uint32_t triangle, const double corners[3][3],
                       double error);
-/* Whether all points of a triangle are within the error of a mesh.  `starts`: triangles of the mesh that it may face.
-   Says also which those are that it was found to face. */
+/* Tells whether all points of a triangle are within the error of a mesh.  `starts`: triangles of the mesh that it
+   may face.  Says also which those are that it was found to face. */
 bool is_near_mesh(const NearMesh *mesh, const double corners[3][3], double error,
                   const uint32_t *starts, size_t start_count, NearLook *look);
 

@@ -368,7 +368,7 @@ static Text format(const Text *text)
     return out;
 }
 
-/* Whether the canonical layout changes blanks alone, and nothing the second time. */
+/* Tells whether the canonical layout changes blanks alone, and nothing the second time. */
 static bool is_formatted(const Text *sentence)
 {
     Text formatted = format(sentence), again = format(&formatted);

@@ -115,7 +115,7 @@ static double pixel_at(const Fixture *fixture, double t) { return lens_pixel(&fi
 
 typedef enum Verdict { AGREED, GRAZED, MANY_MEET, WRONG_HIT, WRONG_IDS, VERDICTS } Verdict;
 
-/* Whether the ids are those of a point nearby. */
+/* Tells whether the ids are those of a point nearby. */
 static bool is_of_neighbour(Fixture *fixture, Line ray, const Answer *said, double pixel)
 {
     Vec at = line_at(ray, said->t);

@@ -42,7 +42,7 @@ static void look(const Surface *surface, Vec eye, Pixel *pixels)
     }
 }
 
-/* Whether all pixels around see the same surface at about the same depth. */
+/* Tells whether all pixels around see the same surface at about the same depth. */
 static bool is_inside(const Surface *surface, const Pixel *pixels, int k)
 {
     const Entry *here = &pixels[k].entry;

@@ -32,7 +32,7 @@ typedef struct Part {
 
 static double square(double a) { return a * a; }
 
-/* Whether a point in the part's own coordinates is inside. */
+/* Tells whether a point in the part's own coordinates is inside. */
 static double box_value(double x, double y, double a, double b)
 {
     double u = fabs(x) - 0.5 * a, v = fabs(y) - 0.5 * b;

@@ -65,7 +65,7 @@ static double depth_of(const Chain *chain, const View *view, int i, int j)
     return HUGE_VAL;
 }
 
-/* Whether the pixels around see about the same as one. */
+/* Tells whether the pixels around see about the same as one. */
 static bool is_even(const double *depths, int i, int j)
 {
     double here = depths[j * WIDTH + i];
@@ -80,7 +80,7 @@ static bool is_even(const double *depths, int i, int j)
     return true;
 }
 
-/* Whether the solid comes within a pixel of where a picture shows it: it may be thinner than the
+/* Tells whether the solid comes within a pixel of where a picture shows it: it may be thinner than the
    steps of depth_of. */
 static bool is_there(const Chain *chain, const View *view, int i, int j, double depth)
 {
@@ -210,7 +210,7 @@ static bool surface_is_near(const Chain *chain, Vec p, double reach, Random *ran
     return false;
 }
 
-/* Whether a ray has passed a place that is farther from its first side than allowed. */
+/* Tells whether a ray has passed a place that is farther from its first side than allowed. */
 static bool is_passed(const Chain *chain, Vec o, Vec d, double from, double to, double allowed,
                       Random *random)
 {

@@ -134,7 +134,7 @@ static double first_change(const Chain *chain, Vec origin, Vec direction, double
     return farthest;
 }
 
-/* Whether the surface comes near to a point. */
+/* Tells whether the surface comes near to a point. */
 static bool is_near(const Case *c, Vec p, double reach, Random *random)
 {
     bool inside = chain_contains(&c->chain, p);

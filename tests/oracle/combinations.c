@@ -123,7 +123,7 @@ static void check_ray(const Product *product, Inside *membership, const void *us
     tally->hits += hit.hit;
 }
 
-/* Whether each of the reasons is one for which a method of the case may be refused. */
+/* Tells whether each of the reasons is one for which a method of the case may be refused. */
 static bool may_be_refused(const Case *c, const Said *said)
 {
     bool expected = said->length > 0;

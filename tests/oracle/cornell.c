@@ -113,7 +113,7 @@ static Meeting meet(Line line)
     return first;
 }
 
-/* Whether nothing lies between two points. */
+/* Tells whether nothing lies between two points. */
 static bool sees(Vec from, Vec to)
 {
     Vec apart = vec_sub(to, from);

@@ -106,7 +106,7 @@ static double max_off(const Verdict *verdict)
     return MAX_OFF * (double)verdict->common + others * hits / (PIXELS - hits);
 }
 
-/* Whether a shot keeps what is promised; all shots of a test are looked at before it fails. */
+/* Tells whether a shot keeps what is promised; all shots of a test are looked at before it fails. */
 static bool shot_is_right(Shot shot)
 {
     Verdict verdict = judge_shot(&shot);

@@ -116,7 +116,7 @@ static const char *const names[VERDICTS] = {
     "empty, or left out by CGAL",
 };
 
-/* Whether the solid is the same if it is thicker or thinner by three errors. */
+/* Tells whether the solid is the same if it is thicker or thinner by three errors. */
 static bool is_robust(const Solid &solid, const Shape &shape, int sides)
 {
     try {

@@ -48,7 +48,7 @@ typedef struct Deformed {
     int   mirror_count, before;
 } Deformed;
 
-/* Whether a point is inside; `chain` is a Deformed. */
+/* Tells whether a point is inside; `chain` is a Deformed. */
 bool deformed_contains(const void *chain, Vec p);
 /* Only of the first is it known how far what it deforms reaches: others do not bend so much that
    they could meet the axis, and do not taper. */

@@ -89,7 +89,7 @@ static double sent_by_ball(double x, double y, double z, double radius)
 #define MAX_NOISE 0.018
 #define MAX_WRONG 0.004
 
-/* Whether a floor is lit as it should be, and pictures would tell if it were not. */
+/* Tells whether a floor is lit as it should be, and pictures would tell if it were not. */
 static bool is_right(KrsIntegrator integrator, double expected, const char *what)
 {
     const Estimate found = look(integrator);

@@ -85,7 +85,7 @@ static Vec isometry_undo(const Isometry *map, Vec point)
     return vec_add(sum, vec_scale(at.z, map->rows[2]));
 }
 
-/* Whether one cut takes all of the body away. */
+/* Tells whether one cut takes all of the body away. */
 static bool copy_is_cut_off(const Copy *copy)
 {
     for (int i = 0; i < copy->cut_count; i++)
@@ -190,7 +190,7 @@ static bool copy_keeps(const Copy *copy, Vec q, double slack)
     return true;
 }
 
-/* Whether all of a copy is farther from a point than `distance`. */
+/* Tells whether all of a copy is farther from a point than `distance`. */
 static bool is_outside(const Copy *copy, Vec point, double distance)
 {
     Vec    offset = vec_sub(point, copy->middle);

@@ -218,7 +218,7 @@ static bool is_in_solid(const Part *parts, size_t count, const double point[3])
     return inside;
 }
 
-/* Whether all points so near have the same answer. */
+/* Tells whether all points so near have the same answer. */
 static bool is_clear(const Part *parts, size_t count, const double point[3])
 {
     bool inside = is_in_solid(parts, count, point);

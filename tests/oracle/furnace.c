@@ -208,7 +208,7 @@ static Estimate look_by(const White *white, const char *parameter, double number
     return found;
 }
 
-/* Whether a sun and the ball look the same, and a sun would not that is too bright by a tenth; by
+/* Tells whether a sun and the ball look the same, and a sun would not that is too bright by a tenth; by
    three tenths where glass makes more noise. */
 static bool is_found_either_way(const White *white)
 {

@@ -141,7 +141,7 @@ static double first_wall(const PovTree *tree, int object, int region, const Ray 
 
 /* ---- clipped objects ---- */
 
-/* Whether rays beside this one meet the same: it touches no edge, and nothing that is thin. */
+/* Tells whether rays beside this one meet the same: it touches no edge, and nothing that is thin. */
 static bool is_plain(const PovTree *tree, int object, int region, const Ray *ray, double first)
 {
     for (int i = 0; i < 4; i++) {

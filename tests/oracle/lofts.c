@@ -95,7 +95,7 @@ typedef struct FlatLoft {
     double height;
 } FlatLoft;
 
-/* Whether all points are on one side of a line from a point of the plane through one of them. */
+/* Tells whether all points are on one side of a line from a point of the plane through one of them. */
 static bool is_outside(double (*points)[2], int count, const double at[2])
 {
     for (int i = 0; i < count; i++) {

@@ -64,7 +64,7 @@ typedef struct Nearest {
 
 double naive_distance(const Chain *chain, Vec p, double scale, Nearest *nearest);
 
-/* Whether a point is inside; `chain` is a Chain. */
+/* Tells whether a point is inside; `chain` is a Chain. */
 bool map_chain_contains(const void *chain, Vec p);
 
 /* Points of the surface, so many of each kernel. */

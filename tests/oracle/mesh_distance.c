@@ -162,7 +162,7 @@ static bool ball_is_of_one_side(const Surface *surface, Vec center, double radiu
     return is_inside(surface, center) == inside;
 }
 
-/* Whether a ball as thick as the error fits on this side, no farther away than the error. */
+/* Tells whether a ball as thick as the error fits on this side, no farther away than the error. */
 static bool is_thick(const Surface *surface, Vec hit, double error, bool inside, Random *random)
 {
     enum { BALLS = 400 };

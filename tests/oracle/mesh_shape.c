@@ -67,7 +67,7 @@ MeshShape mesh_shape(const KrsMesh *mesh)
 
 /* ---- cubes ---- */
 
-/* Whether a cube is inside; around all of them is nothing. */
+/* Tells whether a cube is inside; around all of them is nothing. */
 static bool cube_at(const bool *inside, int cells, int x, int y, int z)
 {
     if (x < 0 || y < 0 || z < 0 || x >= cells || y >= cells || z >= cells)

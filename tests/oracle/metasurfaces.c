@@ -137,7 +137,7 @@ static bool walk_in(const Product *product, Vec direction, Vec *surface)
     return false;
 }
 
-/* Whether the normal there is along an axis, as on the faces of a box. */
+/* Tells whether the normal there is along an axis, as on the faces of a box. */
 static bool is_on_a_face(const Product *product, Vec p)
 {
     const double h = 1e-5;

@@ -41,7 +41,7 @@ struct Method {
 extern const Method methods[];
 extern const size_t method_count;
 
-/* Whether a point is inside of a whole case; `c` is a Case. */
+/* Tells whether a point is inside of a whole case; `c` is a Case. */
 bool inside_case(const void *c, Vec p);
 
 #endif

@@ -113,7 +113,7 @@ static int ground_of_rows(const KrsPicture *picture, double *mean, double *place
     return count;
 }
 
-/* Whether ground is as open as places at most a pixel away. */
+/* Tells whether ground is as open as places at most a pixel away. */
 static bool is_ground_before_wall(const double *mean, const double *place, int count)
 {
     const double pixel = 9.0 / 48;
@@ -194,7 +194,7 @@ static KrsPicture *take_room(double slope, double radius)
                                       .width = WIDTH, .height = HEIGHT, .methods.no_filter = true});
 }
 
-/* Whether a ray from within the room meets nothing within its reach; of its walls so many count. */
+/* Tells whether a ray from within the room meets nothing within its reach; of its walls so many count. */
 static bool leaves_room(Line line, int walls, double reach)
 {
     const double origin[3] = {line.origin.x, line.origin.y, line.origin.z};

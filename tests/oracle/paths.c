@@ -199,7 +199,7 @@ static Estimate look_at_floor(const PathFixture *fixture)
     return path_fixture_estimate(fixture, onto_floor, everywhere, 6);
 }
 
-/* Whether that is what is expected, but for a part of it; a tenth more would not be. */
+/* Tells whether that is what is expected, but for a part of it; a tenth more would not be. */
 static bool is_right(Estimate found, double expected, double part, const char *what)
 {
     if (is_near(found, 1.1 * expected, part))

@@ -55,7 +55,7 @@ static double make_rays(const KrsCamera *camera, double (*origins)[3], double (*
     return 2 * half / HEIGHT;
 }
 
-/* Whether all pixels around see the same thing at nearly the same depth and angle. */
+/* Tells whether all pixels around see the same thing at nearly the same depth and angle. */
 static bool is_inside(const KrsHit *hits, int i, int j)
 {
     const KrsHit *here = &hits[j * WIDTH + i];

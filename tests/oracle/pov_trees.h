@@ -47,7 +47,7 @@ void pov_tree_begin(PovTree *tree, Random *random);
 void pov_tree_add(PovTree *tree, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Adds a primitive, or CSG nodes of so many levels; returns the node. */
 int pov_tree_write(PovTree *tree, int depth);
-/* Whether a point is inside of a node. */
+/* Tells whether a point is inside of a node. */
 bool pov_tree_has(const PovTree *tree, int index, const double outer[3]);
 /* The point before the node is placed. */
 void pov_tree_inner(const PovNode *node, const double outer[3], double q[3]);

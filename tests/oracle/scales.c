@@ -96,7 +96,7 @@ static KrsPicture *shot_render(const Shot *shot)
     return picture;
 }
 
-/* Whether a ray meets the solid, larger by `more` on all sides. */
+/* Tells whether a ray meets the solid, larger by `more` on all sides. */
 static bool is_met(const Shot *shot, Line ray, double more)
 {
     ray.origin = vec_sub(ray.origin, shot->at);

@@ -33,7 +33,7 @@ static Vec read(const float *plane, int pixel)
     return vec(plane[3 * pixel], plane[3 * pixel + 1], plane[3 * pixel + 2]);
 }
 
-/* Whether a pixel and those around it see one component, not from too far aside. */
+/* Tells whether a pixel and those around it see one component, not from too far aside. */
 static bool is_clear(const KrsPicture *picture, int pixel)
 {
     int x = pixel % WIDTH, y = pixel / WIDTH;

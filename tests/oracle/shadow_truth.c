@@ -74,7 +74,7 @@ double share_above_edge(const Shot *shot, Vec point)
 
 Truths truths;
 
-/* Whether the last truths are those of another shot of the same solids. */
+/* Tells whether the last truths are those of another shot of the same solids. */
 static bool are_known(Truth *truth, const Shot *shot, double lift)
 {
     static struct {

@@ -21,7 +21,7 @@ typedef struct Disc {
 } Disc;
 
 Disc disc_from(const Shot *shot, Vec point);
-/* Whether a solid stands between a point and another that is `direction` off. */
+/* Tells whether a solid stands between a point and another that is `direction` off. */
 bool is_hidden(const Shot *shot, Vec point, Vec direction, bool endless);
 
 typedef double Truth(const Shot *shot, Vec point);

@@ -105,7 +105,7 @@ static void find_truth(Formula *formula, Line *rays, double *roots)
 
 static double pixel_at(double t) { return 2 * tan(0.5 * FOV) / HEIGHT * t; }
 
-/* Whether the pixels around see the same, at about the same depth. */
+/* Tells whether the pixels around see the same, at about the same depth. */
 static bool is_inside(const double *roots, int k)
 {
     for (int y = k / WIDTH - 1; y <= k / WIDTH + 1; y++)

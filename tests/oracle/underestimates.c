@@ -78,7 +78,7 @@ static double min_between(const struct Form *form, Line line, double a, double b
     return form->formula(line_at(line, 0.5 * (a + b)));
 }
 
-/* Whether a line from a point towards the light meets the form. */
+/* Tells whether a line from a point towards the light meets the form. */
 static bool is_hidden(const struct Form *form, Vec point)
 {
     Line   line  = {vec_sub(point, centre), vec_unit(light)};
@@ -106,7 +106,7 @@ static Lens camera(void)
     return lens_make(vec(target.x, 50, target.z + 50), target, HIGH / 2, true, WIDTH, HEIGHT);
 }
 
-/* Whether light reaches what pixel k sees; -1 where it is not the ground. */
+/* Tells whether light reaches what pixel k sees; -1 where it is not the ground. */
 static int seen_at(const KrsPicture *picture, int k)
 {
     const float *color = picture->color + 4 * k;

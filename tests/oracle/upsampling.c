@@ -242,7 +242,7 @@ static void upsampling_keeps_thin_shadows(void **context)
 
 /* ---- Crops ---- */
 
-/* Whether a picture of a part has the colours of the whole, bit by bit. */
+/* Tells whether a picture of a part has the colours of the whole, bit by bit. */
 static bool is_part_of(const KrsPicture *whole, const KrsPicture *part)
 {
     const KrsWindow w = part->window;

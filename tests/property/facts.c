@@ -50,7 +50,7 @@ static bool fact_makes_sense(const Fact *fact, uint32_t size)
     return fact->slope >= 0;
 }
 
-/* Whether a jump is so near that rounding has decided what the value is: floor(a - a). */
+/* Tells whether a jump is so near that rounding has decided what the value is: floor(a - a). */
 static bool is_at_a_jump(const Graph *graph, const Expr *e, const NodeValue *values)
 {
     static const double AWAY = 1e-12;

@@ -293,7 +293,7 @@ static double cone_excess(const Part *part)
     return 1 / least;
 }
 
-/* Whether the bound holds in the part, cut as often as needed; `left` counts down. */
+/* Tells whether the bound holds in the part, cut as often as needed; `left` counts down. */
 static bool holds(Part part, double bound, long *left)
 {
     double largest = 0, missing = 0, excess = 1;

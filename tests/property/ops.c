@@ -226,7 +226,7 @@ static bool only_jumps(Op op)
     }
 }
 
-/* Whether breaking a rule in this way changes anything. */
+/* Tells whether breaking a rule in this way changes anything. */
 static bool is_broken_by(Row row, Mutation mutation)
 {
     if (row.op == OP_footprint || row.op == OP_footprint_axes)

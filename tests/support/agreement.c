@@ -34,7 +34,7 @@ static bool same_shape(const KrsPicture *a, size_t i, const KrsPicture *b, size_
            a->instance[i] == b->instance[k];
 }
 
-/* Whether the first picture shows something else around a pixel, or something much nearer or
+/* Tells whether the first picture shows something else around a pixel, or something much nearer or
    farther; at the border nobody knows. */
 static bool is_outline(const KrsPicture *picture, uint32_t x, uint32_t y)
 {

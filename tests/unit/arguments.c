@@ -198,7 +198,7 @@ static char scene[1 << 15];
 
 static bool is_letter(char c) { return isalnum((unsigned char)c) || c == '_'; }
 
-/* Whether a text names a word between quotes. */
+/* Tells whether a text names a word between quotes. */
 static bool names(const char *text, const char *word)
 {
     size_t length = strlen(word);

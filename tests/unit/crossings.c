@@ -44,7 +44,7 @@ static bool has_vertex(const Extent *e, uint32_t vertex)
     return vertex == e->vertices[0] || vertex == e->vertices[1] || vertex == e->vertices[2];
 }
 
-/* Whether a segment goes through a triangle. */
+/* Tells whether a segment goes through a triangle. */
 static bool goes_through(const double a[3], const double b[3], const double corners[3][3])
 {
     double edges[2][3], along[3], offset[3], cross[3], turn[3];

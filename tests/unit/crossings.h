@@ -8,7 +8,7 @@
 
 #include "compiler/passes/compile.h"
 
-/* Whether an edge goes through a triangle that has none of its ends. */
+/* Tells whether an edge goes through a triangle that has none of its ends. */
 bool crosses_itself(const KrsMesh *mesh);
 
 #endif

@@ -105,7 +105,7 @@ static void close_fixture(Fixture *fixture)
     krs_renderer_free(fixture->renderer);
 }
 
-/* Whether a buffer on the device begins with these bytes. */
+/* Tells whether a buffer on the device begins with these bytes. */
 static bool device_has(Gpu *gpu, const Buffer *buffer, const void *bytes, size_t count)
 {
     Buffer copy;

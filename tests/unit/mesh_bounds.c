@@ -96,7 +96,7 @@ static Quadratic random_quadratic(void)
     return f;
 }
 
-/* Whether the value times the sign stays above a level on the way to a corner that is so. */
+/* Tells whether the value times the sign stays above a level on the way to a corner that is so. */
 static bool sees_a_corner(const Quadratic *f, const double (*corners)[3], const double p[3],
                           double sign, double level)
 {

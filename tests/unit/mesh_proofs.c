@@ -161,7 +161,7 @@ static double volume(const double a[3], const double b[3], const double c[3], co
            u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-/* Whether the segment between two points goes through a triangle. */
+/* Tells whether the segment between two points goes through a triangle. */
 static bool goes_through(const double p[3], const double q[3], const double c[3][3])
 {
     bool left = volume(p, q, c[0], c[1]) > 0;

@@ -26,7 +26,7 @@
 
 /* ---- Every method sees the same ---- */
 
-/* Whether the picture has an outline here: around the pixel is something else, or something far
+/* Tells whether the picture has an outline here: around the pixel is something else, or something far
    before or behind. */
 static bool is_outline(const KrsPicture *picture, int x, int y)
 {
@@ -119,7 +119,7 @@ static void half_a_pixel_is_found(void **state)
 
 enum { FEW_STEPS = 8 };
 
-/* Whether rays have run out, and what is seen all the same is what is there: a hit is one of rays
+/* Tells whether rays have run out, and what is seen all the same is what is there: a hit is one of rays
    that have all their steps, and at the same depth to a pixel's width. */
 static bool ends_are_hits(const Scene *scene, const KrsPicture *full, const KrsPicture *picture,
                           const char *what)

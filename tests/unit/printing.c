@@ -156,7 +156,7 @@ enum { MAX_SHADERS = 8192 };
 static uint64_t compiled_shaders[MAX_SHADERS];
 static size_t   compiled_count;
 
-/* Whether this very shader was compiled before: most functions say the same in many variants. */
+/* Tells whether this very shader was compiled before: most functions say the same in many variants. */
 static bool was_compiled(const char *shader, size_t length)
 {
     uint64_t hash = XXH3_64bits(shader, length);
@@ -210,7 +210,7 @@ static void look_at_text(const ShaderScene *of, const char *path, bool compiled)
         kinds_seen[of->wanted[i]]++;
 }
 
-/* Whether a function can be had in a variant (module.h). */
+/* Tells whether a function can be had in a variant (module.h). */
 static bool can_want(const ShaderScene *of, KrsFunction function)
 {
     const KrsProgram *program = krs_scene_program(of->scene);
@@ -249,7 +249,7 @@ static void look_at_variant(ShaderScene of, const char *path, bool compiled)
     look_at_text(&all, path, compiled);
 }
 
-/* Whether an earlier variant says the same: a scene has no planes, or no glass, to choose for. */
+/* Tells whether an earlier variant says the same: a scene has no planes, or no glass, to choose for. */
 static bool is_repeated(const KrsVariant *variants, size_t number)
 {
     bool repeated = false;

@@ -45,7 +45,7 @@ int hear_layers(void **state);
 /* ---- Pictures ---- */
 
 KrsPicture *render_scene(const Scene *scene, KrsRenderOptions options);
-/* Whether `part` is, in all planes and bit by bit, what `whole` shows there; frees `part`. */
+/* Tells whether `part` is, in all planes and bit by bit, what `whole` shows there; frees `part`. */
 bool is_part_of(const Scene *scene, const KrsPicture *whole, KrsPicture *part, const char *what);
 /* What a picture was asked for, in words. */
 const char *words(const KrsRenderOptions *options);

@@ -42,7 +42,7 @@ static KrsScene *compile_ball(const double ball[3], const char *projection, bool
     return scene;
 }
 
-/* Whether a ray of a picture with SIDE x SIDE pixels hits the ball. */
+/* Tells whether a ray of a picture with SIDE x SIDE pixels hits the ball. */
 static bool is_hit(const KrsScene *scene, bool flat)
 {
     KrsState *state;

@@ -31,7 +31,7 @@ static double ask(const Asked *asked, Vec p, Vec direction, double radius)
     return asked->product.state->values[asked->root].v[0];
 }
 
-/* Whether something of the chain is on the segment of this length, but for its last millionth. */
+/* Tells whether something of the chain is on the segment of this length, but for its last millionth. */
 static bool meets(const Chain *chain, Vec p, Vec direction, double length, int samples)
 {
     for (int i = 0; i < samples; i++) {
