@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_FLAT_H
 #define KRS_MESH_FLAT_H
 
-#include "mesh/flat/flat_faces.h"
+#include "mesh/flat/flat_edges.h"
 #include "mesh/proof/mesher.h"
 
 /* False: something in it is not flat, or is too fine; nothing is known. */

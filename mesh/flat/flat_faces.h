@@ -23,12 +23,14 @@ typedef struct FlatPlane {
     uint32_t  next;  /* with the same mark; NO_NUMBER */
 } FlatPlane;
 
+#define FLAT_WALL UINT32_MAX
+
 /* Part of an edge: of a face, at another plane. */
 typedef struct FlatSegment {
     uint32_t face, line; /* twice the plane, and 1 where the solid is above it; the other plane */
     int      way; /* 1: it goes along the line, which goes along the product of both normals; -1 */
     double   begin, end; /* on the line */
-    uint32_t ends[2];    /* planes that end it; WALL: it goes on in the next box */
+    uint32_t ends[2];    /* planes that end it; FLAT_WALL: it goes on in the next box */
 } FlatSegment;
 
 typedef struct FlatFaces {
@@ -51,7 +53,7 @@ typedef struct FlatFaces {
 /* Adds what is in a box.  False: it is too near to what cannot be told apart. */
 bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces);
 
-/* After all boxes.  False: they are no closed surface. */
-bool flat_faces_finish(FlatFaces *faces, FlatVertices *vertices, Triangles *triangles);
+/* Finds the direction of the line of two planes, in whichever order. */
+void flat_line_direction(const FlatFaces *faces, uint32_t a, uint32_t b, double along[3]);
 
 #endif
