@@ -29,7 +29,7 @@ CFLAGS  ?= -g -O2
 FUZZ_SECONDS ?= 20
 CLANG   ?= clang
 DEVICE  ?= $(KRS_DEVICE)
-# Of `make test`, while it builds.
+# How many jobs `make test` has while it builds.
 JOBS    ?= $(shell nproc)
 
 # Sources by folder, in the order of the pipeline: reading down this list is reading the program.

@@ -97,7 +97,7 @@ sed 's/^KRS_CAMERA(eyes.*/&\nKRS_CAMERA(later, number, BODY, NULL, false, 0)/' i
 sed 's/^KRS_LIGHT(size.*/&\nKRS_LIGHT(later, number, NULL, NULL, 0)/' include/krs/lights.def >"$work/later/krs/lights.def"
 layouts "$work/older" >"$work/layouts_older" 2>"$work/said"
 layouts "$work/later" >"$work/layouts_later" 2>>"$work/said"
-# Of each struct the size is another one, but for bytes that were there to fill it up.
+# Each struct has another size, but for bytes that were there to fill it up.
 differ=$(cat "$work/layouts_older" "$work/layouts_now" "$work/layouts_later" | grep -v '[._]' | sort -u | cut -d ' ' -f 1 | uniq -c |
     awk '$1 == 3' | wc -l)
 [ "$differ" -ge 18 ]

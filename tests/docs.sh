@@ -49,7 +49,7 @@ spans docs/language.md >"$work/spans"
 sed 's/: [0-9.]*\([,)]\)/\1/g; s/:\([,)]\)/\1/g; s/\.\.\.//g' "$work/spans" >"$work/signatures"
 grep -v '^\.' "$work/signatures" | grep -o '[A-Za-z_][A-Za-z_0-9]*' | sort -u >"$work/words"
 
-# Of `name(parameter, parameter)` on standard input: what is not there.  Where the page has the
+# Prints what is not there of `name(parameter, parameter)` on standard input.  Where the page has the
 # name with parentheses, it must have these parameters.
 undocumented() {
     while read -r wanted; do

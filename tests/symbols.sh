@@ -36,7 +36,7 @@ done >"$work/headers.c"
     sort -u >"$work/declared"
 sed -n 's/_sized$//p' "$work/declared" | sort | comm -23 "$work/declared" - >"$work/api"
 
-# Of the linker, not of ours.
+# These names are the linker's, not ours.
 linkers='^(_init|_fini|_start|_end|_edata|__bss_start|_DYNAMIC|_GLOBAL_OFFSET_TABLE_)$'
 [ "$(wc -l <"$work/api")" -gt 80 ]
 report $? "the headers declare $(wc -l <"$work/api") names"

@@ -53,7 +53,7 @@ figure() { # name
     echo "</figcaption></figure>"
 }
 
-# Of what there is so far.
+# Prints a page of what there is so far.
 page() {
     cat <<END
 <!DOCTYPE html>

@@ -14,10 +14,10 @@ once      = $(eval $(1) := $(call $(2)))$($(1))
 described = $(foreach module,$(2),$(shell $(PKG_CONFIG) --silence-errors $(1) $(module)))
 # The options that link a library: its module of pkg-config, and its name.
 linked    = $(or $(shell $(PKG_CONFIG) --silence-errors --libs $(1)),-l$(2))
-# Of these names those that the compiler finds a library of.
+# Those of these names that the compiler finds a library of.
 found     = $(foreach name,$(1),$(if $(filter /%,$(foreach end,so a dylib,$(shell $(CC) -print-file-name=lib$(name).$(end)))),-l$(name)))
 
-# Of OpenEXR only the part in C.
+# Only the part of OpenEXR in C is needed.
 core_libs  = $(or $(filter -L% -lOpenEXRCore%,$(shell $(PKG_CONFIG) --silence-errors --libs OpenEXR)),-lOpenEXRCore)
 front_libs = $(call linked,harfbuzz,harfbuzz) $(call linked,freetype2,freetype) \
              $(call linked,fontconfig,fontconfig) $(call linked,expat,expat) $(core_libs) \
@@ -39,10 +39,10 @@ headers    = $(patsubst -I%,-isystem %,$(call described,--cflags,$(has_chafa) fr
 # What the compiler needs but for glslang, which the fuzzers leave out.
 FRONT_LIBS  = $(call once,FRONT_LIBS,front_libs)
 LIBS        = $(call once,LIBS,libs)
-# Of the command alone.  Without libchafa `krs view --terminal` says so.
+# The command alone needs it.  Without libchafa `krs view --terminal` says so.
 CHAFA       = $(call once,CHAFA,has_chafa)
 WINDOW_LIBS = $(call once,WINDOW_LIBS,window)
 MESH_LIBS   = $(call once,MESH_LIBS,mesh_libs)
-# Of the module for OpenVDB; without the library `krs grid` says so.
+# The module for OpenVDB needs it; without the library `krs grid` says so.
 VDB_LIBS    = $(call once,VDB_LIBS,vdb_libs)
 HEADERS     = $(call once,HEADERS,headers)

@@ -4,7 +4,7 @@
 # usage: bench/large/large.sh KRS [COUNTS] [TURNS]
 #
 # Balls of one size are spread evenly in a cube, as sharp union and, for krs alone, as a blended one.
-# Of 1,000 and 10,000 also the other kinds of blends, and a sharp union that is twisted: their frames.
+# 1,000 and 10,000 parts have also the other kinds of blends, and a sharp union that is twisted: their frames.
 # Both programs get the same centres, camera and light, and write a PNG file.  Printed in Markdown,
 # medians of TURNS runs:
 #   first    the whole process, nothing cached: a picture of 640x360, seconds

@@ -77,7 +77,7 @@ anew "is damaged, or no checkpoint" "one with another byte"
 echo hello >part.exr.part
 anew "is damaged, or no checkpoint" "a file that is something else"
 
-# Of an animation, frames that are done stay.
+# Frames of an animation that are done stay.
 cat >moving.krs <<'END'
 camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }
 show sphere(1).move([0, 1 + 0.5 * sin(time), 0]); show plane([0, 1, 0], 0);

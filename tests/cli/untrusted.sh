@@ -6,7 +6,7 @@
 plan 70
 small="--size 16x12 --quiet --untrusted"
 
-# Of a folder with links of all kinds, and one beside it that nothing may change.
+# Makes a folder with links of all kinds, and one beside it that nothing may change.
 prepare() {
     chmod -R u+w in out 2>/dev/null
     rm -rf in out
@@ -212,7 +212,7 @@ wait $swapper
 result $? "a folder that turns into a link and back"
 rm -f stop
 
-# Of others links are followed, as before.
+# Links of other folders are followed, as before.
 prepare && plant relative a.png
 (cd in && "$krs" render ball.krs --size 16x12 --quiet -o a.png >../stdout 2>../err)
 [ -L in/a.png ] && [ "$(wc -c <out/victim)" -gt 100 ]
