@@ -22,4 +22,7 @@ LaneRun lane_double_plain, lane_single_plain;
 LaneRun lane_double_avx2, lane_single_avx2;
 LaneRun lane_double_avx512, lane_single_avx512;
 
+/* Cell tapes, by the best set and by each. */
+LaneCellRun lane_cell_run, lane_cells_plain, lane_cells_avx2, lane_cells_avx512;
+
 #endif

@@ -26,6 +26,7 @@ LESSER(float, float)
 #define fmax(a, b) _Generic((a) + (b), float : float_greatest, default : double_greatest)(a, b)
 
 #include "compiler/graph/lanes/lane_call.h"
+#include "compiler/graph/lanes/lane_cells.h"
 #include "compiler/graph/op_values.h"
 
 #ifdef __clang__
@@ -245,6 +246,93 @@ void LANE_LOOP(const LaneTape *tape, const LaneWork *work, size_t points)
             LOCAL(general_step)(tape, code, rows, blocks);
     }
 }
+
+#ifdef CELL_LOOP
+/* ---- cell tapes ---- */
+
+static void LOCAL(cell_call)(const CellTape *tape, NodeValue *values, const CellCall *call,
+                             REAL *rows, REAL *to)
+{
+    const LaneTape *whole = tape->whole;
+    const Expr     *e     = &whole->tape->graph->items[call->call->node];
+    for (size_t i = 0; i < CELL_LANES; i++) {
+        NodeValue operands[MAX_OPERANDS] = {0};
+        for (uint32_t k = 0; k < e->operand_count; k++)
+            for (uint32_t c = 0; c < 4 && call->from[k][c] != NODE_NONE; c++)
+                operands[k].v[c] = (double)rows[(size_t)call->from[k][c] * CELL_LANES + i];
+        NodeValue value = lane_call(whole->tape, values, call->call->node, operands);
+        for (uint32_t c = 0; c < call->call->parts; c++)
+            to[c * CELL_LANES + i] = (REAL)value.v[c];
+    }
+}
+
+/* All lanes of a cell tape.  gcc would else unroll the loop before it looks for vectors. */
+#ifdef __clang__
+#define ALL_LANES EACH_LANE(CELL_LANES / LANE_BLOCK)
+#else
+#define ALL_LANES LANES_APART _Pragma("GCC unroll 1") for (size_t i = 0; i < CELL_LANES; i++)
+#endif
+
+/* The row of an operand; its lanes. */
+#define CELL_ROW(k) (rows + (size_t)step->from[k] * CELL_LANES)
+#define CELL(op, value)                                                                    \
+    case op: {                                                                             \
+        const REAL *x = CELL_ROW(0), *y = CELL_ROW(1), *z = CELL_ROW(2), *w = CELL_ROW(3); \
+        ALL_LANES                                                                          \
+        {                                                                                  \
+            const REAL a = x[i], b = y[i], c = z[i], d = w[i];                             \
+            (void)b, (void)c, (void)d;                                                     \
+            STORE(value);                                                                  \
+        }                                                                                  \
+    } break;
+
+#define CELL_SQUARE(size, value)         \
+    if (step->operand_count == (size)) { \
+        switch (0) {                     \
+            CELL(0, sqrt(value))         \
+        }                                \
+        return;                          \
+    }
+/* What is very long is infinite, and what is very short has no length: cells need no more. */
+static inline void LOCAL(cell_length)(const CellStep *step, const REAL *rows, REAL *to)
+{
+    CELL_SQUARE(2, a * a + b * b)
+    CELL_SQUARE(3, a * a + b * b + c * c)
+    CELL_SQUARE(4, a * a + b * b + c * c + d * d)
+    CELL_SQUARE(1, a * a)
+}
+
+void CELL_LOOP(const CellTape *tape, NodeValue *values, REAL *rows)
+{
+    REAL *to = rows + (size_t)(tape->inputs + LANE_INPUTS) * CELL_LANES;
+    for (const CellStep *step = tape->steps, *end = step + tape->count; step < end;
+         step++, to += CELL_LANES) {
+        switch (step->op) {
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
+    CELL(OP_##name, value)
+#define NUMBERS(name, arity, value, ...) CELL(OP_##name, value)
+#define TRUTH                            NUMBERS
+#include "compiler/graph/ops.def"
+#define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
+              weights, meaning)                                                                  \
+    CELL(OP_smin_##name, LOCAL(smin_##name)(a, b, c, d))
+#include "compiler/graph/blends.def"
+            CELL(LANE_LESSER, b < a ? b : a)
+            CELL(LANE_GREATER, b > a ? b : a)
+        case OP_length: LOCAL(cell_length)(step, rows, to); break;
+        case LANE_CALL:
+            LOCAL(cell_call)(tape, values, &tape->calls[step->from[0]], rows, to);
+            break;
+        case LANE_PART: break;
+        default: assert(!"no step");
+        }
+    }
+}
+#undef ALL_LANES
+#undef CELL
+#undef CELL_ROW
+#undef CELL_LOOP
+#endif
 
 #undef LANE_LOOP
 #undef REAL

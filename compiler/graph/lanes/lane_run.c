@@ -15,10 +15,10 @@
 
 static const LaneSet all_sets[] = {
 #if defined(__x86_64__)
-    {"avx512", {lane_double_avx512, lane_single_avx512}},
-    {"avx2", {lane_double_avx2, lane_single_avx2}},
+    {"avx512", {lane_double_avx512, lane_single_avx512}, lane_cells_avx512},
+    {"avx2", {lane_double_avx2, lane_single_avx2}, lane_cells_avx2},
 #endif
-    {"plain", {lane_double_plain, lane_single_plain}},
+    {"plain", {lane_double_plain, lane_single_plain}, lane_cells_plain},
 };
 enum { SETS = sizeof all_sets / sizeof *all_sets };
 
@@ -44,7 +44,7 @@ static _Atomic(const LaneSet *) used_set;
 
 void lane_use_set(const LaneSet *set) { atomic_store(&used_set, set); }
 
-static const LaneSet *current_set(void)
+const LaneSet *lane_used_set(void)
 {
     const LaneSet *set = atomic_load_explicit(&used_set, memory_order_relaxed);
     if (!set) {
@@ -52,6 +52,11 @@ static const LaneSet *current_set(void)
         atomic_store(&used_set, set);
     }
     return set;
+}
+
+void lane_cell_run(const struct CellTape *tape, NodeValue *values, float *rows)
+{
+    lane_used_set()->run_cells(tape, values, rows);
 }
 
 /* ---- point by point ---- */
@@ -134,7 +139,7 @@ static double output_at(const LaneTape *tape, const LaneWork *work, LanePrecisio
 void lane_run(const LaneTape *tape, const LaneWork *work, LanePrecision precision,
               LanePoints points, size_t first, size_t outputs, double *results)
 {
-    LaneRun *run = current_set()->run[precision];
+    LaneRun *run = lane_used_set()->run[precision];
     assert(first + outputs <= tape->output_count);
     for (size_t begin = 0; begin < points.count; begin += LANES) {
         size_t count = points.count - begin < LANES ? points.count - begin : LANES;

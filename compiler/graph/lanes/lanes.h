@@ -177,15 +177,21 @@ void lane_run(const LaneTape *tape, const LaneWork *work, LanePrecision precisio
 
 /* How an instruction set runs a block of rows whose inputs are filled. */
 typedef void LaneRun(const LaneTape *tape, const LaneWork *work, size_t points);
+/* How it runs a cell tape (lane_cells.h) on all lanes. */
+struct CellTape;
+typedef void LaneCellRun(const struct CellTape *tape, NodeValue *values, float *rows);
 typedef struct LaneSet {
-    const char *name;
-    LaneRun    *run[LANE_PRECISIONS];
+    const char  *name;
+    LaneRun     *run[LANE_PRECISIONS];
+    LaneCellRun *run_cells;
 } LaneSet;
 
 /* The sets that this processor has, best first; the last is plain C. */
 size_t lane_sets(const LaneSet **sets);
 /* For tests: only this one is used, by all threads; NULL: the best. */
 void lane_use_set(const LaneSet *set);
+/* The one that is used. */
+const LaneSet *lane_used_set(void);
 
 /* ---- boxes ---- */
 

@@ -4,4 +4,5 @@
 #include "compiler/graph/lanes/lane_loop.h"
 #define REAL      float
 #define LANE_LOOP lane_single_avx2
+#define CELL_LOOP lane_cells_avx2
 #include "compiler/graph/lanes/lane_loop.h"

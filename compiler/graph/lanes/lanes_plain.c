@@ -4,4 +4,5 @@
 #include "compiler/graph/lanes/lane_loop.h"
 #define REAL      float
 #define LANE_LOOP lane_single_plain
+#define CELL_LOOP lane_cells_plain
 #include "compiler/graph/lanes/lane_loop.h"

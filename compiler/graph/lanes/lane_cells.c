@@ -1,0 +1,397 @@
+/*
+ * lane_cells.c: short tapes for cells of space.
+ *
+ * What an operation is bounded by comes from its value in the middle and its slope.  Where it has no slope, as
+ * comparisons have none, its row of ops.def tells a range by those of its operands.
+ */
+#include "compiler/graph/lanes/lane_cells.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "compiler/graph/bounds/numbers.h"
+#include "compiler/graph/lanes/lane_call.h"
+
+struct CellWork {
+    NodeValue *values;
+    float    **rows; /* of each depth */
+    /* By row, while a tape is made: whether it is needed, and then between a floor and a cap; the row that stands for it;
+       and where that is in the tape that is made. */
+    bool     *needed;
+    float    *caps, *floors;
+    uint32_t *same, *now;
+    CellStep *steps; /* a stack */
+    CellCall *calls; /* a stack, too */
+    size_t    step_count, call_count;
+};
+
+/* ---- the tape for all of space ---- */
+
+static uint32_t row_of(uint32_t operand, uint32_t inputs)
+{
+    return operand & LANE_SCALAR ? operand & ~LANE_SCALAR : inputs + operand;
+}
+
+CellTape cell_tape_new(const LaneTape *tape, Arena *arena)
+{
+    const uint32_t inputs = (uint32_t)tape->scalar_count;
+    CellStep      *steps  = arena_new_array(arena, CellStep, tape->count + 1);
+    CellCall      *calls  = arena_new_array(arena, CellCall, tape->call_count + 1);
+    for (size_t i = 0; i < tape->count; i++) {
+        const LaneStep *from  = &tape->steps[i];
+        const bool      plain = from->op != LANE_CALL && from->op != LANE_PART;
+        steps[i]              = (CellStep){.op            = from->op,
+                                           .operand_count = plain ? from->operand_count : 0,
+                                           .steepest      = from->steepest};
+        for (uint32_t k = 0; k < steps[i].operand_count; k++)
+            steps[i].from[k] = row_of(from->operands[k], inputs);
+        if (from->op == LANE_CALL)
+            steps[i].from[0] = from->operands[0];
+    }
+    for (size_t i = 0; i < tape->call_count; i++) {
+        calls[i].call = &tape->calls[i];
+        for (uint32_t k = 0; k < MAX_OPERANDS; k++)
+            for (uint32_t c = 0; c < 4; c++) {
+                const uint32_t operand = tape->calls[i].operands[k][c];
+                calls[i].from[k][c]    = operand == NODE_NONE ? NODE_NONE : row_of(operand, inputs);
+            }
+    }
+    return (CellTape){.whole      = tape,
+                      .steps      = steps,
+                      .calls      = calls,
+                      .count      = (uint32_t)tape->count,
+                      .call_count = (uint32_t)tape->call_count,
+                      .inputs     = inputs,
+                      .output     = row_of(tape->outputs[0], inputs),
+                      .cap        = HUGE_VALF};
+}
+
+/* ---- what a thread needs ---- */
+
+static float *new_rows(const CellTape *tape, size_t count, Arena *arena)
+{
+    enum { ALIGNMENT = 64 };
+    char  *memory = arena_alloc(arena, count * CELL_LANES * sizeof(float) + ALIGNMENT, 1);
+    float *rows   = (float *)(memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT);
+    for (size_t i = 0; i < tape->inputs; i++)
+        for (int lane = 0; lane < CELL_LANES; lane++)
+            rows[i * CELL_LANES + lane] = (float)tape->whole->scalars[i] + 0.0f;
+    return rows;
+}
+
+CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values, Arena *arena)
+{
+    CellWork    *work = arena_new(arena, CellWork);
+    const size_t rows = (size_t)tape->inputs + LANE_INPUTS + tape->count;
+    *work             = (CellWork){
+                    .values = values,
+                    .rows   = arena_new_array(arena, float *, depth + 1),
+                    .needed = arena_new_array(arena, bool, rows),
+                    .now    = arena_new_array(arena, uint32_t, rows),
+                    .caps   = arena_new_array(arena, float, rows),
+                    .floors = arena_new_array(arena, float, rows),
+                    .same   = arena_new_array(arena, uint32_t, rows),
+                    .steps  = arena_new_array(arena, CellStep, (size_t)tape->count * depth + 1),
+                    .calls  = arena_new_array(arena, CellCall, (size_t)tape->call_count * depth + 1)};
+    for (uint32_t i = 0; i <= depth; i++)
+        work->rows[i] = new_rows(tape, rows, arena);
+    return work;
+}
+
+/* ---- points ---- */
+
+const float *cell_run(const CellTape *tape, CellWork *work, uint32_t depth,
+                      const float points[3][CELL_LANES])
+{
+    float *rows = work->rows[depth];
+    memcpy(rows + (size_t)(tape->inputs + LANE_POINT) * CELL_LANES, points,
+           3 * CELL_LANES * sizeof(float));
+    lane_cell_run(tape, work->values, rows);
+    return rows + (size_t)tape->output * CELL_LANES;
+}
+
+const float *cell_run_seen(const CellTape *tape, CellWork *work, const float points[3][CELL_LANES],
+                           const float directions[3][CELL_LANES])
+{
+    memcpy(work->rows[0] + (size_t)(tape->inputs + LANE_NORMAL) * CELL_LANES, directions,
+           3 * CELL_LANES * sizeof(float));
+    return cell_run(tape, work, 0, points);
+}
+
+/* ---- bounds ---- */
+
+/* The ball of a lane. */
+typedef struct Ball {
+    const CellTape *tape;
+    const float    *rows; /* values in its middle: those of the lane */
+    float           radius, margin;
+} Ball;
+
+static bool is_constant(const CellTape *tape, uint32_t row) { return row < tape->inputs; }
+
+static const CellStep *step_of(const CellTape *tape, uint32_t row)
+{
+    const uint32_t first = tape->inputs + LANE_INPUTS;
+    return row < first ? NULL : &tape->steps[row - first];
+}
+
+/* How much a row may differ from its value in the middle; infinite: there is no bound. */
+static float reach_of(const Ball *ball, uint32_t row)
+{
+    const CellStep *step = step_of(ball->tape, row);
+    if (is_constant(ball->tape, row))
+        return 0;
+    if (!step)
+        return row < ball->tape->inputs + LANE_POINT + 3 ? ball->radius + ball->margin : HUGE_VALF;
+    return step->steepest > 0 ? step->steepest * (ball->radius + ball->margin) : HUGE_VALF;
+}
+
+static float value_of(const Ball *ball, uint32_t row)
+{
+    return ball->rows[(size_t)row * CELL_LANES];
+}
+
+static Range range_by_slope(const Ball *ball, uint32_t row)
+{
+    const double value = (double)value_of(ball, row), reach = (double)reach_of(ball, row);
+    return isfinite(value) && isfinite(reach) ? (Range){value - reach, value + reach} : ANYTHING;
+}
+
+/* By the slope, or else by those of the operands. */
+static Range range_of_row(const Ball *ball, uint32_t row)
+{
+    const CellStep *step = step_of(ball->tape, row);
+    if (!step || step->steepest > 0 || step->op >= OP_COUNT || !number_rows[step->op].range)
+        return range_by_slope(ball, row);
+    Range o[MAX_OPERANDS] = {{0, 0}, {0, 0}, {0, 0}, {0, 0}};
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        o[k] = range_by_slope(ball, step->from[k]);
+    return number_rows[step->op].range(o);
+}
+
+float cell_reach(const CellTape *tape, float radius, float margin)
+{
+    return reach_of(&(Ball){tape, NULL, radius, margin}, tape->output);
+}
+
+/* ---- what is needed ---- */
+
+typedef struct Pruning {
+    Ball      ball;
+    CellWork *work;
+} Pruning;
+
+/* A row is needed, and of it what lies between a floor and a cap. */
+static void need(Pruning *p, uint32_t row, float cap, float floor)
+{
+    CellWork *work = p->work;
+    if (is_constant(p->ball.tape, row))
+        return;
+    if (!work->needed[row]) {
+        work->needed[row] = true;
+        work->caps[row]   = cap;
+        work->floors[row] = floor;
+        return;
+    }
+    work->caps[row]   = cap > work->caps[row] ? cap : work->caps[row];
+    work->floors[row] = floor < work->floors[row] ? floor : work->floors[row];
+}
+
+static void need_all(Pruning *p, const CellStep *step)
+{
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        need(p, step->from[k], HUGE_VALF, -HUGE_VALF);
+}
+
+/* Of a minimum, or with sign -1 of a maximum.  Operands that are above the cap in all of the ball are not
+   needed, but for one. */
+static void need_of_least(Pruning *p, const CellStep *step, uint32_t row, float sign)
+{
+    CellWork      *work = p->work;
+    const uint32_t a = step->from[0], b = step->from[1];
+    const float    value_a = sign * value_of(&p->ball, a), value_b = sign * value_of(&p->ball, b);
+    const float    reach_a = reach_of(&p->ball, a), reach_b = reach_of(&p->ball, b);
+    float          cap = sign > 0 ? work->caps[row] : -work->floors[row];
+    if (value_a + reach_a < cap)
+        cap = value_a + reach_a;
+    if (value_b + reach_b < cap)
+        cap = value_b + reach_b;
+    bool drops_a = value_a - reach_a > cap, drops_b = value_b - reach_b > cap;
+    if (drops_a && drops_b) {
+        drops_a = value_a - reach_a > value_b - reach_b;
+        drops_b = !drops_a;
+    }
+    work->same[row] = drops_a ? b : drops_b ? a : row;
+    if (!drops_a)
+        need(p, a, sign > 0 ? cap : HUGE_VALF, sign > 0 ? -HUGE_VALF : -cap);
+    if (!drops_b)
+        need(p, b, sign > 0 ? cap : HUGE_VALF, sign > 0 ? -HUGE_VALF : -cap);
+}
+
+/* Sums and products are one of their operands where the other is 0 or 1, which is seen later. */
+static bool is_arithmetic(uint16_t op)
+{
+    return op == OP_add || op == OP_sub || op == OP_mul || op == OP_div;
+}
+
+/* The only operand that it may be; `row`: there may be several. */
+static uint32_t only_operand(const Pruning *p, const CellStep *step, uint32_t row)
+{
+    const NumberRow *known           = step->op < OP_COUNT ? &number_rows[step->op] : NULL;
+    Range            o[MAX_OPERANDS] = {{0, 0}, {0, 0}, {0, 0}, {0, 0}};
+    if (!known || !known->chooses || is_arithmetic(step->op))
+        return row;
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        o[k] = range_of_row(&p->ball, step->from[k]);
+    const unsigned chosen = known->chooses(o);
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        if (chosen == 1u << k && isfinite(o[k].low) && isfinite(o[k].high))
+            return step->from[k];
+    return row;
+}
+
+static void need_of_call(Pruning *p, const CellCall *call)
+{
+    for (uint32_t k = 0; k < MAX_OPERANDS; k++)
+        for (uint32_t c = 0; c < 4 && call->from[k][c] != NODE_NONE; c++)
+            need(p, call->from[k][c], HUGE_VALF, -HUGE_VALF);
+}
+
+/* Of sums with a constant, and products by one above 0. */
+static bool need_of_linear(Pruning *p, const CellStep *step, float cap, float floor)
+{
+    const uint32_t a = step->from[0], b = step->from[1];
+    const bool     constant_a = is_constant(p->ball.tape, a);
+    const float    by         = value_of(&p->ball, constant_a ? a : b);
+    if (step->operand_count != 2 || constant_a == is_constant(p->ball.tape, b))
+        return false;
+    const uint32_t other = constant_a ? b : a;
+    if (step->op == OP_add)
+        need(p, other, cap - by, floor - by);
+    else if (step->op == OP_sub && !constant_a)
+        need(p, other, cap + by, floor + by);
+    else if (step->op == OP_mul && by > 0)
+        need(p, other, cap / by, floor / by);
+    else
+        return false;
+    return true;
+}
+
+static void need_of_step(Pruning *p, const CellStep *step, uint32_t row)
+{
+    CellWork   *work = p->work;
+    const float cap = work->caps[row], floor = work->floors[row];
+    work->same[row] = row;
+    switch (step->op) {
+    case OP_min:
+    case LANE_LESSER: need_of_least(p, step, row, 1); return;
+    case OP_max:
+    case LANE_GREATER: need_of_least(p, step, row, -1); return;
+    case OP_neg: need(p, step->from[0], -floor, -cap); return;
+    case LANE_PART: need(p, row - 1, HUGE_VALF, -HUGE_VALF); return;
+    case LANE_CALL: need_of_call(p, &p->ball.tape->calls[step->from[0]]); return;
+    default: break;
+    }
+    work->same[row] = only_operand(p, step, row);
+    if (work->same[row] != row)
+        need(p, work->same[row], cap, floor);
+    else if (!need_of_linear(p, step, cap, floor))
+        need_all(p, step);
+}
+
+/* ---- the shorter tape ---- */
+
+/* Where a row of the longer tape is in the shorter one; what is before the steps stays where it is. */
+static uint32_t moved(const Pruning *p, uint32_t row)
+{
+    return step_of(p->ball.tape, row) ? p->work->now[row] : row;
+}
+
+static bool is_zero(const Pruning *p, uint32_t row)
+{
+    return is_constant(p->ball.tape, row) && value_of(&p->ball, row) == 0;
+}
+
+/* The row that stands for a step whose operands have moved: sums with 0 and products by 0; `row`: none. */
+static uint32_t simpler(const Pruning *p, const CellStep *step, uint32_t row)
+{
+    const uint32_t a = step->from[0], b = step->from[1];
+    switch (step->op) {
+    case OP_add: return is_zero(p, b) ? a : is_zero(p, a) ? b : row;
+    case OP_sub: return is_zero(p, b) ? a : row;
+    case OP_mul: return is_zero(p, a) ? a : is_zero(p, b) ? b : row;
+    default: return row;
+    }
+}
+
+static CellStep moved_step(Pruning *p, const CellStep *from, CellCall *calls, uint32_t *call_count)
+{
+    CellStep step = *from;
+    for (uint32_t k = 0; k < step.operand_count; k++)
+        step.from[k] = moved(p, step.from[k]);
+    if (step.op != LANE_CALL)
+        return step;
+    CellCall *call = &calls[*call_count];
+    *call          = p->ball.tape->calls[step.from[0]];
+    for (uint32_t k = 0; k < MAX_OPERANDS; k++)
+        for (uint32_t c = 0; c < 4 && call->from[k][c] != NODE_NONE; c++)
+            call->from[k][c] = moved(p, call->from[k][c]);
+    step.from[0] = (*call_count)++;
+    return step;
+}
+
+/* Adds what is needed of a step to the shorter tape. */
+static void move_step(Pruning *p, CellTape *to, uint32_t i)
+{
+    CellWork       *work  = p->work;
+    const uint32_t  first = to->inputs + LANE_INPUTS, row = first + i;
+    const CellStep *from = &p->ball.tape->steps[i];
+    /* All parts of a call follow it, whether they are needed or not. */
+    const bool part = from->op == LANE_PART;
+    if (!work->needed[part ? row - 1 : row])
+        return;
+    work->needed[row] |= part;
+    if (work->same[row] != row && !part) {
+        work->now[row] = moved(p, work->same[row]);
+        return;
+    }
+    const uint32_t next = first + to->count;
+    CellStep      *step = &work->steps[work->step_count + to->count];
+    *step               = moved_step(p, from, &work->calls[work->call_count], &to->call_count);
+    work->now[row]      = simpler(p, step, next);
+    to->count += work->now[row] == next;
+}
+
+CellTape cell_prune(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
+                    float radius, float margin)
+{
+    const uint32_t first = tape->inputs + LANE_INPUTS;
+    Pruning        p     = {{tape, work->rows[depth] + lane, radius, margin}, work};
+    CellTape       to    = *tape;
+    const float    most  = value_of(&p.ball, tape->output) + reach_of(&p.ball, tape->output);
+    const float    wide  = 2 * radius;
+    to.cap               = most < wide || tape->cap < wide ? tape->cap : wide;
+    to.steps             = work->steps + work->step_count;
+    to.calls             = work->calls + work->call_count;
+    to.count = to.call_count = 0;
+    memset(work->needed, 0, (first + (size_t)tape->count) * sizeof *work->needed);
+    need(&p, tape->output, most < wide ? most : wide, -HUGE_VALF);
+    for (uint32_t i = tape->count; i-- > 0;)
+        if (work->needed[first + i])
+            need_of_step(&p, &tape->steps[i], first + i);
+    for (uint32_t i = 0; i < tape->count; i++)
+        move_step(&p, &to, i);
+    to.output = moved(&p, tape->output);
+    work->step_count += to.count;
+    work->call_count += to.call_count;
+    return to;
+}
+
+CellMark cell_mark(const CellWork *work) { return (CellMark){work->step_count, work->call_count}; }
+
+void cell_release(CellWork *work, CellMark mark)
+{
+    work->step_count = mark.steps;
+    work->call_count = mark.calls;
+}

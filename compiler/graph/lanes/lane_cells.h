@@ -1,0 +1,78 @@
+/*
+ * lane_cells.h: short tapes for cells of space, for rays.
+ *
+ * Rays ask for many distances in small parts of space.  A *cell* is a ball.  In it most shapes are farther
+ * away than the nearest one, and a *cell tape* without them is short.  It works in single precision on
+ * CELL_LANES points at once.
+ *
+ * As many cells are bounded at once, a lane each: in a ball no value of a step differs by more than its
+ * slope times the radius from that in the middle.  A minimum needs no operand that is above another one in
+ * all of the ball, nor above the *cap*: the most that the distance is there, or the diameter of the ball if
+ * that is less.  Beyond the cap a cell tape may be wrong, but is no less than the cap.  Whoever steps by
+ * the distance leaves the ball by such a step.
+ *
+ * A step has a row of numbers for itself, so all values are there when cells are bounded.
+ */
+#ifndef KRS_LANE_CELLS_H
+#define KRS_LANE_CELLS_H
+
+#include "compiler/graph/lanes/lanes.h"
+
+enum { CELL_LANES = 16 };
+
+/* On rows: those of constants are the first, then inputs, then a row for each step, in their order. */
+typedef struct CellStep {
+    uint16_t op, operand_count;
+    uint32_t from[MAX_OPERANDS]; /* 0 behind the last; of LANE_CALL the number of the call */
+    float    steepest;           /* as of LaneStep */
+} CellStep;
+
+typedef struct CellCall {
+    const LaneCall *call;
+    uint32_t        from[MAX_OPERANDS][4]; /* rows; NODE_NONE behind the last */
+} CellCall;
+
+typedef struct CellTape {
+    const LaneTape *whole;
+    const CellStep *steps;
+    const CellCall *calls;
+    uint32_t        count, call_count;
+    uint32_t        inputs; /* the row of the first input: the number of constants */
+    uint32_t        output; /* the row of the distance */
+    float           cap;    /* infinite: it is right all over the ball */
+} CellTape;
+
+/* Of one thread; made by cell_work_new. */
+typedef struct CellWork CellWork;
+
+/* The cell tape of output 0 for all of space; the lane tape lives as long, and its scalars are known when
+   works are made. */
+CellTape cell_tape_new(const LaneTape *tape, Arena *arena);
+
+/* What one thread needs for cells within cells: `depth` of them, each within the one before.  Values are those of the
+   frame, its own if the tape reads tables. */
+CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values, Arena *arena);
+
+/* Runs it at CELL_LANES points: x, y and z of all, by rows of this depth.  Returns the row of the distance. */
+const float *cell_run(const CellTape *tape, CellWork *work, uint32_t depth,
+                      const float points[3][CELL_LANES]);
+
+/* The same on rays of these directions, by the rows of depth 0. */
+const float *cell_run_seen(const CellTape *tape, CellWork *work, const float points[3][CELL_LANES],
+                           const float directions[3][CELL_LANES]);
+
+/* How much the distance differs in a ball from that in its middle, at most. */
+float cell_reach(const CellTape *tape, float radius, float margin);
+
+/* After a run in the middles of balls: what is left in the ball of a lane.  `margin` is what rounding may
+   make of coordinates.  It lives until its mark, which was taken before, is released.  As many may live as
+   the work has depth. */
+typedef struct CellMark {
+    size_t steps, calls;
+} CellMark;
+CellMark cell_mark(const CellWork *work);
+void     cell_release(CellWork *work, CellMark mark);
+CellTape cell_prune(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
+                    float radius, float margin);
+
+#endif

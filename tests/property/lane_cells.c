@@ -1,0 +1,260 @@
+/*
+ * lane_cells.c: in a ball the cell tape of a scene tells the distance that the scene has there, up to the cap;
+ * farther away it tells no less than the cap.
+ *
+ * Scenes are trees of shapes at random, and some that have other operations.  What is pruned for a smaller ball than
+ * the one it is asked in must be seen to be wrong.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/graph/lanes/lane_cells.h"
+#include "compiler/scene/program.h"
+#include "tests/support/random.h"
+
+enum { TREES = 40, BALLS = 60, SHAPES = 24, DEPTH = 2 };
+/* Of single precision, for coordinates of this size. */
+static const double SIZE = 2, ROUNDING = 2e-5;
+
+static Random chance = {39};
+
+static double uniform(double low, double high) { return random_between(&chance, low, high); }
+
+/* ---- scenes ---- */
+
+static const char *const others[] = {
+    "show krs { kernel capsule([0, 0, 0], [0, 0.4, 0], radius: 0.05); for i in 0..6 { mobius "
+    "translate([0, 0.4, 0]) * rotate([0, 1, 0], -70deg) * rotate([1, 0, 0], 28deg) * scale(0.8); "
+    "reflect plane([1, 0, 0], 0); kernel capsule([0, 0, 0], [0, 0.4, 0], radius: 0.05); } };",
+    "show box([1, 0.5, 0.3]).repeat([1.5, 1, 2], count: [3, 1, 3]);",
+    "show torus(0.7, 0.2).twist([0, 1, 0], 60deg) - sphere(0.4);",
+    "show cylinder(0.2, 2).move([1, 0, 0]).repeat_polar(7);",
+    "show algebraic(x^4 + y^4 + z^4 == 0.5);",
+    "show sphere(1).displace(0.05 * sin(9 * x) * sin(9 * y), 0.1);",
+    "show box([1, 1, 1]).shell(0.1) & sphere(0.8); show plane([0, 1, 0], -1);",
+    "show union([sphere(0.6), box([1, 0.3, 0.3])], blend: 0.2);",
+    "show text(\"S8\", size: 1).extrude(0.3);",
+};
+
+static size_t add_shape(char *to, size_t room)
+{
+    static const char *const kinds[] = {"sphere(%.3f)", "box([%.3f, %.3f, %.3f])",
+                                        "cylinder(%.3f, %.3f)", "torus(%.3f, 0.1)",
+                                        "capsule([0, 0, 0], [%.3f, %.3f, %.3f], 0.1)"};
+    char                     shape[80];
+    double                   size[3];
+    for (int k = 0; k < 3; k++)
+        size[k] = uniform(0.1, 0.7);
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+    snprintf(shape, sizeof shape, kinds[random_below(&chance, 5)], size[0], size[1], size[2]);
+#pragma GCC diagnostic pop
+    return (size_t)snprintf(to, room,
+                            "%s.rotate([%.3f, 1, %.3f], %.1fdeg).move([%.3f, %.3f, %.3f])", shape,
+                            uniform(-1, 1), uniform(-1, 1), uniform(0, 360), uniform(-1.5, 1.5),
+                            uniform(-1.5, 1.5), uniform(-1.5, 1.5));
+}
+
+/* Shapes that are joined from the left to the right. */
+static void random_tree(char *text, size_t room)
+{
+    size_t at = (size_t)snprintf(text, room, "show ");
+    at += add_shape(text + at, room - at);
+    for (int i = 1; i < SHAPES; i++) {
+        const unsigned kind = random_below(&chance, 8);
+        at += (size_t)snprintf(text + at, room - at,
+                               kind == 0   ? " - "
+                               : kind == 1 ? " & (box([3, 3, 3]) - "
+                                           : " | ");
+        at += add_shape(text + at, room - at);
+        at += (size_t)snprintf(text + at, room - at, kind == 1 ? ")" : "");
+    }
+    snprintf(text + at, room - at, ";");
+}
+
+/* ---- a scene and its cells ---- */
+
+typedef struct Opened {
+    KrsScene *scene;
+    KrsState *state;
+    Memory    memory;
+    Arena     arena;
+    LaneTape  lanes;
+    CellTape  cells;
+    CellWork *work;
+} Opened;
+
+static bool open_scene(Opened *o, const char *text)
+{
+    *o = (Opened){.scene = NULL};
+    if (krs_compile_text(text, strlen(text), "scene.krs", NULL, &o->scene) != KRS_OK)
+        return false;
+    assert_int_equal(krs_state_new(o->scene, &o->state), KRS_OK);
+    state_refresh_points(o->state);
+    o->memory.limit    = (size_t)1 << 30;
+    o->arena.memory    = &o->memory;
+    const size_t count = o->scene->component_count;
+    Node        *roots = arena_new_array(&o->arena, Node, count + 1);
+    for (size_t i = 0; i < count; i++)
+        roots[i] = distance_root(&o->scene->roots, i);
+    o->lanes = lane_tape_new_steep(&o->state->tapes.distance, roots, count, true, 0, &o->arena);
+    o->lanes.scalars = arena_new_array(&o->arena, double, o->lanes.scalar_count + 1);
+    lane_tape_scalars(&o->lanes, o->state->values, o->lanes.scalars);
+    o->cells = cell_tape_new(&o->lanes, &o->arena);
+    o->work  = cell_work_new(&o->cells, DEPTH, o->state->values, &o->arena);
+    return true;
+}
+
+static void close_scene(Opened *o)
+{
+    arena_free(&o->arena);
+    krs_state_free(o->state);
+    krs_scene_free(o->scene);
+}
+
+/* ---- balls ---- */
+
+typedef struct Count {
+    size_t points, wrong, capped, whole_steps, steps;
+} Count;
+
+static void random_in_ball(const double middle[3], double radius, double point[3])
+{
+    double offset[3], square;
+    do {
+        square = 0;
+        for (int k = 0; k < 3; k++) {
+            offset[k] = uniform(-1, 1);
+            square += offset[k] * offset[k];
+        }
+    } while (square > 1);
+    for (int k = 0; k < 3; k++)
+        point[k] = middle[k] + radius * offset[k];
+}
+
+/* Compares a cell tape with the scene in the ball. */
+static void compare(Opened *o, const CellTape *tape, const double middle[3], double radius,
+                    Count *count)
+{
+    float  points[3][CELL_LANES];
+    double exact[CELL_LANES][3], distances[CELL_LANES];
+    for (int i = 0; i < CELL_LANES; i++) {
+        random_in_ball(middle, radius, exact[i]);
+        for (int k = 0; k < 3; k++) {
+            points[k][i] = (float)exact[i][k];
+            exact[i][k]  = (double)points[k][i];
+        }
+    }
+    assert_int_equal(krs_distance(o->state, (const double(*)[3])exact, CELL_LANES, distances),
+                     KRS_OK);
+    const float *found = cell_run(tape, o->work, DEPTH, (const float(*)[CELL_LANES])points);
+    for (int i = 0; i < CELL_LANES; i++) {
+        const double value = (double)found[i], cap = (double)tape->cap;
+        const bool   near  = distances[i] < cap;
+        const bool   right = near ? fabs(value - distances[i]) < ROUNDING : value > cap - ROUNDING;
+        count->points++;
+        count->capped += !near;
+        count->wrong += !right;
+    }
+}
+
+/* A ball, and one within it: `part` of the radius is pruned for. */
+static void try_ball(Opened *o, double part, Count *count)
+{
+    double   middle[3], radius = SIZE * exp(uniform(-4, 0));
+    float    points[3][CELL_LANES];
+    CellTape tape = o->cells;
+    CellMark mark = cell_mark(o->work);
+    for (int k = 0; k < 3; k++)
+        middle[k] = uniform(-SIZE, SIZE);
+    for (uint32_t depth = 0; depth < DEPTH; depth++) {
+        const uint32_t lane = random_below(&chance, CELL_LANES);
+        double         inner[3];
+        for (int i = 0; i < CELL_LANES; i++)
+            for (int k = 0; k < 3; k++)
+                points[k][i] = (float)middle[k];
+        cell_run(&tape, o->work, depth, (const float(*)[CELL_LANES])points);
+        tape = cell_prune(&tape, o->work, depth, lane, (float)(part * radius), 4e-6f);
+        compare(o, &tape, middle, radius, count);
+        count->whole_steps += o->cells.count;
+        count->steps += tape.count;
+        random_in_ball(middle, radius / 2, inner);
+        memcpy(middle, inner, sizeof middle);
+        radius /= 2;
+    }
+    cell_release(o->work, mark);
+}
+
+static Count try_scene(const char *text, double part)
+{
+    Opened o;
+    Count  count = {0};
+    if (!open_scene(&o, text))
+        fail_msg("%s", text);
+    for (int i = 0; i < BALLS; i++)
+        try_ball(&o, part, &count);
+    close_scene(&o);
+    return count;
+}
+
+/* ---- tests ---- */
+
+static Count try_trees(double part)
+{
+    Count all = {0};
+    chance    = (Random){39};
+    for (int i = 0; i < TREES; i++) {
+        char text[8000];
+        random_tree(text, sizeof text);
+        const Count count = try_scene(text, part);
+        all.points += count.points;
+        all.wrong += count.wrong;
+        all.capped += count.capped;
+        all.whole_steps += count.whole_steps;
+        all.steps += count.steps;
+    }
+    return all;
+}
+
+static void trees_of_shapes(void **context)
+{
+    (void)context;
+    const Count count = try_trees(1);
+    print_message("%zu points, %zu beyond the cap; %.0f %% of the steps are left\n", count.points,
+                  count.capped, 100.0 * (double)count.steps / (double)count.whole_steps);
+    assert_int_equal(count.wrong, 0);
+    assert_true(count.capped > count.points / 50);
+    assert_true(2 * count.steps < count.whole_steps);
+}
+
+static void other_scenes(void **context)
+{
+    (void)context;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        const Count count = try_scene(others[i], 1);
+        if (count.wrong > 0)
+            fail_msg("%zu of %zu are wrong: %s", count.wrong, count.points, others[i]);
+    }
+}
+
+static void a_smaller_ball_is_seen(void **context)
+{
+    (void)context;
+    assert_true(try_trees(0.5).wrong > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(trees_of_shapes),
+                                       cmocka_unit_test(other_scenes),
+                                       cmocka_unit_test(a_smaller_ball_is_seen)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
