@@ -36,14 +36,14 @@ JOBS    ?= $(shell nproc)
 ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower lower/research family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl target scene passes refute field
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
-# Points side by side, once for each instruction set.
-LANES    := $(filter compiler/graph/lanes/lanes_%,$(COMPILER))
+# Clients of the compiler: it knows nothing of them.
+CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays,$(call sources,$(room)))
+# Points and rays side by side, once for each instruction set.
 ifneq ($(firstword $(subst -, ,$(shell $(CC) -dumpmachine))),x86_64)
 COMPILER := $(filter-out %_avx2.c %_avx512.c,$(COMPILER))
-LANES    := $(filter-out %_avx2.c %_avx512.c,$(LANES))
+CLIENTS  := $(filter-out %_avx2.c %_avx512.c,$(CLIENTS))
 endif
-# Clients of the compiler: it knows nothing of them.
-CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure,$(call sources,$(room)))
+LANES    := $(filter compiler/graph/lanes/lanes_% rays/lanes_%,$(COMPILER) $(CLIENTS))
 TARGET   := $(call sources,compiler/target)
 BRIDGE   := compiler/target/glslang_bridge.cpp
 RUNTIME  := $(foreach room,device tracer/research tracer integrators film display writer,$(call sources,runtime/$(room)))
@@ -159,8 +159,8 @@ $(B)/live/window/cells.o: FAST = $(if $(CHAFA),-DKRS_HAS_CHAFA)
 # watch cannot become such: trying it takes minutes, and clang warns that it failed.
 $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass-failed,-O3) \
                                -ffp-contract=off -fno-math-errno -fno-trapping-math
-$(B)/compiler/graph/lanes/lanes_avx2.o: FAST += -mavx2
-$(B)/compiler/graph/lanes/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
+$(B)/compiler/graph/lanes/lanes_avx2.o $(B)/rays/lanes_avx2.o: FAST += -mavx2
+$(B)/compiler/graph/lanes/lanes_avx512.o $(B)/rays/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
 # Intervals are two numbers that come in registers: joined into a vector they would go through memory, and wait there.
 $(B)/compiler/graph/range.o $(B)/compiler/graph/lanes/lane_ranges.o $(B)/compiler/graph/lanes/lane_slopes.o $(B)/compiler/graph/lanes/lane_hessians.o $(B)/compiler/graph/bounds/numbers.o: FAST := -fno-tree-slp-vectorize
 $(B)/%.o: %.cpp $(B)/flags

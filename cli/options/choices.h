@@ -11,7 +11,7 @@ typedef struct Choice {
 
 /* The last has no name. */
 extern const Choice integrator_choices[], trace_choices[], schedule_choices[], components_choices[],
-    normals_choices[], shadows_choices[], starts_choices[], catcher_choices[],
+    executor_choices[], normals_choices[], shadows_choices[], starts_choices[], catcher_choices[],
     pixel_filter_choices[], stereo_choices[], specialize_choices[], early_outs_choices[],
     plane_choices[], tone_map_choices[], pass_choices[], on_off_choices[], on_choices[],
     when_choices[], diagnostics_choices[], json_choices[], split_choices[], copies_choices[],

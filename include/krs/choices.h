@@ -69,6 +69,14 @@ typedef enum KrsShadows {
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_MAX_CHOICES];
 
+/* Who marches the rays of a camera: KRS_EXECUTOR_KERNELS, KRS_EXECUTOR_LANES. */
+typedef enum KrsExecutor {
+#define KRS_EXECUTOR(id, name, about) KRS_EXECUTOR_##id,
+#include "krs/choices.def"
+    KRS_EXECUTOR_COUNT
+} KrsExecutor;
+extern const char *const krs_executor_names[KRS_MAX_CHOICES];
+
 /* How far above surfaces rays of paths begin: KRS_STARTS_PRECISION, KRS_STARTS_DISTANCE. */
 typedef enum KrsStarts {
 #define KRS_STARTS(id, name, about) KRS_STARTS_##id,
@@ -110,8 +118,11 @@ typedef struct KrsMethods {
     bool          no_beams;  /* rays of a tile do not share the marching of empty space */
     bool          no_upsampling; /* neighbours do not share rays to lights, and such rays are sent
                                     even where a light is proven to be visible */
-    bool          no_filter;   /* detail finer than a pixel changes neither normals nor roughness */
-    uint64_t      reserved[8]; /* 0: this is a part of KrsRenderOptions, and keeps its size */
+    bool          no_filter; /* detail finer than a pixel changes neither normals nor roughness */
+    uint8_t       unused[5]; /* it may have any value */
+    KrsExecutor   executor;
+    uint32_t      reserved_half; /* 0, as what follows */
+    uint64_t      reserved[7];   /* 0: this is a part of KrsRenderOptions, and keeps its size */
 } KrsMethods;
 
 /* Version 0.2 has them as members of KrsRenderOptions itself. */

@@ -44,7 +44,7 @@ static bool methods_are_known(const KrsMethods *methods)
     for (size_t i = 0; i < sizeof methods->reserved / sizeof *methods->reserved; i++)
         if (methods->reserved[i] != 0)
             return false;
-    return true;
+    return methods->reserved_half == 0;
 }
 
 /* Checks the choices of choices.def, and replaces defaults among them. */
@@ -57,6 +57,7 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
         (unsigned)o->methods.normals >= KRS_NORMALS_COUNT ||
         (unsigned)o->pixel_filter >= KRS_PIXEL_FILTER_COUNT ||
         (unsigned)o->methods.starts >= KRS_STARTS_COUNT ||
+        (unsigned)o->methods.executor >= KRS_EXECUTOR_COUNT ||
         (unsigned)o->catcher >= KRS_CATCHER_COUNT || o->methods.even_hits > KRS_MAX_EVEN_HITS ||
         (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT || !methods_are_known(&o->methods))
         return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow, "

@@ -25,12 +25,14 @@
 #define MIRRORED_SURFACES 6 /* that a ray is followed to: into glass, out, and what is behind */
 
 typedef struct Preview {
-    Job    *job;
-    Plan   *plan;
-    Shader *secondary;       /* NULL: there is neither occlusion nor a light with shadows */
-    Shader *occluders;       /* NULL: there is no occlusion */
-    bool    by_roots;        /* secondary rays go from root to root */
-    bool    filters_shadows; /* neighbouring pixels share what rays to lights find */
+    Job  *job;
+    Plan *plan;
+    const Shader *
+        arrive; /* lanes of the host march rays of hits: this comes behind, `secondary` before; or NULL */
+    const Shader *secondary;       /* NULL: there is neither occlusion nor a light with shadows */
+    Shader       *occluders;       /* NULL: there is no occlusion */
+    bool          by_roots;        /* secondary rays go from root to root */
+    bool          filters_shadows; /* neighbouring pixels share what rays to lights find */
 } Preview;
 
 /* ---- passes ---- */
@@ -60,7 +62,8 @@ static void add_pixels(Preview *p, KrsPhase phase, PixelShader shader, ListId in
 static void add_rays(Preview *p, KrsPhase phase, ListId in, ListId out, bool clears_shared,
                      PassConstants constants, float weight)
 {
-    plan_add(p->plan, (Pass){.kind          = PASS_RAYS,
+    plan_add(p->plan, (Pass){.kind          = p->arrive ? PASS_LANE_RAYS : PASS_RAYS,
+                             .arrive        = p->arrive,
                              .phase         = phase,
                              .weight        = weight,
                              .shader        = p->secondary,
@@ -303,9 +306,17 @@ static bool find_secondary(Preview *p)
     const KrsRenderOptions *options = &p->job->options;
     if (!needs_secondary(p->job))
         return true;
-    p->by_roots  = rendering_has_roots(p->job->rendering, options->methods.trace);
-    p->secondary = rendering_secondary(p->job->rendering, options->methods.schedule, p->by_roots,
-                                       job_light_meets_planes(p->job));
+    KrsRendering *r = p->job->rendering;
+    p->by_roots     = rendering_has_roots(r, options->methods.trace);
+    if (p->plan->field) {
+        p->secondary = renderer_aim(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms);
+        p->arrive    = renderer_arrive(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms);
+        if (!p->arrive)
+            return false;
+    } else {
+        p->secondary = rendering_secondary(r, options->methods.schedule, p->by_roots,
+                                           job_light_meets_planes(p->job));
+    }
     if (!options->no_occlusion)
         p->occluders = rendering_occluders(p->job->rendering);
     return p->secondary && (options->no_occlusion || p->occluders);

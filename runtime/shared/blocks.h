@@ -342,6 +342,17 @@ CONSTANT(PATH_TOWARD, 4);
 CONSTANT(PATH_SURFACE, 5);
 CONSTANT(PATH_ROWS, 6);
 
+/* Rays of hits that lanes of the host march lie in the rows of paths, by the numbers of their items.  LANE_START: where
+   it begins, and where it ends.  LANE_AHEAD: its direction, and the cosine to the normal.  LANE_SCALE: how high it begins,
+   the width of a pixel there, the error of coordinates, and the side of the hit.  LANE_CONE: the radius of a cone at
+   distance 1, its margin, the least step, and 1: it is marched.  LANE_FOUND: where it has ended; 1: it is blocked;
+   1: it ran out of steps. */
+CONSTANT(LANE_START, 0);
+CONSTANT(LANE_AHEAD, 1);
+CONSTANT(LANE_SCALE, 2);
+CONSTANT(LANE_CONE, 3);
+CONSTANT(LANE_FOUND, 4);
+
 /* Lists of pixels (hit_lists.glsl), each with room for all pixels of the band.  LIST_OF_MARCH_GROUP
    is the first of GROUP_LISTS lists. */
 CONSTANT(LIST_ALL, 0);

@@ -56,9 +56,9 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
         Where        where;
         const char  *name;
     } wanted[] = {
-        {&band->ends, ENDS_BINDING, END_TEXELS_BINDING, (pixels + beams) * END_BYTES, ON_DEVICE,
+        {&band->ends, ENDS_BINDING, END_TEXELS_BINDING, (pixels + beams) * END_BYTES, shared,
          "rays"},
-        {&band->hits, HITS_BINDING, HIT_TEXELS_BINDING, pixels * hit, ON_DEVICE, "hits"},
+        {&band->hits, HITS_BINDING, HIT_TEXELS_BINDING, pixels * hit, shared, "hits"},
         {&band->results, RESULTS_BINDING, RESULT_TEXELS_BINDING, results, shared, "pixels"},
         {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS_BINDING, 2 * pixels * MARCH_BYTES,
          ON_DEVICE, "queue of rays"},

@@ -46,7 +46,7 @@ static uint32_t groups_of_slice(double items, double in_group)
 
 /* A phase may turn out to have more passes than was expected, but reported progress never
    decreases. */
-static bool report(Job *job, double within_phase)
+bool dispatch_report(Job *job, double within_phase)
 {
     job->progress_shown = fmax(job->progress_shown,
                                fmin(job->progress_done + job->progress_share * within_phase, 1));
@@ -93,7 +93,7 @@ static bool run_groups(Job *job, const Dispatch *dispatch, WorkBlock *work, uint
         if (count == most || ms > job->options.slice_ms)
             *at_once = next_slice((double)count * dispatch->in_group, ms, job->options.slice_ms);
         first += count;
-        if (!report(job, (double)first / groups))
+        if (!dispatch_report(job, (double)first / groups))
             return false;
     }
     return true;
@@ -264,7 +264,7 @@ bool dispatch_finish(Job *job)
     Chain        *chain   = &job->chain;
     for (uint32_t first = 0; first < chain->count;) {
         control->stopped = 0;
-        if (!submit(job, first) || !report(job, 1))
+        if (!submit(job, first) || !dispatch_report(job, 1))
             return false;
         if (control->stopped == 0)
             break;
@@ -350,7 +350,7 @@ bool dispatch_fused(Job *job, const Dispatch *dispatches, size_t count)
     job->stats->phase_ms[phase] += ms;
     if (ms > job->options.slice_ms)
         *at_once = next_slice(items, ms, job->options.slice_ms);
-    return report(job, 1);
+    return dispatch_report(job, 1);
 }
 
 /* Items of a lane on lavapipe, where all items cost the same. */

@@ -26,6 +26,9 @@ bool dispatch_fused(Job *job, const Dispatch *dispatches, size_t count);
 /* Runs all dispatches in the chain. */
 bool dispatch_finish(Job *job);
 
+/* Reports progress within a pass; false: the caller ends it, which is noted. */
+bool dispatch_report(Job *job, double within_pass);
+
 /* The budget of a shader whose items take different numbers of steps (schedule.glsl).  It follows
    from the current schedule and the option `steps_at_once`. */
 LaneBudget lane_budget(const Job *job);

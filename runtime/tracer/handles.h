@@ -56,6 +56,8 @@ struct KrsRenderer {
     VkPipelineLayout      layout;       /* shared by all shaders */
     /* Each is made when it is needed, with the shaders of the first scene that needs it. */
     Shader pixels[RAY_KINDS][PIXEL_SHADERS];
+    Shader aims[RAY_KINDS],
+        arrivals[RAY_KINDS];      /* aim.comp and arrive.comp, made when they are needed */
     Shader limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Shader escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
     Shader escapes_to_plate;      /* the same for paths that may meet a plate */

@@ -167,6 +167,7 @@ bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera)
                                    &job->view.camera))
         return job_refuse(job, "rays have finite origins, directions that are not 0, and a width "
                                "or a spread above 0");
+    job->state = state;
     origin_choose(job->rendering, state,
                   &(Viewer){&job->view.camera, job->rays, job->options.width, job->options.height},
                   job->rebase_origin);

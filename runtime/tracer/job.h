@@ -47,6 +47,7 @@ typedef struct Chain {
 typedef struct Job {
     KrsRendering    *rendering;
     Gpu             *gpu;
+    KrsState        *state;
     KrsRenderOptions options;        /* complete: none asks for a default */
     KrsSchedule      asked_schedule; /* as the caller asked for it */
     KrsSchedule      schedule;       /* of the current shader */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/lane_rays.h"
 #include "runtime/tracer/march.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/pixel_filter.h"
@@ -55,7 +56,11 @@ void plan_add_march_again(Plan *plan, float weight)
     plan_add(plan, (Pass){PASS_MARCH, march->phase, weight, .march = march});
 }
 
-void plan_free(Plan *plan) { gpu_release(plan->gpu, plan->passes); }
+void plan_free(Plan *plan)
+{
+    ray_field_free(plan->field);
+    gpu_release(plan->gpu, plan->passes);
+}
 
 /* ---- lists ---- */
 
@@ -161,6 +166,24 @@ static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
     return true;
 }
 
+/* Shaders begin the rays, and do what comes of them. */
+static bool run_lane_rays(Job *job, const Plan *plan, const Pass *pass, const WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Pass          arrive  = *pass;
+    arrive.shader         = pass->arrive;
+    control->source       = ITEMS_FRESH;
+    Dispatch before       = dispatch_of_pass(job, pass, work);
+    before.clears_shared  = pass->clears_shared;
+    if (!dispatch_run(job, &before) ||
+        !lane_rays_march_secondary(job, plan->field, pass->phase, items_now(job, before.items),
+                                   work))
+        return false;
+    Dispatch behind = dispatch_of_pass(job, &arrive, work);
+    behind.clears   = 0;
+    return dispatch_run(job, &behind);
+}
+
 /* Runs passes that may share a submission. */
 static bool run_items(Job *job, const Pass *passes, size_t count, const WorkBlock *work)
 {
@@ -172,12 +195,15 @@ static bool run_items(Job *job, const Pass *passes, size_t count, const WorkBloc
     return count == 1 ? dispatch_run(job, dispatches) : dispatch_fused(job, dispatches, count);
 }
 
-static bool run_passes(Job *job, const Pass *passes, size_t count, const WorkBlock *work)
+static bool run_passes(Job *job, const Plan *plan, const Pass *passes, size_t count,
+                       const WorkBlock *work)
 {
     switch (passes[0].kind) {
     case PASS_CLEAR: return march_clear(job);
+    case PASS_LANES: return lane_rays_march(job, plan->field, work);
     case PASS_MARCH: return march_run(job, passes[0].march, work);
     case PASS_ITEMS: return run_items(job, passes, count, work);
+    case PASS_LANE_RAYS: return run_lane_rays(job, plan, passes, work);
     case PASS_RAYS: return run_rays(job, passes, work);
     }
     return false;
@@ -243,7 +269,7 @@ bool plan_run(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
             weight += (double)plan->passes[i + k].weight;
         job->progress_done  = start + whole * done / plan->weight;
         job->progress_share = whole * weight / plan->weight;
-        if (!run_passes(job, &plan->passes[i], count, work))
+        if (!run_passes(job, plan, &plan->passes[i], count, work))
             return false;
         done += weight;
     }

@@ -7,6 +7,7 @@
 #ifndef KRS_PLAN_H
 #define KRS_PLAN_H
 
+#include "rays/rays.h"
 #include "runtime/tracer/march.h"
 
 /* A list that a pass reads or writes: LIST_... of blocks.h, or one of these. */
@@ -24,10 +25,12 @@ typedef struct PassConstants {
 } PassConstants;
 
 typedef enum PassKind {
-    PASS_CLEAR, /* sets all rays to misses */
-    PASS_MARCH, /* beams, then primary rays until all have ended */
-    PASS_ITEMS, /* a shader over items that all cost the same */
-    PASS_RAYS   /* rays from the items of a list, each to its end */
+    PASS_CLEAR,     /* sets all rays to misses */
+    PASS_LANES,     /* primary rays by lanes of the host, until all have ended */
+    PASS_MARCH,     /* beams, then primary rays until all have ended */
+    PASS_ITEMS,     /* a shader over items that all cost the same */
+    PASS_LANE_RAYS, /* the same, by lanes of the host */
+    PASS_RAYS       /* rays from the items of a list, each to its end */
 } PassKind;
 
 typedef struct Pass {
@@ -36,6 +39,7 @@ typedef struct Pass {
     float         weight; /* its part of the progress, relative to other passes */
     const March  *march;  /* PASS_MARCH alone; the members below are for the others */
     const Shader *shader;
+    const Shader *arrive;  /* PASS_LANE_RAYS: behind the rays; `shader` is before them */
     ListId        in, out; /* the list that is read, and the one that is emptied and written */
     bool          with_previous; /* may share a submission with the previous pass */
     bool          clears_shared; /* the words of shared.glsl are cleared before */
@@ -46,16 +50,17 @@ typedef struct Pass {
 enum { MAX_FUSED = 1 + KRS_MAX_MARCH_GROUPS }; /* passes in one submission */
 
 typedef struct Plan {
-    Gpu     *gpu; /* whose allocator the passes come from */
-    Pass    *passes;
-    size_t   count, room;
-    double   weight;                            /* of all passes together */
-    March    marches[2 + KRS_MAX_MARCH_GROUPS]; /* of primary rays, and of those of paths */
-    size_t   march_count;
-    uint32_t halo;           /* pixels on each side of a band that are traced as well */
-    bool     has_paths;      /* each pixel follows a path */
-    bool     by_march_group; /* pixels are listed by the group of components that they hit */
-    bool     failed;         /* memory ran out, which is noted */
+    Gpu      *gpu; /* whose allocator the passes come from */
+    Pass     *passes;
+    size_t    count, room;
+    double    weight;                            /* of all passes together */
+    March     marches[2 + KRS_MAX_MARCH_GROUPS]; /* of primary rays, and of those of paths */
+    size_t    march_count;
+    RayField *field;          /* of PASS_LANES; or NULL */
+    uint32_t  halo;           /* pixels on each side of a band that are traced as well */
+    bool      has_paths;      /* each pixel follows a path */
+    bool      by_march_group; /* pixels are listed by the group of components that they hit */
+    bool      failed;         /* memory ran out, which is noted */
 } Plan;
 
 void plan_add(Plan *plan, Pass pass);

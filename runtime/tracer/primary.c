@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "runtime/tracer/shaders.h"
+#include "runtime/tracer/lane_rays.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/research/research.h"
@@ -196,6 +197,23 @@ bool primary_find_plate(Job *job, const Shader **shader)
     return *shader != NULL;
 }
 
+/* Adds the pass in which lanes of the host march all components. */
+static bool add_lanes(Job *job, Plan *plan, float weight)
+{
+    if (!lane_rays_suit(job))
+        return job_refuse(
+            job,
+            "lanes march the rays of perspective and orthographic cameras on devices of type CPU, "
+            "for previews of solids that are not far from the origin");
+    plan->field  = ray_field_new(job->state, lane_rays_know_planes(job));
+    plan->failed = plan->failed || !plan->field;
+    if (!plan->field)
+        gpu_refuse(job->gpu, KRS_OUT_OF_MEMORY, "%s",
+                   "cannot make room for the rays of the picture");
+    plan_add(plan, (Pass){.kind = PASS_LANES, .phase = KRS_PHASE_PRIMARY, .weight = weight});
+    return !plan->failed;
+}
+
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
 {
     KrsRendering *r             = job->rendering;
@@ -206,6 +224,9 @@ bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
     const ResearchTrace *research = research_trace(job->options.methods.trace);
     if (research && !job->begins_outside)
         job->options.methods.trace = research->from_inside;
+    if (job->options.methods.executor == KRS_EXECUTOR_LANES)
+        return (lane_rays_find_normals(job) || find_normals(job, primary)) &&
+               add_lanes(job, plan, weight);
     if (per_component || job_has_beams(job))
         plan_add(plan, (Pass){.kind = PASS_CLEAR, .phase = KRS_PHASE_BEAMS});
     bool added = per_component ? add_groups(job, plan, weight, primary)
@@ -225,7 +246,7 @@ void primary_add_normals(Plan *plan, float weight, const Primary *primary)
     /* At the surface of one group the distances of the others do not matter, so each group's own
        shader finds the normals there. */
     plan->by_march_group = primary->group_count > 0;
-    if (primary->group_count == 0)
+    if (primary->group_count == 0 && primary->normals)
         plan_add(plan, pass);
     for (size_t i = 0; i < primary->group_count; i++) {
         pass.shader        = primary->groups[i].normals;

@@ -170,6 +170,8 @@ void krs_renderer_free(KrsRenderer *renderer)
         for (int kind = 0; kind < RAY_KINDS; kind++) {
             for (int i = 0; i < PIXEL_SHADERS; i++)
                 shader_destroy(gpu, &renderer->pixels[kind][i]);
+            shader_destroy(gpu, &renderer->aims[kind]);
+            shader_destroy(gpu, &renderer->arrivals[kind]);
             shader_destroy(gpu, &renderer->limits[kind]);
             shader_destroy(gpu, &renderer->escapes[kind]);
         }
@@ -238,6 +240,19 @@ const Shader *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_
                              double *pipeline_ms)
 {
     return make_ready(renderer, &renderer->limits[kind], "limit.comp", kind, spirv_ms, pipeline_ms);
+}
+
+const Shader *renderer_aim(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+                           double *pipeline_ms)
+{
+    return make_ready(renderer, &renderer->aims[kind], "aim.comp", kind, spirv_ms, pipeline_ms);
+}
+
+const Shader *renderer_arrive(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+                              double *pipeline_ms)
+{
+    return make_ready(renderer, &renderer->arrivals[kind], "arrive.comp", kind, spirv_ms,
+                      pipeline_ms);
 }
 
 const Shader *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)

@@ -22,6 +22,8 @@
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 static const KrsRenderOptions plain = {.width = WIDTH, .height = HEIGHT, .methods.no_filter = true};
+/* By shaders, and by lanes of the host. */
+static const KrsExecutor executors[] = {KRS_EXECUTOR_KERNELS, KRS_EXECUTOR_LANES};
 
 typedef struct Vec {
     double x, y, z;
@@ -114,8 +116,10 @@ static Verdict judge(const KrsPicture *picture, const KrsHit *hits, double pixel
 }
 
 /* `planted` moves the exact camera sideways, to show that a fault is found. */
-static Verdict compare(const char *text, double planted)
+static Verdict compare(const char *text, KrsExecutor executor, double planted)
 {
+    KrsRenderOptions options = plain;
+    options.methods.executor = executor;
     KrsScene     *scene;
     KrsState     *state;
     KrsRendering *rendering;
@@ -124,7 +128,7 @@ static Verdict compare(const char *text, double planted)
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, state, &plain, &picture), KRS_OK);
+    assert_int_equal(krs_render(rendering, state, &options, &picture), KRS_OK);
     assert_int_equal(picture->stats.unresolved, 0);
     assert_int_equal(krs_state_view(state, 0, &view), KRS_OK);
 
@@ -146,9 +150,9 @@ static Verdict compare(const char *text, double planted)
     return verdict;
 }
 
-static void agrees(const char *text)
+static void agrees_by(const char *text, KrsExecutor executor)
 {
-    Verdict verdict = compare(text, 0);
+    Verdict verdict = compare(text, executor, 0);
     if (verdict.worst > 0.5 || verdict.wrong * 2000 > verdict.inside)
         fprintf(stderr, "%zu inside, %zu wrong, %zu outline, worst %.3g pixels: %s\n",
                 verdict.inside, verdict.wrong, verdict.outline_wrong, verdict.worst, text);
@@ -157,6 +161,12 @@ static void agrees(const char *text)
     assert_true(verdict.wrong * 2000 <= verdict.inside);
     assert_true(verdict.worst <= 0.5);
     assert_true(verdict.outline_wrong <= PIXELS / 50);
+}
+
+static void agrees(const char *text)
+{
+    for (size_t i = 0; i < sizeof executors / sizeof *executors; i++)
+        agrees_by(text, executors[i]);
 }
 
 static void solids_agree(void **state)
@@ -213,8 +223,11 @@ static void the_inside_of_solids_agrees(void **state)
 static void a_fault_is_found(void **state)
 {
     (void)state;
-    Verdict verdict = compare("camera { eye: [2, 3, 5] } show box([2, 2, 2]);", 0.05);
-    assert_true(verdict.worst > 0.5 || verdict.wrong * 2000 > verdict.inside);
+    for (size_t i = 0; i < sizeof executors / sizeof *executors; i++) {
+        Verdict verdict = compare("camera { eye: [2, 3, 5] } show box([2, 2, 2]);", executors[i],
+                                  0.05);
+        assert_true(verdict.worst > 0.5 || verdict.wrong * 2000 > verdict.inside);
+    }
 }
 
 int main(void)

@@ -1,0 +1,28 @@
+/*
+ * lanes.h: what is done with all rays of a block at once, by each instruction set.
+ */
+#ifndef KRS_RAYS_LANES_H
+#define KRS_RAYS_LANES_H
+
+#include "rays/rays.h"
+
+typedef struct RaySet {
+    const char *name; /* as of LaneSet */
+    /* Where the distance is evaluated next, at `last` at the farthest; returns how many rays march before that. */
+    uint32_t (*place)(const RayBlock *block, float last, float at[RAYS_OF_BLOCK],
+                      float points[3][RAYS_OF_BLOCK]);
+    /* Takes the distances there, which are right up to the cap. */
+    void (*take)(RayBlock *block, const RayRule *rule, const float at[RAYS_OF_BLOCK], float last,
+                 float cap, const float distances[RAYS_OF_BLOCK]);
+    /* Nothing is before `last`. */
+    void (*skip)(RayBlock *block, float last);
+    /* Takes the distances for rays of hits. */
+    void (*take_blocked)(RayBlock *block, const BlockRule *rule, const float at[RAYS_OF_BLOCK],
+                         const float distances[RAYS_OF_BLOCK]);
+    /* Whether some ray marches between. */
+    bool (*has)(const RayBlock *block, float first, float last);
+} RaySet;
+
+extern const RaySet ray_set_plain, ray_set_avx2, ray_set_avx512;
+
+#endif

@@ -1,0 +1,269 @@
+/*
+ * normals.c: normals by differences of the distance, as in runtime/shaders/distance_normals.glsl and
+ * edge_normals.glsl, where they are described.
+ *
+ * All rays of a block take the taps of a set together; those that need no further set wait.
+ */
+#include "rays/march.h"
+
+#include <math.h>
+#include <string.h>
+
+/* As there. */
+static const float NOISE = 1e-4f, MAX_WIDTH = 1.0f / 64, ROUNDING = 2.4e-7f, NEARER = 0.02f,
+                   NOISE_NEARER = 4e-5f, OUTWARD_REACHES = 3, FLAT_ENOUGH = 0.0175f,
+                   FLATTER = 0.008f, BESIDE_REACHES = 8, ABOVE_REACHES = 4, FACING_ALIKE = 0.3f,
+                   ON_PLANE = 0.06f, FACING_SAME = 0.999f;
+
+typedef enum TapSet {
+    WIDE,
+    AT_HIT,
+    OUTSIDE,
+    INSIDE,
+    TO_EYE,
+    ACROSS,
+    BESIDE,
+    ONE_SIDE,
+    MEAN
+} TapSet;
+
+typedef struct Vector {
+    float x, y, z;
+} Vector;
+
+static Vector plus(Vector a, Vector b) { return (Vector){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static Vector minus(Vector a, Vector b) { return (Vector){a.x - b.x, a.y - b.y, a.z - b.z}; }
+static Vector times(float by, Vector a) { return (Vector){by * a.x, by * a.y, by * a.z}; }
+static float  dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static float  length(Vector a) { return sqrtf(dot(a, a)); }
+static Vector unit(Vector a) { return times(1 / length(a), a); }
+static Vector absolute(Vector a) { return (Vector){fabsf(a.x), fabsf(a.y), fabsf(a.z)}; }
+static float  largest(Vector a) { return fmaxf(fmaxf(fabsf(a.x), fabsf(a.y)), fabsf(a.z)); }
+static Vector lesser(Vector a, Vector b)
+{
+    return (Vector){fminf(a.x, b.x), fminf(a.y, b.y), fminf(a.z, b.z)};
+}
+static Vector cross(Vector a, Vector b)
+{
+    return (Vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/* A hit, and its taps. */
+typedef struct Hit {
+    bool   takes; /* the set that is evaluated now */
+    Vector position, backwards;
+    float  side, rounding;
+    TapSet set;
+    Vector start, sum, level, sum_wide, level_wide, plane_normal;
+    float  t, middle, reach, bend_wide, at_hit;
+} Hit;
+
+float ray_normal_reach(const RayRule *rule, float width, float t, float coordinate)
+{
+    const float near = fmaxf(fminf(width, MAX_WIDTH * t), 1e-30f);
+    return fmaxf(rule->normal_reach * near, NOISE * coordinate + 2 * ROUNDING * coordinate);
+}
+
+static Hit begin(const RayRule *rule, const RayBlock *block, int i)
+{
+    const Vector origin    = {block->origin[0][i], block->origin[1][i], block->origin[2][i]},
+                 direction = {block->direction[0][i], block->direction[1][i],
+                              block->direction[2][i]};
+    const float t = block->t[i], width = block->width[i] + block->spread[i] * t;
+    Hit         hit = {.takes     = true,
+                       .position  = plus(origin, times(t, direction)),
+                       .backwards = times(-1, direction),
+                       .side      = block->side[i]};
+    hit.start       = hit.position;
+    hit.rounding    = ROUNDING * (largest(hit.position) + largest(origin));
+    hit.t           = fmaxf(rule->normal_reach * fmaxf(fminf(width, MAX_WIDTH * t), 1e-30f),
+                            NOISE * largest(hit.position) + hit.rounding);
+    return hit;
+}
+
+static float find_bend(const Hit *hit)
+{
+    const Vector middle = {2 * hit->middle, 2 * hit->middle, 2 * hit->middle};
+    return length(minus(hit->level, middle)) / length(hit->sum);
+}
+
+/* Two directions at right angles to a third: find_frame of frame.glsl gives the first. */
+static Vector beside(Vector axis)
+{
+    const float side = axis.z < 0 ? -1.0f : 1.0f, a = -1 / (side + axis.z), b = axis.x * axis.y * a;
+    return (Vector){1 + side * axis.x * axis.x * a, side * b, -side * axis.x};
+}
+
+static Vector find_place_across(const Hit *hit, bool turned)
+{
+    const Vector mean   = unit(hit->sum_wide);
+    Vector       to_eye = minus(hit->backwards, times(dot(hit->backwards, mean), mean));
+    const float  size   = length(to_eye);
+    to_eye              = size > 1e-3f ? times(1 / size, to_eye) : beside(mean);
+    return plus(times(BESIDE_REACHES, turned ? cross(mean, to_eye) : to_eye),
+                times(ABOVE_REACHES, mean));
+}
+
+static void begin_set(Hit *hit, TapSet set)
+{
+    const float  outward = set == OUTSIDE ? OUTWARD_REACHES : set == INSIDE ? -OUTWARD_REACHES : 0;
+    const Vector wide    = unit(hit->sum_wide);
+    Vector       place   = times(outward, plus(wide, hit->backwards));
+    hit->set             = set;
+    hit->t = fmaxf(NEARER * hit->reach, NOISE_NEARER * largest(hit->position) + hit->rounding);
+    if (set == TO_EYE || set == ACROSS)
+        place = find_place_across(hit, set == ACROSS);
+    Vector moved = times(hit->t, place);
+    if (set == BESIDE) {
+        hit->plane_normal    = unit(hit->sum);
+        const Vector lateral = minus(wide, times(dot(wide, hit->plane_normal), hit->plane_normal));
+        hit->t               = hit->reach;
+        moved                = times(hit->reach / fmaxf(length(lateral), 1e-6f), lateral);
+    }
+    hit->start = plus(hit->position, moved);
+    hit->sum = hit->level = (Vector){0, 0, 0};
+}
+
+static bool is_confirmed(const Hit *hit)
+{
+    const Vector rise      = times(hit->reach / hit->t * 0.5f, hit->sum),
+                 at_hit    = {hit->at_hit, hit->at_hit, hit->at_hit};
+    const Vector ahead     = minus(times(0.5f, plus(hit->level_wide, hit->sum_wide)), at_hit);
+    const Vector behind    = minus(times(0.5f, minus(hit->level_wide, hit->sum_wide)), at_hit);
+    const Vector deviation = lesser(absolute(minus(ahead, rise)), absolute(plus(behind, rise)));
+    return largest(deviation) < ON_PLANE * length(rise);
+}
+
+static TapSet end_wide(Hit *hit, const RayRule *rule)
+{
+    const float sharp = rule->plain ? FLAT_ENOUGH : 0.5f, thin = rule->plain ? 4 : 1;
+    hit->bend_wide  = find_bend(hit);
+    hit->sum_wide   = hit->sum;
+    hit->level_wide = hit->level;
+    hit->reach      = hit->t;
+    hit->at_hit     = 0;
+    return hit->bend_wide > sharp && hit->bend_wide < thin ? rule->plain ? AT_HIT : OUTSIDE : WIDE;
+}
+
+static bool is_one_side(const Hit *hit, float bend)
+{
+    const bool alike = dot(hit->sum, hit->sum_wide) >
+                       FACING_ALIKE * length(hit->sum) * length(hit->sum_wide);
+    const bool visible = hit->set < TO_EYE || dot(hit->sum, hit->backwards) > 0;
+    return visible && ((alike && hit->set != INSIDE && bend < FLATTER * fminf(hit->bend_wide, 1)) ||
+                       (bend < FLAT_ENOUGH && is_confirmed(hit)));
+}
+
+static TapSet end_beside(Hit *hit)
+{
+    const bool same = find_bend(hit) < FLAT_ENOUGH &&
+                      dot(hit->sum, hit->plane_normal) > FACING_SAME * length(hit->sum) &&
+                      fabsf(hit->middle) < ON_PLANE * hit->t;
+    hit->sum = hit->plane_normal;
+    return same ? ONE_SIDE : MEAN;
+}
+
+static TapSet end_nearer(Hit *hit, const RayRule *rule)
+{
+    const TapSet last = rule->plain ? ACROSS : OUTSIDE;
+    const float  bend = find_bend(hit);
+    hit->at_hit       = hit->set == AT_HIT ? hit->middle : hit->at_hit;
+    TapSet next       = bend < FLAT_ENOUGH && hit->set < INSIDE ? BESIDE : MEAN;
+    next              = bend > FLAT_ENOUGH && hit->set < last ? hit->set + 1 : next;
+    return is_one_side(hit, bend) ? ONE_SIDE : next;
+}
+
+/* Ends a set of taps; true: another one has begun. */
+static bool goes_on(Hit *hit, const RayRule *rule)
+{
+    const TapSet next = hit->set == WIDE     ? end_wide(hit, rule)
+                        : hit->set == BESIDE ? end_beside(hit)
+                                             : end_nearer(hit, rule);
+    const bool   more = next != WIDE && next < ONE_SIDE;
+    if (more)
+        begin_set(hit, next);
+    hit->set = next;
+    if (next == MEAN) {
+        hit->sum   = hit->sum_wide;
+        hit->level = hit->level_wide;
+    }
+    return more;
+}
+
+/* The taps of the octahedron; the last is in the middle. */
+enum { OCTAHEDRON = 6 };
+static Vector tap_at(int tap)
+{
+    const float side = tap & 1 ? -1.0f : 1.0f;
+    return tap == OCTAHEDRON
+               ? (Vector){0, 0, 0}
+               : (Vector){tap < 2 ? side : 0, tap > 1 && tap < 4 ? side : 0, tap > 3 ? side : 0};
+}
+
+/* Evaluates a tap of all hits that take a set; of the first set the one in the middle is not needed. */
+static void take_tap(const RayCell *cell, Hit hits[RAYS_OF_BLOCK], int tap)
+{
+    const Vector direction = tap_at(tap);
+    float        points[3][RAYS_OF_BLOCK];
+    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
+        const Vector at = plus(hits[i].start, times(hits[i].t, direction));
+        points[0][i]    = at.x;
+        points[1][i]    = at.y;
+        points[2][i]    = at.z;
+    }
+    const float *distances = ray_cell_run(cell, (const float(*)[RAYS_OF_BLOCK])points);
+    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
+        const float distance = hits[i].side * distances[i];
+        if (!hits[i].takes)
+            continue;
+        hits[i].middle = tap < OCTAHEDRON ? hits[i].middle : hits[i].set == WIDE ? 0 : distance;
+        hits[i].sum    = plus(hits[i].sum, times(distance, direction));
+        hits[i].level  = plus(hits[i].level, times(distance, absolute(direction)));
+    }
+}
+
+static float find_evenness(const Hit *hit)
+{
+    const float size = length(hit->sum), uneven = hypotf(size, length(hit->level));
+    return hit->set == ONE_SIDE ? 1 : uneven > 0 && uneven < 1e38f ? size / uneven : 1;
+}
+
+static void store(const Hit *hit, RayBlock *block, int i)
+{
+    const float  size   = length(hit->sum);
+    const Vector normal = size > 0 && size < 1e38f ? times(1 / size, hit->sum) : hit->backwards;
+    block->normal[0][i] = normal.x;
+    block->normal[1][i] = normal.y;
+    block->normal[2][i] = normal.z;
+    block->evenness[i]  = find_evenness(hit);
+}
+
+uint64_t ray_normals(const RayCell *cell, const RayRule *rule, RayBlock *block,
+                     const bool wanted[RAYS_OF_BLOCK])
+{
+    Hit      hits[RAYS_OF_BLOCK];
+    uint64_t evaluations = 0;
+    int      some        = -1;
+    for (int i = 0; i < RAYS_OF_BLOCK; i++)
+        some = wanted[i] ? i : some;
+    if (some < 0)
+        return 0;
+    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
+        hits[i]       = begin(rule, block, wanted[i] ? i : some);
+        hits[i].takes = wanted[i];
+    }
+    for (bool first = true, more = true; more; first = false) {
+        more = false;
+        for (int tap = first ? OCTAHEDRON - 1 : OCTAHEDRON; tap >= 0; tap--)
+            take_tap(cell, hits, tap);
+        for (int i = 0; i < RAYS_OF_BLOCK; i++) {
+            evaluations += hits[i].takes ? OCTAHEDRON + !first : 0;
+            hits[i].takes = hits[i].takes && goes_on(&hits[i], rule);
+            more          = more || hits[i].takes;
+        }
+    }
+    for (int i = 0; i < RAYS_OF_BLOCK; i++)
+        if (wanted[i])
+            store(&hits[i], block, i);
+    return evaluations;
+}

@@ -1,0 +1,102 @@
+/*
+ * open.c: makes what rays ask, and frees it.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "rays/ray_field.h"
+#include "rays/waves.h"
+
+/* Of the instruction set that lane tapes are run by. */
+static const RaySet *set_of_lanes(void)
+{
+    static const RaySet *const sets[] = {
+        &ray_set_plain,
+#if defined(__x86_64__)
+        &ray_set_avx2,
+        &ray_set_avx512
+#endif
+    };
+    const char *name = lane_used_set()->name;
+    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
+        if (strcmp(sets[i]->name, name) == 0)
+            return sets[i];
+    return &ray_set_plain;
+}
+
+static float largest_coordinate(const KrsProgram *program)
+{
+    double most = 1;
+    for (int k = 0; k < 3; k++)
+        most = fmax(most, fmax(fabs(program->rest_low[k]), fabs(program->rest_high[k])));
+    return (float)fmin(most, 1e30);
+}
+
+static void fill(RayField *field)
+{
+    state_refresh_points(field->state);
+    ray_field_make_distance(field, false, &field->distance, LEAF_DEPTH + 1);
+    if (field->planes) {
+        ray_field_make_plane_t(field, &field->plane_t);
+        ray_field_make_distance(field, true, &field->plane_distance, 0);
+    }
+    const KrsProgram *program = &field->state->scene->program;
+    field->margin             = 2e-6f * largest_coordinate(program);
+    for (int k = 0; k < 3; k++) {
+        const double low = program->rest_low[k], high = program->rest_high[k];
+        const double slack = 1e-4 * (high - low) + (double)field->margin;
+        field->low[k]      = (float)fmax(low - slack, -1e30);
+        field->high[k]     = (float)fmin(high + slack, 1e30);
+    }
+    for (size_t i = 0; i < parallel_parts(); i++) {
+        field->waves[i] = arena_new(&field->arena, Wave);
+        space_new(&field->spaces[i], &field->distance.cells, field->distance.works[i], field->low,
+                  field->high, field->margin, &field->arena);
+    }
+}
+
+/* Whether there are components of both kinds. */
+static bool has_more_than_planes(const KrsScene *scene)
+{
+    size_t planes = 0;
+    for (size_t i = 0; i < scene->component_count && scene->module.is_plane; i++)
+        planes += scene->module.is_plane[i];
+    return planes > 0 && planes < scene->component_count;
+}
+
+RayField *ray_field_new(KrsState *state, bool planes)
+{
+    const Memory *from  = &state->scene->memory;
+    RayField     *field = from->allocate ? from->allocate(from->user, sizeof *field)
+                                         : malloc(sizeof *field);
+    jmp_buf       exhausted;
+    if (!field)
+        return NULL;
+    *field = (RayField){
+        .memory = {.allocate = from->allocate, .release = from->release, .user = from->user},
+        .state  = state,
+        .set    = set_of_lanes(),
+        .planes = planes && has_more_than_planes(state->scene)};
+    field->arena.memory     = &field->memory;
+    field->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) != 0) {
+        ray_field_free(field);
+        return NULL;
+    }
+    fill(field);
+    field->memory.exhausted = NULL;
+    return field;
+}
+
+void ray_field_free(RayField *field)
+{
+    if (!field)
+        return;
+    const Memory memory = field->memory;
+    arena_free(&field->arena);
+    if (memory.allocate)
+        memory.release(memory.user, field);
+    else
+        free(field);
+}

@@ -1,0 +1,83 @@
+/*
+ * ray_field.c: distances of a state of a scene for rays.
+ */
+#include "rays/ray_field.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+static_assert((int)RAYS_OF_BLOCK == (int)CELL_LANES, "a block is run at once");
+
+bool ray_field_suits(const KrsScene *scene)
+{
+    const KrsProgram *program = &scene->program;
+    return !program->along && !program->open_surfaces && scene->component_count > 0;
+}
+
+/* ---- tapes ---- */
+
+static NodeValue *copy_values(RayField *field)
+{
+    const size_t count  = field->state->scene->graph->count;
+    NodeValue   *values = arena_new_array(&field->arena, NodeValue, count + 1);
+    memcpy(values, field->state->values, count * sizeof *values);
+    return values;
+}
+
+/* Completes a tape whose lanes are made; `values` are those of the frame. */
+static void finish_tape(RayField *field, RayTape *tape, const NodeValue *values, uint32_t depth)
+{
+    LaneTape *lanes = &tape->lanes;
+    lanes->scalars  = arena_new_array(&field->arena, double, lanes->scalar_count + 1);
+    lane_tape_scalars(lanes, values, lanes->scalars);
+    tape->cells = cell_tape_new(lanes, &field->arena);
+    for (size_t i = 0; i < parallel_parts(); i++)
+        tape->works[i] = cell_work_new(
+            &tape->cells, depth, lanes->reads_tables ? copy_values(field) : NULL, &field->arena);
+}
+
+/* The least distance of the components that are planes, or of all others, cut by zones. */
+void ray_field_make_distance(RayField *field, bool planes, RayTape *tape, uint32_t depth)
+{
+    const KrsScene *scene    = field->state->scene;
+    const bool     *is_plane = field->planes ? scene->module.is_plane : NULL;
+    const Node      zone     = zone_root(scene);
+    Node           *roots    = arena_new_array(&field->arena, Node, scene->component_count + 1);
+    size_t          count    = 0;
+    for (size_t i = 0; i < scene->component_count; i++)
+        if ((is_plane && is_plane[i]) == planes)
+            roots[count++] = distance_root(&scene->roots, i);
+    if (zone != NODE_NONE)
+        roots[count++] = zone;
+    tape->lanes = lane_tape_new_steep(&field->state->tapes.distance, roots, count, true,
+                                      zone != NODE_NONE, &field->arena);
+    finish_tape(field, tape, field->state->values, depth);
+}
+
+/* How far it is to the nearest plane along a ray. */
+void ray_field_make_plane_t(RayField *field, RayTape *tape)
+{
+    const KrsScene *scene  = field->state->scene;
+    const Node      root   = plane_roots(&scene->roots)->step;
+    Tape           *of     = arena_new(&field->arena, Tape);
+    NodeValue      *values = copy_values(field);
+    *of                    = tape_new(scene->graph, &root, 1, &field->arena);
+    tape_run_frame(of, field->state->parameters, values);
+    tape->lanes = lane_tape_new(of, &root, 1, false, 0, &field->arena);
+    finish_tape(field, tape, values, 0);
+}
+
+void ray_field_meet_planes(RayField *field, size_t part, float farthest, RayBlock *block)
+{
+    if (!field->planes) {
+        for (int i = 0; i < RAYS_OF_BLOCK; i++)
+            block->plane[i] = HUGE_VALF;
+        return;
+    }
+    const float *found = cell_run_seen(&field->plane_t.cells, field->plane_t.works[part],
+                                       (const float(*)[CELL_LANES])block->origin,
+                                       (const float(*)[CELL_LANES])block->direction);
+    for (int i = 0; i < RAYS_OF_BLOCK; i++)
+        block->plane[i] = found[i] > farthest ? HUGE_VALF : fmaxf(found[i], 0);
+}

@@ -1,0 +1,91 @@
+/*
+ * space.c: an octree of cubes with tapes of their own.
+ */
+#include "rays/space.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CHILDREN = 8, MOST_CUBES = 1 << 15, DEEPEST = 5 };
+/* Shorter tapes are not worth another. */
+enum { SHORT_TAPE = 40 };
+/* The room for all tapes of a space: as many steps as so many times the whole has, within limits. */
+enum { TIMES_WHOLE = 1000, LEAST_STEPS = 1 << 16, MOST_STEPS = 1 << 21 };
+
+void space_new(Space *space, const CellTape *tape, CellWork *work, const float low[3],
+               const float high[3], float margin, Arena *arena)
+{
+    double side = 0;
+    size_t room = (size_t)tape->count * TIMES_WHOLE;
+    for (int k = 0; k < 3; k++)
+        side = fmax(side, (double)high[k] - (double)low[k]);
+    room = room < LEAST_STEPS ? LEAST_STEPS : room > MOST_STEPS ? MOST_STEPS : room;
+    /* Calls stay in the whole tape. */
+    const bool divides = side > 0 && side < 1e30 && tape->call_count == 0;
+    *space             = (Space){.side       = divides ? (float)side : 0,
+                                 .margin     = margin,
+                                 .work       = work,
+                                 .most       = divides ? MOST_CUBES : 1,
+                                 .most_steps = divides ? room : 0};
+    space->cubes       = arena_new_array(arena, SpaceCube, space->most);
+    space->steps       = arena_new_array(arena, CellStep, space->most_steps + 1);
+    for (int k = 0; k < 3; k++)
+        space->low[k] = low[k];
+    for (; space->count < (divides ? 2u : 1u); space->count++)
+        space->cubes[space->count] = (SpaceCube){.tape = *tape, .leaf = !divides, .rays = -1};
+}
+
+/* Makes the children of a cube with this corner; false: there is no room. */
+static bool divide(Space *space, uint32_t number, const float corner[3], float half)
+{
+    const CellTape tape = space->cubes[number].tape;
+    float          middles[3][CELL_LANES];
+    if (space->count + CHILDREN > space->most ||
+        space->step_count + CHILDREN * (size_t)tape.count > space->most_steps)
+        return false;
+    for (int i = 0; i < CELL_LANES; i++)
+        for (int k = 0; k < 3; k++)
+            middles[k][i] = corner[k] + half * ((i >> k & 1) ? 1.5f : 0.5f);
+    cell_run(&tape, space->work, 0, (const float(*)[CELL_LANES])middles);
+    space->cubes[number].first_child = space->count;
+    for (uint32_t i = 0; i < CHILDREN; i++) {
+        const CellMark mark = cell_mark(space->work);
+        CellTape  pruned    = cell_prune(&tape, space->work, 0, i, 0.5f * sqrtf(3) * half * 1.0001f,
+                                         space->margin);
+        CellStep *steps     = space->steps + space->step_count;
+        memcpy(steps, pruned.steps, pruned.count * sizeof *steps);
+        pruned.steps = steps;
+        space->step_count += pruned.count;
+        space->cubes[space->count++] = (SpaceCube){
+            .tape = pruned, .leaf = pruned.count < SHORT_TAPE, .rays = -1};
+        cell_release(space->work, mark);
+    }
+    return true;
+}
+
+uint32_t space_find(Space *space, const float point[3])
+{
+    float    corner[3], half = 0.5f * space->side;
+    uint32_t number = 1;
+    bool     inside = space->side > 0;
+    for (int k = 0; k < 3; k++) {
+        corner[k] = space->low[k];
+        inside    = inside && point[k] >= corner[k] && point[k] <= corner[k] + space->side;
+    }
+    if (!inside)
+        return 0;
+    for (int depth = 0; depth < DEEPEST && !space->cubes[number].leaf; depth++, half *= 0.5f) {
+        uint32_t child = 0;
+        if (!space->cubes[number].first_child && !divide(space, number, corner, half)) {
+            space->cubes[number].leaf = true;
+            break;
+        }
+        for (int k = 0; k < 3; k++)
+            if (point[k] > corner[k] + half) {
+                child |= 1u << k;
+                corner[k] += half;
+            }
+        number = space->cubes[number].first_child + child;
+    }
+    return number;
+}

@@ -1,0 +1,35 @@
+/*
+ * space.h: cells of space, for rays that go anywhere: an octree of cubes with tapes of their own.
+ *
+ * A cube is made when a ray first asks for a distance in it.  Each part of run_in_parallel has its own.
+ */
+#ifndef KRS_RAYS_SPACE_H
+#define KRS_RAYS_SPACE_H
+
+#include "compiler/graph/lanes/lane_cells.h"
+
+/* A cube; its children follow each other. */
+typedef struct SpaceCube {
+    CellTape tape;
+    uint32_t first_child; /* 0: none */
+    bool     leaf;        /* it will have none */
+    int32_t  rays;        /* the first of those that ask now, -1: none */
+} SpaceCube;
+
+typedef struct Space {
+    float      low[3], side; /* of the outermost cube; side 0: there is none but all of space */
+    float      margin;
+    CellWork  *work;
+    SpaceCube *cubes; /* the first: all of space; the second: the outermost cube */
+    uint32_t   count, most;
+    CellStep  *steps; /* of all tapes */
+    size_t     step_count, most_steps;
+} Space;
+
+/* Around what lies in the box. */
+void space_new(Space *space, const CellTape *tape, CellWork *work, const float low[3],
+               const float high[3], float margin, Arena *arena);
+/* The cube whose tape is right at a point. */
+uint32_t space_find(Space *space, const float point[3]);
+
+#endif

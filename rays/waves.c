@@ -1,0 +1,170 @@
+/*
+ * waves.c: rays of hits, which go anywhere, in cubes of space.
+ *
+ * All rays of a wave take a step.  They are sorted by the cubes that they are in then, and those in a cube ask
+ * its tape together.
+ */
+#include "rays/waves.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "rays/ray_field.h"
+
+/* Rays of hits meet planes at once, and else only what is in the box. */
+static void clip_blocked(const RayField *field, RayBlock *block, int i)
+{
+    float first = 0, last = fminf(block->end[i], block->plane[i]);
+    for (int k = 0; k < 3; k++) {
+        const float along = block->direction[k][i], safe = fabsf(along) < 1e-18f ? 1e-18f : along;
+        const float a = (field->low[k] - block->origin[k][i]) / safe,
+                    b = (field->high[k] - block->origin[k][i]) / safe;
+        first         = fmaxf(first, fminf(a, b));
+        last          = fminf(last, fmaxf(a, b));
+    }
+    if (first > last)
+        block->state[i] = RAY_MISSES;
+    if (first > 0) {
+        block->t[i]     = first;
+        block->slope[i] = -1;
+        block->ratio[i] = 1;
+        block->steps[i] = 1;
+    }
+    block->end[i] = last;
+}
+
+/* Cones that may meet a plane are not empty: at the far end of their axis it must be farther away than they are
+   wide. */
+static void block_cones(const Wave *wave, RayBlock *block)
+{
+    const RayField *field = wave->field;
+    const float     far   = 1e4f * (1 + field->spaces[0].side);
+    float           points[3][RAYS_OF_BLOCK];
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < RAYS_OF_BLOCK; i++)
+            points[k][i] = block->origin[k][i] + far * block->direction[k][i];
+    const float *distances = cell_run(&field->plane_distance.cells,
+                                      field->plane_distance.works[wave->part], 0,
+                                      (const float(*)[CELL_LANES])points);
+    for (int i = 0; i < RAYS_OF_BLOCK; i++)
+        if (block->state[i] == RAY_MARCHES && distances[i] < far * (1.01f * block->cone[i] + 1e-6f))
+            block->state[i] = RAY_HITS;
+}
+
+/* Begins the rays of hits. */
+static void begin_blocked(const Wave *wave, RayBlock *block, float ends[RAYS_OF_BLOCK])
+{
+    memcpy(ends, block->end, sizeof block->end);
+    ray_field_meet_planes(wave->field, wave->part, 1e30f, block);
+    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
+        block->t[i] = block->clearance[i] = block->step[i] = 0;
+        block->slope[i]                                    = block->facing[i];
+        block->ratio[i]                                    = 0;
+        block->took_least[i]                               = 1;
+        block->steps[i] = block->unresolved[i] = 0;
+        if (!wave->rule->cones && block->state[i] == RAY_MARCHES)
+            clip_blocked(wave->field, block, i);
+    }
+    if (wave->rule->cones && wave->field->planes)
+        block_cones(wave, block);
+}
+
+/* What nothing else blocks is blocked by a plane before its end. */
+static void end_blocked(const Wave *wave, RayBlock *block, const bool marched[RAYS_OF_BLOCK],
+                        const float ends[RAYS_OF_BLOCK])
+{
+    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
+        if (block->state[i] == RAY_MARCHES)
+            block->state[i] = RAY_MISSES;
+        if (!wave->rule->cones && marched[i] && block->state[i] == RAY_MISSES &&
+            !block->unresolved[i] && block->plane[i] < ends[i]) {
+            block->state[i] = RAY_HITS;
+            block->t[i]     = block->plane[i];
+        }
+    }
+}
+
+/* Lists the rays of a block by cubes; false: none marches. */
+static bool sort_rays(Wave *wave, uint32_t b)
+{
+    const RayBlock *block = &wave->blocks[b];
+    const uint32_t  rays  = wave->field->set->place(block, HUGE_VALF, wave->at[b], wave->points[b]);
+    for (uint32_t i = 0; i < RAYS_OF_BLOCK && rays > 0; i++) {
+        if (block->state[i] != RAY_MARCHES && block->state[i] != RAY_REFINES)
+            continue;
+        const float    point[3] = {wave->points[b][0][i], wave->points[b][1][i],
+                                   wave->points[b][2][i]};
+        const uint32_t number   = space_find(wave->space, point);
+        SpaceCube     *cube     = &wave->space->cubes[number];
+        if (cube->rays < 0)
+            wave->cubes[wave->cube_count++] = number;
+        wave->next[b * RAYS_OF_BLOCK + i] = cube->rays;
+        cube->rays                        = (int32_t)(b * RAYS_OF_BLOCK + i);
+    }
+    wave->evaluations += rays;
+    return rays > 0;
+}
+
+/* Evaluates the distances of all rays in a cube. */
+static void ask_cube(Wave *wave, SpaceCube *cube)
+{
+    while (cube->rays >= 0) {
+        float   points[3][RAYS_OF_BLOCK];
+        int32_t rays[RAYS_OF_BLOCK];
+        int     count = 0;
+        for (; count < RAYS_OF_BLOCK && cube->rays >= 0; count++) {
+            rays[count] = cube->rays;
+            cube->rays  = wave->next[rays[count]];
+        }
+        for (int i = 0; i < RAYS_OF_BLOCK; i++)
+            for (int k = 0; k < 3; k++)
+                points[k][i] = wave->points[rays[i < count ? i : 0] / RAYS_OF_BLOCK][k]
+                                           [rays[i < count ? i : 0] % RAYS_OF_BLOCK];
+        const float *distances = cell_run(&cube->tape, wave->space->work, 1,
+                                          (const float(*)[CELL_LANES])points);
+        for (int i = 0; i < count; i++)
+            wave->distances[rays[i] / RAYS_OF_BLOCK][rays[i] % RAYS_OF_BLOCK] = fminf(
+                distances[i], cube->tape.cap);
+    }
+}
+
+static void march_wave(Wave *wave, size_t count)
+{
+    wave->live_count = (uint32_t)count;
+    for (uint32_t b = 0; b < count; b++)
+        wave->live[b] = b;
+    while (wave->live_count > 0) {
+        uint32_t live    = 0;
+        wave->cube_count = 0;
+        for (uint32_t i = 0; i < wave->live_count; i++)
+            if (sort_rays(wave, wave->live[i]))
+                wave->live[live++] = wave->live[i];
+        wave->live_count = live;
+        for (uint32_t i = 0; i < wave->cube_count; i++)
+            ask_cube(wave, &wave->space->cubes[wave->cubes[i]]);
+        for (uint32_t i = 0; i < live; i++)
+            wave->field->set->take_blocked(&wave->blocks[wave->live[i]], wave->rule,
+                                           wave->at[wave->live[i]], wave->distances[wave->live[i]]);
+    }
+}
+
+uint64_t ray_field_block(RayField *field, size_t part, RayBlock *blocks, size_t count,
+                         const BlockRule *rule)
+{
+    Wave *wave        = field->waves[part];
+    wave->field       = field;
+    wave->part        = part;
+    wave->space       = &field->spaces[part];
+    wave->rule        = rule;
+    wave->blocks      = blocks;
+    wave->evaluations = 0;
+    for (size_t b = 0; b < count; b++) {
+        for (int i = 0; i < RAYS_OF_BLOCK; i++)
+            wave->marched[b][i] = blocks[b].state[i] == RAY_MARCHES;
+        begin_blocked(wave, &blocks[b], wave->ends[b]);
+    }
+    march_wave(wave, count);
+    for (size_t b = 0; b < count; b++)
+        end_blocked(wave, &blocks[b], wave->marched[b], wave->ends[b]);
+    return wave->evaluations;
+}

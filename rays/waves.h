@@ -1,0 +1,27 @@
+/*
+ * waves.h: rays of hits that are marched together.
+ */
+#ifndef KRS_RAYS_WAVES_H
+#define KRS_RAYS_WAVES_H
+
+#include "rays/lanes.h"
+#include "rays/space.h"
+
+/* Rays of hits that are marched together, all by one step at a time. */
+typedef struct Wave {
+    RayField        *field;
+    size_t           part;
+    Space           *space;
+    const BlockRule *rule;
+    RayBlock        *blocks;
+    uint64_t         evaluations;
+    float            at[BLOCKS_OF_WAVE][RAYS_OF_BLOCK], points[BLOCKS_OF_WAVE][3][RAYS_OF_BLOCK],
+        distances[BLOCKS_OF_WAVE][RAYS_OF_BLOCK];
+    bool     marched[BLOCKS_OF_WAVE][RAYS_OF_BLOCK]; /* of rays of hits: they were to be marched, */
+    float    ends[BLOCKS_OF_WAVE][RAYS_OF_BLOCK];    /* as far as here */
+    int32_t  next[BLOCKS_OF_WAVE * RAYS_OF_BLOCK];   /* ray in the same cube; -1: none */
+    uint32_t cubes[BLOCKS_OF_WAVE * RAYS_OF_BLOCK], cube_count; /* that rays are in */
+    uint32_t live[BLOCKS_OF_WAVE], live_count;                  /* blocks with rays that march */
+} Wave;
+
+#endif

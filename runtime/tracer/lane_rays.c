@@ -1,0 +1,332 @@
+/*
+ * lane_rays.c: rays by lanes of the host.
+ *
+ * A tile of primary rays has 64x64 pixels, a block 4x4.  Rays of hits are begun by aim.comp, which has no scene, and
+ * come in waves, in the order of their list; arrive.comp makes of them what secondary.comp would.  Tiles and waves are
+ * dealt to all processors, and slices of them end often enough that progress is seen.
+ */
+#include "runtime/tracer/lane_rays.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "compiler/base/parallel.h"
+#include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/methods.h"
+#include "runtime/tracer/rendering.h"
+#include "runtime/tracer/view.h"
+
+enum { SIDE = 64, BLOCK_SIDE = 4 };
+static_assert(SIDE * SIDE == BLOCKS_OF_TILE * RAYS_OF_BLOCK &&
+                  BLOCK_SIDE * BLOCK_SIDE == RAYS_OF_BLOCK,
+              "rays.h");
+
+bool lane_rays_suit(const Job *job)
+{
+    const KrsRendering *r    = job->rendering;
+    const bool          near = job->rebase_origin[0] == 0 && job->rebase_origin[1] == 0 &&
+                      job->rebase_origin[2] == 0;
+    return gpu_is_cpu(job->gpu) && r->rays == RAYS_OF_CAMERAS && near && !job->frame.snaps &&
+           r->zone_slots == 0 && job->options.methods.trace == KRS_TRACE_AUTO &&
+           !job->options.depth && job->options.noise == 0 && job->options.methods.even_hits == 0 &&
+           ray_field_suits(r->scene);
+}
+
+bool lane_rays_find_normals(const Job *job)
+{
+    return job->options.methods.normals == KRS_NORMALS_OCTAHEDRON;
+}
+
+bool lane_rays_know_planes(const Job *job)
+{
+    return rendering_knows_planes(job->rendering) && job->begins_outside;
+}
+
+/* Tiles that are marched in one slice. */
+typedef struct Slice {
+    const Job       *job;
+    RayField        *field;
+    const WorkBlock *work;
+    FrameBlock       box;        /* around what is marched */
+    uint32_t    across, tile[2]; /* of all tiles: in a row, and the first one's column and row */
+    uint32_t    items;           /* of rays of hits */
+    atomic_uint next;
+    uint32_t    end;
+    RayBlock   *blocks[MAX_PARTS]; /* of each part */
+    uint64_t    evaluations[MAX_PARTS];
+    uint32_t    unresolved[MAX_PARTS], max_steps[MAX_PARTS];
+} Slice;
+
+/* The even and the odd bits of a number: column and row in the order in which quarters of quarters follow each other. */
+static uint32_t column_of(uint32_t number)
+{
+    uint32_t column = 0;
+    for (uint32_t bit = 0; bit < 16; bit++)
+        column |= (number >> 2 * bit & 1) << bit;
+    return column;
+}
+
+/* The first pixel of a block, counted in the picture. */
+typedef struct Corner {
+    uint32_t at[2];
+} Corner;
+
+static Corner corner_of(const Slice *slice, uint32_t tile, uint32_t block)
+{
+    return (Corner){
+        {SIDE * (slice->tile[0] + tile % slice->across) + BLOCK_SIDE * column_of(block),
+         SIDE * (slice->tile[1] + tile / slice->across) + BLOCK_SIDE * column_of(block >> 1)}};
+}
+
+/* The pixel of a ray, counted in the band; false: it is outside of that. */
+static bool find_pixel(const WorkBlock *work, Corner corner, uint32_t ray, uint32_t pixel[2])
+{
+    const uint32_t at[2] = {corner.at[0] + ray % BLOCK_SIDE, corner.at[1] + ray / BLOCK_SIDE};
+    for (int k = 0; k < 2; k++)
+        pixel[k] = at[k] - work->corner[k];
+    return at[0] >= work->corner[0] && pixel[0] < work->extent[0] && at[1] >= work->corner[1] &&
+           pixel[1] < work->extent[1];
+}
+
+/* As find_ray_of_picture of frame.glsl. */
+static void aim(const Job *job, const float at[2], RayBlock *block, uint32_t ray)
+{
+    const FrameBlock *frame       = &job->frame;
+    const bool        perspective = job->view.camera.projection == KRS_PERSPECTIVE;
+    const float       across = 2 * at[0] / frame->size[0] - 1, up = 1 - 2 * at[1] / frame->size[1];
+    float             straight[3], square                         = 0;
+    for (int k = 0; k < 3; k++) {
+        const float aside     = across * frame->right[k] + up * frame->up[k];
+        block->origin[k][ray] = frame->eye[k] + (perspective ? 0 : aside);
+        straight[k]           = frame->forward[k] + (perspective ? aside : 0);
+        square += straight[k] * straight[k];
+    }
+    const float stretch = perspective ? sqrtf(square) : 1;
+    for (int k = 0; k < 3; k++)
+        block->direction[k][ray] = straight[k] / stretch;
+    block->width[ray]  = frame->pixel_base;
+    block->spread[ray] = frame->pixel_slope / stretch;
+}
+
+/* As clip_to of frame.glsl. */
+static void clip(const float low[3], const float high[3], float farthest, RayBlock *block,
+                 uint32_t ray)
+{
+    float first = 0, last = farthest;
+    for (int k = 0; k < 3; k++) {
+        const float along = block->direction[k][ray], safe = fabsf(along) < 1e-18f ? 1e-18f : along;
+        const float a = (low[k] - block->origin[k][ray]) / safe,
+                    b = (high[k] - block->origin[k][ray]) / safe;
+        first         = fmaxf(first, fminf(a, b));
+        last          = fminf(last, fmaxf(a, b));
+    }
+    block->start[ray] = first;
+    block->end[ray]   = last;
+}
+
+static void begin_block(const Slice *slice, Corner corner, RayBlock *block)
+{
+    for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
+        uint32_t   pixel[2];
+        const bool there = find_pixel(slice->work, corner, i, pixel);
+        float      at[2];
+        for (int k = 0; k < 2; k++)
+            at[k] = (float)(slice->work->corner[k] + pixel[k]) + slice->work->offset[k];
+        if (there)
+            aim(slice->job, at, block, i);
+        block->state[i] = there ? RAY_MARCHES : RAY_IS_ABSENT;
+        if (there)
+            clip(slice->box.low, slice->box.high, slice->job->frame.farthest, block, i);
+    }
+}
+
+/* As in hit_lists.glsl. */
+static uint32_t slot_of(const WorkBlock *work, const uint32_t pixel[2])
+{
+    const uint32_t across = (work->extent[0] + TILE - 1) / TILE;
+    return TILE * TILE * (pixel[1] / TILE * across + pixel[0] / TILE) + pixel[1] % TILE * TILE +
+           pixel[0] % TILE;
+}
+
+/* As pack_ray of frame.glsl. */
+static void store_block(Slice *slice, size_t part, Corner corner, const RayBlock *block)
+{
+    float(*hits)[4]    = slice->job->rendering->band.hits.bytes;
+    uint32_t(*ends)[2] = slice->job->rendering->band.ends.bytes;
+    for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
+        uint32_t pixel[2];
+        if (!find_pixel(slice->work, corner, i, pixel))
+            continue;
+        uint32_t *end = ends[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]];
+        memcpy(&end[0], &block->t[i], sizeof *end);
+        end[1] = (block->state[i] == RAY_HITS ? STATE_HIT : STATE_MISS) |
+                 (block->side[i] < 0 ? 4u : 0u) | (block->unresolved[i] ? 8u : 0u) |
+                 block->steps[i] << 8;
+        float *facing = hits[(size_t)HIT_ROWS * slot_of(slice->work, pixel) + FACING];
+        for (int k = 0; k < 3; k++)
+            facing[k] = block->normal[k][i];
+        facing[3] = block->evenness[i];
+        slice->unresolved[part] += block->unresolved[i];
+        if (block->steps[i] > slice->max_steps[part])
+            slice->max_steps[part] = block->steps[i];
+    }
+}
+
+static RayRule rule_of(const Job *job)
+{
+    return (RayRule){.error        = (float)job->options.error,
+                     .max_steps    = job->options.methods.max_steps,
+                     .normal_reach = lane_rays_find_normals(job) ? job->frame.normal_reach : 0,
+                     .plain        = job->rendering->program->plain};
+}
+
+static void march_tiles(void *task, size_t part, size_t parts)
+{
+    Slice        *slice  = task;
+    const RayRule rule   = rule_of(slice->job);
+    RayBlock     *blocks = slice->blocks[part];
+    (void)parts;
+    for (uint32_t tile; (tile = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+        for (uint32_t b = 0; b < BLOCKS_OF_TILE; b++) {
+            begin_block(slice, corner_of(slice, tile, b), &blocks[b]);
+            ray_field_meet_planes(slice->field, part, slice->job->frame.farthest, &blocks[b]);
+        }
+        slice->evaluations[part] += ray_field_march(slice->field, part, blocks, BLOCKS_OF_TILE,
+                                                    &rule);
+        for (uint32_t b = 0; b < BLOCKS_OF_TILE; b++)
+            store_block(slice, part, corner_of(slice, tile, b), &blocks[b]);
+    }
+}
+
+/* Items of rays of hits: a tile is as many as follow each other. */
+static void begin_secondary(const Slice *slice, const float (*rows)[4], uint32_t item,
+                            RayBlock *block, uint32_t i)
+{
+    const float(*ray)[4] = rows + (size_t)PATH_ROWS * item;
+    const bool there     = item < slice->items;
+    block->state[i] = !there ? RAY_IS_ABSENT : ray[LANE_CONE][3] > 0 ? RAY_MARCHES : RAY_MISSES;
+    if (!there)
+        return;
+    for (int k = 0; k < 3; k++) {
+        block->origin[k][i]    = ray[LANE_START][k];
+        block->direction[k][i] = ray[LANE_AHEAD][k];
+    }
+    block->end[i]      = ray[LANE_START][3];
+    block->facing[i]   = ray[LANE_AHEAD][3];
+    block->lift[i]     = ray[LANE_SCALE][0];
+    block->width[i]    = ray[LANE_SCALE][1];
+    block->rounding[i] = ray[LANE_SCALE][2];
+    block->side[i]     = ray[LANE_SCALE][3];
+    block->cone[i]     = ray[LANE_CONE][0];
+    block->margin[i]   = ray[LANE_CONE][1];
+    block->least[i]    = ray[LANE_CONE][2];
+}
+
+static BlockRule block_rule_of(const Job *job)
+{
+    /* As in secondary.glsl. */
+    const float         growth = 1.008f, growth_of_sky = 1.08f, far_reaches = 60;
+    const ControlBlock *control    = job->rendering->control.bytes;
+    const bool          hemisphere = control->phase == RAYS_OVER_HEMISPHERE;
+    return (BlockRule){.cones           = control->phase == RAYS_CONES,
+                       .over_hemisphere = hemisphere,
+                       .growth          = hemisphere ? growth_of_sky : growth,
+                       .far             = far_reaches * job->frame.occlusion_reach};
+}
+
+static void march_items(void *task, size_t part, size_t parts)
+{
+    enum { RAYS = BLOCKS_OF_WAVE * RAYS_OF_BLOCK };
+    Slice          *slice  = task;
+    const BlockRule rule   = block_rule_of(slice->job);
+    RayBlock       *blocks = slice->blocks[part];
+    float(*rows)[4]        = slice->job->rendering->band.hits.bytes;
+    rows += (size_t)HIT_ROWS * TILE * TILE * tiles_of_band(slice->work);
+    (void)parts;
+    for (uint32_t tile; (tile = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+        const uint32_t left  = slice->items - tile * RAYS;
+        const size_t   count = ((left < RAYS ? left : RAYS) + RAYS_OF_BLOCK - 1) / RAYS_OF_BLOCK;
+        for (uint32_t i = 0; i < count * RAYS_OF_BLOCK; i++)
+            begin_secondary(slice, (const float(*)[4])rows, tile * RAYS + i,
+                            &blocks[i / RAYS_OF_BLOCK], i % RAYS_OF_BLOCK);
+        slice->evaluations[part] += ray_field_block(slice->field, part, blocks, count, &rule);
+        for (uint32_t i = 0; i < count * RAYS_OF_BLOCK && tile * RAYS + i < slice->items; i++) {
+            const RayBlock *block = &blocks[i / RAYS_OF_BLOCK];
+            float          *found = rows[(size_t)PATH_ROWS * (tile * RAYS + i) + LANE_FOUND];
+            found[0]              = block->t[i % RAYS_OF_BLOCK];
+            found[1]              = block->state[i % RAYS_OF_BLOCK] == RAY_HITS;
+            found[2]              = (float)block->unresolved[i % RAYS_OF_BLOCK];
+        }
+    }
+}
+
+/* Adds what shaders would have counted. */
+static void add_counts(Job *job, const Slice *slice)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    for (size_t i = 0; i < MAX_PARTS; i++) {
+        control->evaluations += (uint32_t)slice->evaluations[i];
+        control->unresolved += slice->unresolved[i];
+        if (slice->max_steps[i] > control->max_evaluations)
+            control->max_evaluations = slice->max_steps[i];
+    }
+}
+
+/* Rays meet planes without a march. */
+static void place_box(Slice *slice)
+{
+    const Job *job = slice->job;
+    double     low[3], high[3];
+    slice->box = job->frame;
+    job_find_rest(job, low, high);
+    if (lane_rays_know_planes(job))
+        view_place_box(&job->view, low, high, &slice->box);
+}
+
+/* Deals tiles out, in slices. */
+static bool run_slices(Job *job, Slice *slice, KrsPhase phase, uint32_t tiles,
+                       void (*run)(void *task, size_t part, size_t parts))
+{
+    RayBlock *blocks  = gpu_alloc(job->gpu, parallel_parts() * BLOCKS_OF_WAVE, sizeof *blocks,
+                                  "march rays");
+    uint32_t  at_once = 16;
+    bool      good    = blocks != NULL;
+    for (size_t i = 0; i < parallel_parts() && good; i++)
+        slice->blocks[i] = blocks + i * BLOCKS_OF_WAVE;
+    for (uint32_t begin = 0; begin < tiles && good; begin = slice->end) {
+        const double start = clock_ms();
+        slice->next        = begin;
+        slice->end         = tiles - begin < at_once ? tiles : begin + at_once;
+        run_in_parallel(run, slice);
+        const double ms = clock_ms() - start;
+        job->stats->phase_ms[phase] += ms;
+        at_once = ms > job->options.slice_ms ? (at_once + 1) / 2 : 2 * at_once;
+        good    = dispatch_report(job, (double)slice->end / tiles);
+    }
+    gpu_release(job->gpu, blocks);
+    return good;
+}
+
+bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work)
+{
+    Slice    slice = {.job = job, .field = field, .work = work};
+    uint32_t tiles[2];
+    place_box(&slice);
+    for (int k = 0; k < 2; k++) {
+        slice.tile[k] = work->corner[k] / SIDE;
+        tiles[k]      = (work->corner[k] + work->extent[k] - 1) / SIDE - slice.tile[k] + 1;
+    }
+    slice.across    = tiles[0];
+    const bool good = run_slices(job, &slice, KRS_PHASE_PRIMARY, tiles[0] * tiles[1], march_tiles);
+    add_counts(job, &slice);
+    return good;
+}
+
+bool lane_rays_march_secondary(Job *job, RayField *field, KrsPhase phase, uint32_t items,
+                               const WorkBlock *work)
+{
+    enum { RAYS = BLOCKS_OF_WAVE * RAYS_OF_BLOCK };
+    Slice slice = {.job = job, .field = field, .work = work, .items = items};
+    return run_slices(job, &slice, phase, (items + RAYS - 1) / RAYS, march_items);
+}

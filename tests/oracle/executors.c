@@ -1,0 +1,139 @@
+/*
+ * executors.c: pictures do not tell who marched their rays, shaders or lanes of the host.
+ *
+ * Hits, depths and normals are the same but for rounding and, at outlines, the permitted error; light is, but for
+ * what grazes a surface.  A scene that is moved by a hundredth must be seen to differ.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/renderer.h"
+
+enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
+
+static const char *const scenes[] = {
+    "camera { eye: [2, 3, 5] } show box([1, 1.4, 0.8]) - sphere(0.7).move([0.4, 0.3, 0.4]); show "
+    "plane([0, 1, 0], -0.8);",
+    "camera { eye: [3, 2, 4], target: [0.2, 0, 0], fov: 35deg } show union([torus(1, 0.3), "
+    "cylinder(0.4, 1.6)], blend: 0.2);"
+    "show ellipsoid([0.4, 0.2, 0.3]).move([1.2, 0.7, 0]); light lamp { position: [3, 4, 2], "
+    "radius: 0.5, intensity: 60 "
+    "}",
+    "camera { eye: [0, 4, 6], projection: \"orthographic\", height: 5 } show capsule([0, 0, 0], "
+    "[0, 0.6, 0], "
+    "0.15).repeat([0.8, 0, 0.8], [5, 1, 5]);"
+    "show plane([0, 1, 0], -0.2); light sun { direction: [1, 2, 1], softness: 3deg }",
+    "camera { eye: [0, 1.6, 4.5], target: [0, 1.2, 0] } show krs { kernel capsule([0, 0, 0], [0, "
+    "0.4, 0], radius: 0.05); "
+    "for i in 0..7 { mobius translate([0, 0.4, 0]) * rotate([0, 1, 0], -70deg) * rotate([1, 0, 0], "
+    "28deg) * scale(0.88); "
+    "reflect plane([1, 0, 0], 0); kernel capsule([0, 0, 0], [0, 0.4, 0], radius: 0.05); } };",
+    "camera { eye: [2, 2, 3] } show (box([2, 2, 2]) & sphere(1.3)).shell(0.05) - cylinder(0.4, 4); "
+    "show plane([0, 1, 0.2], -1);",
+    "camera { eye: [0, 0, 0.2], target: [1, 0, 0], fov: 70deg } show box([4, 3, 4]).shell(0.2); "
+    "show sphere(0.5).move([1.2, -0.4, 0.3]);",
+};
+
+typedef struct Verdict {
+    size_t hits, other_hits, other_depths, other_normals, other_light;
+} Verdict;
+
+static Verdict judge(const KrsPicture *a, const KrsPicture *b)
+{
+    Verdict verdict = {0};
+    for (size_t k = 0; k < PIXELS; k++) {
+        const double depth = (double)a->depth[k];
+        double       turn = 0, light = 0;
+        verdict.hits += a->component[k] != 0;
+        if (a->component[k] != b->component[k] || a->instance[k] != b->instance[k]) {
+            verdict.other_hits++;
+            continue;
+        }
+        for (size_t c = 0; c < 3; c++) {
+            turn  = fmax(turn, fabs((double)(a->normal[3 * k + c] - b->normal[3 * k + c])));
+            light = fmax(light, fabs((double)(a->color[4 * k + c] - b->color[4 * k + c])));
+        }
+        if (a->component[k] == 0)
+            continue;
+        verdict.other_depths += !(fabs(depth - (double)b->depth[k]) < 1e-3 * depth);
+        verdict.other_normals += turn > 0.02;
+        verdict.other_light += light > 0.03;
+    }
+    return verdict;
+}
+
+static Verdict compare(const char *text, const char *other_text)
+{
+    KrsRenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .methods.executor = KRS_EXECUTOR_KERNELS};
+    KrsPicture *kernels      = picture_of(text, &options);
+    options.methods.executor = KRS_EXECUTOR_LANES;
+    KrsPicture   *lanes      = picture_of(other_text, &options);
+    const Verdict verdict    = judge(kernels, lanes);
+    assert_int_equal(lanes->stats.unresolved, 0);
+    krs_picture_free(kernels);
+    krs_picture_free(lanes);
+    return verdict;
+}
+
+static void pictures_are_the_same(void **context)
+{
+    (void)context;
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        const Verdict v = compare(scenes[i], scenes[i]);
+        print_message("%zu hits; others: %zu hits, %zu depths, %zu normals, %zu light\n", v.hits,
+                      v.other_hits, v.other_depths, v.other_normals, v.other_light);
+        assert_true(v.hits > PIXELS / 20);
+        assert_true(v.other_hits <= PIXELS / 1000);
+        assert_true(v.other_depths <= PIXELS / 2000);
+        assert_true(v.other_normals <= v.hits / 100);
+        assert_true(v.other_light <= v.hits / 100);
+    }
+}
+
+static void a_moved_scene_is_seen(void **context)
+{
+    (void)context;
+    const Verdict v = compare(
+        "camera { eye: [2, 3, 5] } show box([1, 1.4, 0.8]);",
+        "camera { eye: [2, 3, 5] } show box([1, 1.4, 0.8]).move([0.01, 0, 0.01]);");
+    assert_true(v.other_depths > v.hits / 4);
+}
+
+static void what_lanes_do_not_know_is_refused(void **context)
+{
+    (void)context;
+    static const char      text[]  = "show sphere(1);";
+    const KrsRenderOptions options = {.width            = 8,
+                                      .height           = 8,
+                                      .integrator       = KRS_INTEGRATOR_PATH,
+                                      .methods.executor = KRS_EXECUTOR_LANES};
+    KrsScene              *scene;
+    KrsState              *state;
+    KrsRendering          *rendering;
+    KrsPicture            *picture;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
+    assert_int_equal(krs_render(rendering, state, &options, &picture), KRS_BAD_ARGUMENT);
+    assert_non_null(strstr(krs_renderer_message(renderer), "lanes"));
+    krs_rendering_free(rendering);
+    krs_state_free(state);
+    krs_scene_free(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures_are_the_same),
+                                       cmocka_unit_test(a_moved_scene_is_seen),
+                                       cmocka_unit_test(what_lanes_do_not_know_is_refused)};
+    return cmocka_run_group_tests(tests, renderer_open, renderer_close);
+}
