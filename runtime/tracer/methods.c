@@ -5,8 +5,10 @@
 
 #include "runtime/tracer/research/research.h"
 
-/* Where a distance costs fewer operations than this, refilling lanes costs more than it gains. */
-#define FLOPS_WORTH_REFILL 150
+/* Where a distance costs fewer operations than this, refilling lanes costs more than it gains: in
+   frames, and in a small first picture, for which its shaders compile longer. */
+#define FLOPS_WORTH_REFILL          20
+#define FLOPS_WORTH_REFILL_OF_SMALL 150
 /* For a march group the threshold is higher, as few rays of its tiles meet it. */
 #define FLOPS_WORTH_REFILL_OF_GROUP 350
 /* From so many on, shaders of march groups take longer to compile than they save in a hundred small
@@ -23,18 +25,20 @@ static bool finds_roots(KrsTrace trace)
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
-    const Gpu *gpu       = &rendering->renderer->gpu;
-    bool       software  = gpu_is_cpu(gpu);
-    bool       expensive = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
+    const Gpu *gpu      = &rendering->renderer->gpu;
+    bool       small    = rendering->purpose == KRS_FOR_SMALL_PICTURES;
+    double     worth    = small ? FLOPS_WORTH_REFILL_OF_SMALL : FLOPS_WORTH_REFILL;
+    bool       software = gpu_is_cpu(gpu);
+    bool       refills  = rendering->program->flops >= worth && gpu->refill_lanes > 0;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
     /* Open surfaces have no thickness, so rays find them by roots alone. */
     if (rendering->program->open_surfaces && !finds_roots(*trace))
         *trace = KRS_TRACE_EXACT;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
-        *schedule = !software   ? KRS_SCHEDULE_QUEUE
-                    : expensive ? KRS_SCHEDULE_REFILL
-                                : KRS_SCHEDULE_PIXEL;
+        *schedule = !software ? KRS_SCHEDULE_QUEUE
+                    : refills ? KRS_SCHEDULE_REFILL
+                              : KRS_SCHEDULE_PIXEL;
 }
 
 /* The most iterations of all loops of an invocation together.  Some devices end loops silently
