@@ -119,6 +119,36 @@ const float *cell_run_seen(const CellTape *tape, CellWork *work, const float poi
     return cell_run(tape, work, 0, points);
 }
 
+void cell_outputs(const CellTape *tape, uint32_t *rows)
+{
+    for (size_t i = 0; i < tape->whole->output_count; i++)
+        rows[i] = row_of(tape->whole->outputs[i], tape->inputs);
+}
+
+/* A solid is seen from its front where the ray goes against its normal. */
+static void fill_fronts(const CellPoints *points, float *fronts)
+{
+    for (int i = 0; i < CELL_LANES; i++) {
+        float along = 0;
+        for (int k = 0; k < 3; k++)
+            along += points->view[k][i] * points->normal[k][i];
+        fronts[i] = along > 0 ? 0 : 1;
+    }
+}
+
+const float *cell_run_surfaces(const CellTape *tape, CellWork *work, uint32_t depth,
+                               const CellPoints *points)
+{
+    float *rows = work->rows[depth], *inputs = rows + (size_t)tape->inputs * CELL_LANES;
+    memcpy(inputs + LANE_POINT * CELL_LANES, points->point, sizeof points->point);
+    memcpy(inputs + LANE_NORMAL * CELL_LANES, points->normal, sizeof points->normal);
+    memcpy(inputs + LANE_FOOTPRINT * CELL_LANES, points->footprint, sizeof points->footprint);
+    memcpy(inputs + LANE_VIEW * CELL_LANES, points->view, sizeof points->view);
+    fill_fronts(points, inputs + LANE_FRONT * CELL_LANES);
+    lane_cell_run(tape, work->values, rows);
+    return rows;
+}
+
 /* ---- bounds ---- */
 
 /* The ball of a lane. */
@@ -170,9 +200,14 @@ static Range range_of_row(const Ball *ball, uint32_t row)
     return number_rows[step->op].range(o);
 }
 
+float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float margin)
+{
+    return reach_of(&(Ball){tape, NULL, radius, margin}, row);
+}
+
 float cell_reach(const CellTape *tape, float radius, float margin)
 {
-    return reach_of(&(Ball){tape, NULL, radius, margin}, tape->output);
+    return cell_row_reach(tape, tape->output, radius, margin);
 }
 
 /* ---- what is needed ---- */
@@ -363,28 +398,56 @@ static void move_step(Pruning *p, CellTape *to, uint32_t i)
     to->count += work->now[row] == next;
 }
 
+/* The shorter tape, of no steps yet. */
+static CellTape begin_shorter(const CellTape *tape, CellWork *work)
+{
+    CellTape to = *tape;
+    to.steps    = work->steps + work->step_count;
+    to.calls    = work->calls + work->call_count;
+    to.count = to.call_count = 0;
+    memset(work->needed, 0,
+           (tape->inputs + LANE_INPUTS + (size_t)tape->count) * sizeof *work->needed);
+    return to;
+}
+
+/* Moves all that is needed for what is needed. */
+static void move_steps(Pruning *p, CellTape *to)
+{
+    const CellTape *tape  = p->ball.tape;
+    const uint32_t  first = tape->inputs + LANE_INPUTS;
+    for (uint32_t i = tape->count; i-- > 0;)
+        if (p->work->needed[first + i])
+            need_of_step(p, &tape->steps[i], first + i);
+    for (uint32_t i = 0; i < tape->count; i++)
+        move_step(p, to, i);
+    p->work->step_count += to->count;
+    p->work->call_count += to->call_count;
+}
+
 CellTape cell_prune(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
                     float radius, float margin)
 {
-    const uint32_t first = tape->inputs + LANE_INPUTS;
-    Pruning        p     = {{tape, work->rows[depth] + lane, radius, margin}, work};
-    CellTape       to    = *tape;
-    const float    most  = value_of(&p.ball, tape->output) + reach_of(&p.ball, tape->output);
-    const float    wide  = 2 * radius;
-    to.cap               = most < wide || tape->cap < wide ? tape->cap : wide;
-    to.steps             = work->steps + work->step_count;
-    to.calls             = work->calls + work->call_count;
-    to.count = to.call_count = 0;
-    memset(work->needed, 0, (first + (size_t)tape->count) * sizeof *work->needed);
+    Pruning     p    = {{tape, work->rows[depth] + lane, radius, margin}, work};
+    CellTape    to   = begin_shorter(tape, work);
+    const float most = value_of(&p.ball, tape->output) + reach_of(&p.ball, tape->output);
+    const float wide = 2 * radius;
+    to.cap           = most < wide || tape->cap < wide ? tape->cap : wide;
     need(&p, tape->output, most < wide ? most : wide, -HUGE_VALF);
-    for (uint32_t i = tape->count; i-- > 0;)
-        if (work->needed[first + i])
-            need_of_step(&p, &tape->steps[i], first + i);
-    for (uint32_t i = 0; i < tape->count; i++)
-        move_step(&p, &to, i);
+    move_steps(&p, &to);
     to.output = moved(&p, tape->output);
-    work->step_count += to.count;
-    work->call_count += to.call_count;
+    return to;
+}
+
+CellTape cell_prune_rows(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
+                         float radius, float margin, uint32_t *rows, size_t count)
+{
+    Pruning  p  = {{tape, work->rows[depth] + lane, radius, margin}, work};
+    CellTape to = begin_shorter(tape, work);
+    for (size_t i = 0; i < count; i++)
+        need(&p, rows[i], HUGE_VALF, -HUGE_VALF);
+    move_steps(&p, &to);
+    for (size_t i = 0; i < count; i++)
+        rows[i] = moved(&p, rows[i]);
     return to;
 }
 

@@ -38,7 +38,7 @@ typedef struct CellTape {
     const CellCall *calls;
     uint32_t        count, call_count;
     uint32_t        inputs; /* the row of the first input: the number of constants */
-    uint32_t        output; /* the row of the distance */
+    uint32_t        output; /* the row of the distance, which is output 0 */
     float           cap;    /* infinite: it is right all over the ball */
 } CellTape;
 
@@ -61,6 +61,20 @@ const float *cell_run(const CellTape *tape, CellWork *work, uint32_t depth,
 const float *cell_run_seen(const CellTape *tape, CellWork *work, const float points[3][CELL_LANES],
                            const float directions[3][CELL_LANES]);
 
+/* Rows of outputs of the whole tape, as many as it has. */
+void cell_outputs(const CellTape *tape, uint32_t *rows);
+
+/* Points on surfaces, where they are seen from: all inputs of a tape. */
+typedef struct CellPoints {
+    float point[3][CELL_LANES], normal[3][CELL_LANES], footprint[CELL_LANES], view[3][CELL_LANES];
+} CellPoints;
+/* Runs it there.  Returns all rows, of CELL_LANES numbers each. */
+const float *cell_run_surfaces(const CellTape *tape, CellWork *work, uint32_t depth,
+                               const CellPoints *points);
+
+/* How much a row differs in a ball from its value in the middle, at most. */
+float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float margin);
+
 /* How much the distance differs in a ball from that in its middle, at most. */
 float cell_reach(const CellTape *tape, float radius, float margin);
 
@@ -74,5 +88,9 @@ CellMark cell_mark(const CellWork *work);
 void     cell_release(CellWork *work, CellMark mark);
 CellTape cell_prune(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
                     float radius, float margin);
+/* The same, but of several rows, all of which are right in all of the ball.  They get the numbers of the rows that
+   stand for them. */
+CellTape cell_prune_rows(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
+                         float radius, float margin, uint32_t *rows, size_t count);
 
 #endif

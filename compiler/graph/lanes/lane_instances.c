@@ -272,6 +272,9 @@ static void pass_operands(const LaneTape *tape, const double *outer, const LaneC
         pass_operand(tape, outer, call->from[2], 3, inputs + LANE_NORMAL * LANES, lanes);
         pass_operand(tape, outer, call->from[3], 2, inputs + LANE_FOOTPRINT * LANES, lanes);
     }
+    memcpy(inputs + LANE_VIEW * LANES, inputs + LANE_NORMAL * LANES, 3 * LANES * sizeof *inputs);
+    for (size_t i = 0; i < lanes; i++)
+        inputs[LANE_FRONT * LANES + i] = 1;
 }
 
 void lane_instance_call(const LaneTape *tape, const LaneWork *work, const LaneCall *call,

@@ -121,9 +121,12 @@ static void fill_inputs(const LaneWork *work, LanePrecision precision, const Lan
             put(work, precision, (LANE_POINT + k) * LANES + i, points->points[at][k]);
             put(work, precision, (LANE_NORMAL + k) * LANES + i,
                 points->normals ? points->normals[at][k] : 0);
+            put(work, precision, (LANE_VIEW + k) * LANES + i,
+                points->normals ? points->normals[at][k] : 0);
         }
         put(work, precision, LANE_FOOTPRINT * LANES + i,
             points->footprints ? points->footprints[at] : 0);
+        put(work, precision, LANE_FRONT * LANES + i, 1);
     }
 }
 

@@ -35,7 +35,15 @@ enum {
 /* What a step works on: the number of a value, or this bit and the number of a scalar.  Values are the
    inputs, then the results of the steps. */
 #define LANE_SCALAR 0x80000000u
-enum { LANE_POINT = 0, LANE_NORMAL = 3, LANE_FOOTPRINT = 6, LANE_THRESHOLD = 7, LANE_INPUTS = 8 };
+enum {
+    LANE_POINT     = 0,
+    LANE_NORMAL    = 3,
+    LANE_FOOTPRINT = 6,
+    LANE_THRESHOLD = 7,
+    LANE_VIEW      = 8, /* where nobody looks, the normal */
+    LANE_FRONT     = 11,
+    LANE_INPUTS    = 12
+};
 
 /* An operation of ops.def works on numbers here: OP_length on the components of a vector, OP_normalize
    on one component and the length, OP_cell on one component of each operand. */

@@ -1,0 +1,62 @@
+/*
+ * surfaces.h: what is at points on surfaces, by lanes of the host, without shaders.
+ *
+ * It is what krs_surface of a scene's text finds.  Points that are near each other are in a ball, and there most
+ * of the scene has no influence (graph/lanes/lane_cells.h): other components, and other shapes of the same one.
+ */
+#ifndef KRS_RAYS_SURFACES_H
+#define KRS_RAYS_SURFACES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "krs/krs.h"
+
+typedef struct SurfacePoint {
+    float position[3], normal[3]; /* the normal is on the outside of the solid */
+    float view[3];                /* of the ray that sees it, unit */
+    float footprint;              /* the radius of a pixel there */
+    float *found;                 /* where to write what is found */
+} SurfacePoint;
+
+/* The numbers of a surface, in this order. */
+#define FLOAT(name) float name;
+#define VEC3(name)  float name[3];
+#define UINT(name)  uint32_t name;
+typedef struct FoundSurface {
+    float distance, normal[3];
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) shown(name)
+#include "krs/surface.def"
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) type(name)
+#include "krs/surface.def"
+} FoundSurface;
+#undef FLOAT
+#undef VEC3
+#undef UINT
+
+/* How many of them are found: of what all materials have, color to emission, or of layers, too. */
+enum {
+    PLAIN_SURFACE_NUMBERS = offsetof(FoundSurface, specular) / sizeof(float),
+    SURFACE_NUMBERS       = sizeof(FoundSurface) / sizeof(float)
+};
+
+/* Surfaces of a state of a scene. */
+typedef struct SurfaceField SurfaceField;
+
+/* NULL: memory has run out.  The state stays as it is while the field is in use. */
+SurfaceField *surface_field_new(KrsState *state, bool layers);
+void          surface_field_free(SurfaceField *field);
+/* Whether surfaces can be found: not where rays are within glass, or where there is nothing. */
+bool surface_field_suits(const KrsScene *scene);
+
+/* Finds surfaces, in one of the parts of run_in_parallel.  Points are near those before and behind them; as many as
+   SURFACES_AT_ONCE cost the least. */
+enum { SURFACES_AT_ONCE = 16384 };
+void surface_field_find(const SurfaceField *field, size_t part, const SurfacePoint *points,
+                        size_t count);
+/* Only their colors. */
+void surface_field_find_colors(const SurfaceField *field, size_t part, const SurfacePoint *points,
+                               size_t count);
+
+#endif
