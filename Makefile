@@ -66,7 +66,8 @@ SHADERS  := $(sort $(wildcard $(addprefix runtime/shaders/,*.comp *.glsl researc
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
 MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) \
-            $(addprefix $(B)/modules/, escape.comp-PATH_RAYS.spv background.comp-SKY_MAP.spv)
+            $(addprefix $(B)/modules/, escape.comp-PATH_RAYS.spv background.comp-SKY_MAP.spv \
+                                       shade.comp-SURFACES.spv shade.comp-SURFACES-LAYERS.spv)
 # lavapipe reads the frame as texels (frame.glsl).
 MODULES  += $(MODULES:%.spv=%-FRAME_TEXELS.spv)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
@@ -197,6 +198,14 @@ $(B)/modules/%-SKY_MAP.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	$(call MAKE_MODULE,SKY_MAP)
 $(B)/modules/%-SKY_MAP-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	$(call MAKE_MODULE,SKY_MAP FRAME_TEXELS)
+$(B)/modules/%-SURFACES.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,SURFACES)
+$(B)/modules/%-SURFACES-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,SURFACES FRAME_TEXELS)
+$(B)/modules/%-SURFACES-LAYERS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,SURFACES LAYERS)
+$(B)/modules/%-SURFACES-LAYERS-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,SURFACES LAYERS FRAME_TEXELS)
 # Tables of the light that rough surfaces reflect are means over many points, rounded.
 $(B)/albedo_tables.c: $(B)/albedo_tables
 	@$(B)/albedo_tables >$@

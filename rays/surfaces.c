@@ -156,7 +156,7 @@ void surface_field_free(SurfaceField *field)
 typedef struct Question {
     const SurfaceField *field;
     CellWork           *work;
-    uint32_t *const    *rows; /* memory, of each level */
+    uint32_t *const    *rows;    /* memory, of each level */
     size_t              numbers; /* of a candidate */
     const SurfacePoint *points;
     size_t              first, each; /* the first that is written, and how many are */
@@ -219,9 +219,9 @@ static void find_points(const Question *q, const CellTape *tape, uint32_t level,
         place(&points, (int)i, &q->points[first + (i < count ? i : count - 1)]);
     const float *values = cell_run_surfaces(tape, q->work, level, &points);
     for (size_t i = 0; i < count; i++) {
-        const size_t nearest = rows->candidates > 1 ? find_nearest(q, rows, values, (int)i) : 0;
-        const uint32_t *of    = rows->of + nearest * q->numbers + (q->first > 0);
-        float          *found = q->points[first + i].found;
+        const size_t    nearest = rows->candidates > 1 ? find_nearest(q, rows, values, (int)i) : 0;
+        const uint32_t *of      = rows->of + nearest * q->numbers + (q->first > 0);
+        float          *found   = q->points[first + i].found;
         for (size_t k = 0; k < q->each; k++)
             put(&found[k], q->first + k, values[(size_t)of[k] * CELL_LANES + i]);
         if (q->field->cuts)

@@ -14,10 +14,10 @@
 #include "krs/krs.h"
 
 typedef struct SurfacePoint {
-    float position[3], normal[3]; /* the normal is on the outside of the solid */
-    float view[3];                /* of the ray that sees it, unit */
-    float footprint;              /* the radius of a pixel there */
-    float *found;                 /* where to write what is found */
+    float  position[3], normal[3]; /* the normal is on the outside of the solid */
+    float  view[3];                /* of the ray that sees it, unit */
+    float  footprint;              /* the radius of a pixel there */
+    float *found;                  /* where to write what is found */
 } SurfacePoint;
 
 /* The numbers of a surface, in this order. */

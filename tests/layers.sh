@@ -15,7 +15,7 @@ layers="compiler/base compiler/image compiler/outline compiler/graph compiler/gr
 public="include/krs/krs.h include/krs/camera.h include/krs/mesh.h include/krs/slice.h include/krs/grid.h
         include/krs/measure.h include/krs/light.h include/krs/surface.def include/krs/choices.def include/krs/camera.def include/krs/lights.def
         include/krs/light_types.def include/krs/targets.def"
-api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/print/variant.h compiler/target/spirv.h rays/rays.h"
+api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/print/variant.h compiler/target/spirv.h rays/rays.h rays/surfaces.h"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 

@@ -38,12 +38,18 @@ static void append(IncludeExpansion *to, const char *bytes, size_t count)
     to->length += count;
 }
 
+/* Whether surfaces that the host has found are in the place of the scene. */
+static bool has_surfaces(const ShaderSource *source)
+{
+    return !source->scene && source->defines && strstr(source->defines, "#define SURFACES\n");
+}
+
 /* With the files that it includes in place of the lines that say so; false: one is missing. */
 static bool append_file(IncludeExpansion *to, const char *name, size_t name_length)
 {
     static const char include[] = "#include \"";
-    bool              is_scene  = strncmp(name, "scene.glsl", name_length) == 0;
-    const char       *text      = is_scene ? to->scene : find_file(name, name_length);
+    bool is_scene    = strncmp(name, "scene.glsl", name_length) == 0 && !has_surfaces(to->source);
+    const char *text = is_scene ? to->scene : find_file(name, name_length);
     if (is_scene && text)
         append(to, text, strlen(text));
     for (; !is_scene && text && *text; text += strcspn(text, "\n"), text += *text == '\n') {

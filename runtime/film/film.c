@@ -260,13 +260,13 @@ static bool wait_for_shaders(Job *job)
 static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
 {
     KrsRendering *rendering = job->rendering;
-    if (rendering->resident.film != film) {
+    if (rendering->resident.film != film || plan->surface_rows > rendering->band.surface_rows) {
         if (!resident_store(rendering))
             return false;
         rendering->resident = (ResidentBand){0};
         film->rows          = band_allocate(rendering, &job->cover, plan->halo,
                                             plan->has_paths || plan->field, film->kept != NULL,
-                                            film->light_count);
+                                            film->light_count, plan->surface_rows);
     }
     if (film->rows == 0 ||
         !rendering_set_lights(rendering, job->view.lights, job->view.light_count,

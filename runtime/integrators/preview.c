@@ -10,6 +10,7 @@
  */
 #include "runtime/integrators/integrators.h"
 #include "runtime/tracer/shaders.h"
+#include "runtime/tracer/lane_surfaces.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/primary.h"
 #include "runtime/tracer/renderer.h"
@@ -20,7 +21,8 @@
 #define WEIGHT_NORMALS    0.1f
 #define WEIGHT_OCCLUSION  0.1f
 #define WEIGHT_LIGHTS     0.28f
-#define WEIGHT_MIRRORS    0.3f /* where there are any */
+#define WEIGHT_SURFACES   0.05f /* where the host finds them */
+#define WEIGHT_MIRRORS    0.3f  /* where there are any */
 
 #define MIRRORED_SURFACES 6 /* that a ray is followed to: into glass, out, and what is behind */
 
@@ -105,6 +107,18 @@ static void add_background(Preview *p)
                    0);
 }
 
+/* By the host, or by a shader. */
+static void add_occluders(Preview *p, PassConstants constants)
+{
+    plan_add(p->plan, (Pass){.kind      = p->plan->surfaces ? PASS_OCCLUDERS : PASS_ITEMS,
+                             .phase     = KRS_PHASE_OCCLUSION,
+                             .weight    = 0.1f * WEIGHT_OCCLUSION,
+                             .shader    = p->occluders,
+                             .in        = LIST_REMAINING,
+                             .out       = NO_LIST,
+                             .constants = constants});
+}
+
 /* Adds a ray over the hemisphere of each hit, what is known of its occluder, and means over neighbouring
    pixels.  The means are needed however many rays there are: the light between a surface and its
    occluders is no linear function of openness (openness.glsl).  So the mean of noisy pixels would be
@@ -126,8 +140,7 @@ static void add_occlusion(Preview *p)
         return;
     add_rays(p, KRS_PHASE_OCCLUSION, LIST_ALL, LIST_REMAINING, true, constants,
              0.6f * WEIGHT_OCCLUSION);
-    add_items(p, KRS_PHASE_OCCLUSION, p->occluders, LIST_REMAINING, NO_LIST, constants,
-              0.1f * WEIGHT_OCCLUSION);
+    add_occluders(p, constants);
     for (size_t i = 0; i < sizeof means / sizeof means[0]; i++) {
         constants.phase = means[i].phase;
         add_pixels(p, KRS_PHASE_OCCLUSION, PIXELS_OCCLUSION, means[i].in, means[i].out, constants,
@@ -317,9 +330,20 @@ static bool find_secondary(Preview *p)
         p->secondary = rendering_secondary(r, options->methods.schedule, p->by_roots,
                                            job_light_meets_planes(p->job));
     }
-    if (!options->no_occlusion)
+    if (!options->no_occlusion && !p->plan->surfaces)
         p->occluders = rendering_occluders(p->job->rendering);
-    return p->secondary && (options->no_occlusion || p->occluders);
+    return p->secondary && (options->no_occlusion || p->occluders || p->plan->surfaces);
+}
+
+/* The shader that shades.  Where lanes march, the host finds surfaces for it; NULL with the failure noted. */
+static const Shader *find_shade(Preview *p)
+{
+    Job *job = p->job;
+    if (!lane_surfaces_suit(job))
+        return rendering_shade(job->rendering);
+    p->plan->surfaces     = lane_surfaces_new(job);
+    p->plan->surface_rows = lane_surfaces_rows(job->rendering);
+    return p->plan->surfaces ? rendering_shade_found(job->rendering) : NULL;
 }
 
 bool preview_plan(Job *job, Plan *plan)
@@ -332,17 +356,22 @@ bool preview_plan(Job *job, Plan *plan)
     plan->halo        = shares ? TILE : 0;
     plan->has_paths   = job->rendering->program->mirrors;
     KrsRendering *r   = job->rendering;
-    if (!renderer_create_pixels(r) || !primary_add_marches(job, plan, WEIGHT_MARCH, &primary) ||
-        !find_secondary(&p))
+    if (!renderer_create_pixels(r) || !primary_add_marches(job, plan, WEIGHT_MARCH, &primary))
         return false;
-    const Shader *shade = rendering_shade(job->rendering), *plate;
+    const Shader *shade = find_shade(&p), *plate;
+    if (!shade || !find_secondary(&p))
+        return false;
     add_background(&p);
     primary_add_normals(plan, WEIGHT_NORMALS, &primary);
     if (!primary_find_plate(job, &plate))
         return false;
     if (plate)
         add_items(&p, KRS_PHASE_NORMALS, plate, LIST_ALL, NO_LIST, (PassConstants){0}, 0);
+    if (plan->surfaces)
+        plan_add(
+            plan,
+            (Pass){.kind = PASS_SURFACES, .phase = KRS_PHASE_SHADING, .weight = WEIGHT_SURFACES});
     add_occlusion(&p);
     add_lights(&p, shade);
-    return shade && (!plan->has_paths || add_mirrors(&p)) && !plan->failed;
+    return (!plan->has_paths || add_mirrors(&p)) && !plan->failed;
 }

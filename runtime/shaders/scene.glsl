@@ -5,7 +5,12 @@
  * names.  So shaders can be checked by themselves:
  *     glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl \
  *         runtime/shaders/trace.comp
+ *
+ * With SURFACES there is no scene, but what the host has found of its surfaces.
  */
+#ifdef SURFACES
+#include "surfaces.glsl"
+#else
 layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[1]; };
 
 // Names of types in surface.def.
@@ -40,3 +45,4 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
     surface.normal = normal;
     return surface;
 }
+#endif

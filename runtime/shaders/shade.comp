@@ -275,6 +275,9 @@ void shade_item(HitPoint hit)
 #ifdef KRS_VIEW // materials see how long the pixel is on the surface
     krs_view = hit.direction;
 #endif
+#ifdef SURFACES
+    krs_slot = hit.slot;
+#endif
     uint       index = index_of(pixel_of(hit.slot));
 #ifdef MIRRORS
     float code = are_of_paths() ? load_path(PATH_TOWARD, index).w : hit.side;

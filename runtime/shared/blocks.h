@@ -48,7 +48,8 @@ CONSTANT(RESULT_TEXELS_BINDING, 13);
 CONSTANT(TILE_TEXELS_BINDING, 14);
 CONSTANT(FRAME_TEXELS_BINDING, 15); /* with FRAME_TEXELS (frame.glsl) */
 CONSTANT(CONTROL_TEXELS_BINDING, 16);
-CONSTANT(FRAME_BINDINGS, 17); /* how many */
+CONSTANT(SURFACE_TEXELS_BINDING, 17); /* with SURFACES (surfaces.glsl) */
+CONSTANT(FRAME_BINDINGS, 18);         /* how many */
 
 /* ---- Binding in set 0, of pictures: the table of a sky that is a picture ---- */
 
@@ -327,6 +328,11 @@ CONSTANT(FACING, 0);
 CONSTANT(LIGHTING, 1);
 CONSTANT(HIT_ROWS, 2);
 
+/* The rows of four numbers of a surface that the host has found (rays/surfaces.h): of what all materials have, or
+   of layers, too. */
+CONSTANT(PLAIN_SURFACE_ROWS, 4);
+CONSTANT(SURFACE_ROWS, 11);
+
 /* The rows of a path, behind those of all hits (frame.glsl).  PATH_ORIGIN: where its ray begins, and
    the width there.  PATH_DIRECTION: unit, and the growth of the width.  PATH_WEIGHT: the part of
    the light from there that reaches the eye, and the probability density of the direction; 0: it
@@ -450,6 +456,7 @@ struct ListedRay {
 enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 };
 /* The host needs only the size of packed values, and of those in rows. */
 enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, PATH_BYTES = 16 * PATH_ROWS, MARCH_BYTES = 32 };
+enum { SURFACE_ROW_BYTES = 16 };
 typedef struct Light LightBlock;
 static_assert(sizeof(LightBlock) == 16 * LIGHT_ROWS, "std430");
 typedef struct EmissiveBall EmissiveBlock;

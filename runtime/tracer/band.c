@@ -20,7 +20,7 @@
 static void band_destroy(Gpu *gpu, Band *band)
 {
     Buffer *buffers[] = {&band->ends,  &band->hits,  &band->results, &band->fetched,
-                         &band->queue, &band->taken, &band->tiles};
+                         &band->queue, &band->taken, &band->tiles,   &band->surfaces};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
     band->pixels = 0;
@@ -40,7 +40,7 @@ static uint64_t rows_of_results(bool noise, uint32_t lights)
 }
 
 static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bool noise,
-                        uint32_t lights)
+                        uint32_t lights, uint32_t surface_rows)
 {
     Gpu               *gpu           = &rendering->renderer->gpu;
     Band              *band          = &rendering->band;
@@ -60,15 +60,17 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
          "rays"},
         {&band->hits, HITS_BINDING, HIT_TEXELS_BINDING, pixels * hit, shared, "hits"},
         {&band->results, RESULTS_BINDING, RESULT_TEXELS_BINDING, results, shared, "pixels"},
-        {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS_BINDING, 2 * pixels * MARCH_BYTES,
-         ON_DEVICE, "queue of rays"},
+        {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS_BINDING, 2 * pixels * MARCH_BYTES, shared,
+         "queue of rays"},
         {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
         {&band->tiles, TILES_BINDING, TILE_TEXELS_BINDING,
          (tiles + (noise ? beams : 0)) * sizeof(uint32_t), ON_DEVICE, "tiles"},
+        {&band->surfaces, 0, SURFACE_TEXELS_BINDING, pixels * surface_rows * SURFACE_ROW_BYTES,
+         shared, "surfaces"},
         {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},
     };
     if (band->pixels >= pixels && (band->has_paths || !paths) && (band->has_noise || !noise) &&
-        band->lights >= lights)
+        band->lights >= lights && band->surface_rows >= surface_rows)
         return true;
     band_destroy(gpu, band);
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
@@ -88,11 +90,12 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
         if (wanted[i].texels)
             rendering_bind(rendering, rendering->band_set, wanted[i].texels, buffer);
     }
-    band->pixels     = pixels;
-    band->has_paths  = paths;
-    band->has_noise  = noise;
-    band->lights     = lights;
-    band->sampled_at = (uint32_t)tiles;
+    band->pixels       = pixels;
+    band->has_paths    = paths;
+    band->has_noise    = noise;
+    band->lights       = lights;
+    band->surface_rows = surface_rows;
+    band->sampled_at   = (uint32_t)tiles;
     return true;
 }
 
@@ -109,22 +112,25 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
 /* Bytes of all buffers of a band for a pixel, about, with so many rows of results. */
 #define BAND_BYTES(hit, rows) (END_BYTES + (hit) + 2 * (rows)*RESULT_BYTES + 2 * MARCH_BYTES + 4)
 
+static uint64_t larger(uint64_t a, uint64_t b) { return a > b ? a : b; }
+
 /* The most pixels that a band may have on this device.  All of its buffers must fit into the
    device's memory, and none may be longer than shaders can read. */
-static uint64_t max_pixels(const Gpu *gpu, bool paths, uint32_t lights)
+static uint64_t max_pixels(const Gpu *gpu, bool paths, uint32_t lights, uint32_t surface_rows)
 {
     const uint64_t                rows     = RESULT_ROWS + lights;
     const uint64_t                hit      = HIT_BYTES + (paths ? PATH_BYTES : 0);
+    const uint64_t                surface  = surface_rows * SURFACE_ROW_BYTES;
     const uint64_t                usual    = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
     const VkPhysicalDeviceLimits *limits   = &gpu->properties.limits;
     const uint64_t                slack    = buffer_texel_bytes(1); /* what rounding adds at most */
     const uint64_t                in_range = (limits->maxStorageBufferRange - slack) /
-                              (hit > rows * RESULT_BYTES ? hit : rows * RESULT_BYTES);
+                              larger(larger(hit, surface), rows * RESULT_BYTES);
     const uint64_t in_texels = (limits->maxTexelBufferElements - slack / sizeof(uint32_t)) /
                                (rows > 2 * MARCH_BYTES / sizeof(uint32_t)
                                     ? rows
                                     : 2 * MARCH_BYTES / sizeof(uint32_t));
-    const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / BAND_BYTES(hit, rows);
+    const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / (BAND_BYTES(hit, rows) + surface);
     uint64_t       most      = in_range < in_memory ? in_range : in_memory;
     most                     = gpu->texels && in_texels < most ? in_texels : most;
     most                     = most < usual ? most : usual;
@@ -132,16 +138,17 @@ static uint64_t max_pixels(const Gpu *gpu, bool paths, uint32_t lights)
 }
 
 uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo, bool paths,
-                       bool noise, uint32_t lights)
+                       bool noise, uint32_t lights, uint32_t surface_rows)
 {
     Gpu           *gpu    = &rendering->renderer->gpu;
     const uint64_t across = round_to_tiles(cover->width) + 2 * halo;
-    for (uint64_t pixels = max_pixels(gpu, paths, lights); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
+    for (uint64_t pixels = max_pixels(gpu, paths, lights, surface_rows); pixels >= BAND_PIXELS_MIN;
+         pixels /= 2) {
         uint32_t rows = rows_within((uint32_t)across, pixels);
         rows          = rows > 2 * halo + TILE ? rows - 2 * halo : TILE;
         rows          = rows < cover->height ? rows : cover->height;
-        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, paths, noise,
-                        lights)) {
+        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, paths, noise, lights,
+                        surface_rows)) {
             renderer_clear(rendering->renderer);
             return rows;
         }

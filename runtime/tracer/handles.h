@@ -75,12 +75,13 @@ struct KrsRenderer {
 
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
-    uint64_t pixels;     /* the most that fit; 0: there are no buffers */
-    bool     has_paths;  /* there are rows for the path of each */
-    uint32_t lights;     /* for whose light there are rows of results */
-    bool     has_noise;  /* there are words of the quarters of tiles whose pixels have rays, */
-    uint32_t sampled_at; /* from here on in `tiles` */
-    Buffer   ends, hits, results, queue, taken, tiles;
+    uint64_t pixels;       /* the most that fit; 0: there are no buffers */
+    bool     has_paths;    /* there are rows for the path of each */
+    uint32_t lights;       /* for whose light there are rows of results */
+    uint32_t surface_rows; /* of each hit, that the host finds */
+    bool     has_noise;    /* there are words of the quarters of tiles whose pixels have rays, */
+    uint32_t sampled_at;   /* from here on in `tiles` */
+    Buffer   ends, hits, results, queue, taken, tiles, surfaces;
     /* A copy of the results for the host; none where the host reads `results` directly. */
     Buffer fetched;
 } Band;

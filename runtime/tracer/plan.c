@@ -8,6 +8,7 @@
 
 #include "runtime/tracer/dispatch.h"
 #include "runtime/tracer/lane_rays.h"
+#include "runtime/tracer/lane_surfaces.h"
 #include "runtime/tracer/march.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/pixel_filter.h"
@@ -59,6 +60,7 @@ void plan_add_march_again(Plan *plan, float weight)
 void plan_free(Plan *plan)
 {
     ray_field_free(plan->field);
+    surface_field_free(plan->surfaces);
     gpu_release(plan->gpu, plan->passes);
 }
 
@@ -201,6 +203,10 @@ static bool run_passes(Job *job, const Plan *plan, const Pass *passes, size_t co
     switch (passes[0].kind) {
     case PASS_CLEAR: return march_clear(job);
     case PASS_LANES: return lane_rays_march(job, plan->field, work);
+    case PASS_SURFACES: return lane_surfaces_find(job, plan->surfaces, work);
+    case PASS_OCCLUDERS:
+        return lane_surfaces_find_occluders(job, plan->surfaces, list_at(work, LIST_REMAINING),
+                                            work);
     case PASS_MARCH: return march_run(job, passes[0].march, work);
     case PASS_ITEMS: return run_items(job, passes, count, work);
     case PASS_LANE_RAYS: return run_lane_rays(job, plan, passes, work);

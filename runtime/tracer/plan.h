@@ -8,6 +8,7 @@
 #define KRS_PLAN_H
 
 #include "rays/rays.h"
+#include "rays/surfaces.h"
 #include "runtime/tracer/march.h"
 
 /* A list that a pass reads or writes: LIST_... of blocks.h, or one of these. */
@@ -27,6 +28,8 @@ typedef struct PassConstants {
 typedef enum PassKind {
     PASS_CLEAR,     /* sets all rays to misses */
     PASS_LANES,     /* primary rays by lanes of the host, until all have ended */
+    PASS_SURFACES,  /* what surfaces of hits are, by lanes of the host */
+    PASS_OCCLUDERS, /* and of what rays over the hemisphere have met */
     PASS_MARCH,     /* beams, then primary rays until all have ended */
     PASS_ITEMS,     /* a shader over items that all cost the same */
     PASS_LANE_RAYS, /* the same, by lanes of the host */
@@ -50,17 +53,19 @@ typedef struct Pass {
 enum { MAX_FUSED = 1 + KRS_MAX_MARCH_GROUPS }; /* passes in one submission */
 
 typedef struct Plan {
-    Gpu      *gpu; /* whose allocator the passes come from */
-    Pass     *passes;
-    size_t    count, room;
-    double    weight;                            /* of all passes together */
-    March     marches[2 + KRS_MAX_MARCH_GROUPS]; /* of primary rays, and of those of paths */
-    size_t    march_count;
-    RayField *field;          /* of PASS_LANES; or NULL */
-    uint32_t  halo;           /* pixels on each side of a band that are traced as well */
-    bool      has_paths;      /* each pixel follows a path */
-    bool      by_march_group; /* pixels are listed by the group of components that they hit */
-    bool      failed;         /* memory ran out, which is noted */
+    Gpu          *gpu; /* whose allocator the passes come from */
+    Pass         *passes;
+    size_t        count, room;
+    double        weight;                            /* of all passes together */
+    March         marches[2 + KRS_MAX_MARCH_GROUPS]; /* of primary rays, and of those of paths */
+    size_t        march_count;
+    RayField     *field;          /* of PASS_LANES; or NULL */
+    SurfaceField *surfaces;       /* of PASS_SURFACES; or NULL */
+    uint32_t      surface_rows;   /* of each hit, then */
+    uint32_t      halo;           /* pixels on each side of a band that are traced as well */
+    bool          has_paths;      /* each pixel follows a path */
+    bool          by_march_group; /* pixels are listed by the group of components that they hit */
+    bool          failed;         /* memory ran out, which is noted */
 } Plan;
 
 void plan_add(Plan *plan, Pass pass);

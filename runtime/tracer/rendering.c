@@ -261,7 +261,8 @@ void krs_rendering_free(KrsRendering *rendering)
                          &band->fetched,
                          &band->queue,
                          &band->taken,
-                         &band->tiles};
+                         &band->tiles,
+                         &band->surfaces};
     gpu_wait(gpu); /* shaders may still be prewarming, unless the device is lost */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);

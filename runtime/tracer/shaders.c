@@ -136,6 +136,11 @@ Shader *rendering_shade(KrsRendering *rendering)
     return find_shader(rendering, "shade.comp", variant_of_shade(rendering));
 }
 
+Shader *rendering_shade_found(KrsRendering *rendering)
+{
+    return find_shader(rendering, "shade.comp", variant_of_shade_found(rendering));
+}
+
 Shader *rendering_point_query(KrsRendering *rendering)
 {
     return find_shader(rendering, "point_query.comp", variant_of_point_query(rendering));
@@ -374,8 +379,9 @@ static Shader found_shader(const Shader *shader)
 void shaders_adopt(ShaderMap *map, const KrsScene *scene)
 {
     for (ShaderEntry *entry = map->first; entry; entry = entry->next) {
-        entry->variant.scene.scene = scene;
-        entry->shader              = found_shader(&entry->shader);
+        if (entry->variant.scene.scene)
+            entry->variant.scene.scene = scene;
+        entry->shader = found_shader(&entry->shader);
     }
 }
 

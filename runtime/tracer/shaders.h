@@ -29,6 +29,8 @@ Shader *rendering_occluders(KrsRendering *rendering);
 /* The shader that evens hits out. */
 Shader *rendering_research(KrsRendering *rendering, const ResearchPass *pass);
 Shader *rendering_shade(KrsRendering *rendering);
+/* The same without a scene: the host finds surfaces (lane_surfaces.h). */
+Shader *rendering_shade_found(KrsRendering *rendering);
 Shader *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 Shader *rendering_point_query(KrsRendering *rendering);
 

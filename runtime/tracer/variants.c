@@ -293,6 +293,28 @@ ShaderVariant variant_of_shade(const KrsRendering *rendering)
     return to;
 }
 
+/* The names of these defines are in those of files (Makefile), in this order. */
+ShaderVariant variant_of_shade_found(const KrsRendering *rendering)
+{
+    ShaderVariant to = {0};
+    define(&to, "#define SURFACES\n");
+    if (rendering->program->layers)
+        define(&to, "#define LAYERS\n");
+    if (rendering->program->anisotropic)
+        define(&to, "#define ANISOTROPIC\n");
+    if (rendering->program->subsurface)
+        define(&to, "#define SUBSURFACE\n");
+    if (rendering->program->films)
+        define(&to, "#define FILM\n");
+    if (rendering->program->sky_map)
+        define(&to, SKY_MAP);
+    if (rendering->catches)
+        define(&to, CATCHES);
+    if (variants_reads(&rendering->renderer->gpu) == READ_FRAME_TEXELS)
+        define(&to, FRAME_TEXELS);
+    return to;
+}
+
 /* The random directions of rays need sines.  What they pass through occludes nothing. */
 ShaderVariant variant_of_occluders(const KrsRendering *rendering)
 {

@@ -41,6 +41,8 @@ ShaderVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
                                    KrsSchedule schedule, KrsIntegrator integrator, bool planes);
 ShaderVariant variant_of_occluders(const KrsRendering *rendering);
 ShaderVariant variant_of_shade(const KrsRendering *rendering);
+/* The same without a scene: the host finds surfaces. */
+ShaderVariant variant_of_shade_found(const KrsRendering *rendering);
 ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
                                  KrsIntegrator integrator);
 ShaderVariant variant_of_research(const KrsRendering *rendering, const ResearchPass *pass);

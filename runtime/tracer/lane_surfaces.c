@@ -1,0 +1,337 @@
+/*
+ * lane_surfaces.c: surfaces of hits by lanes of the host.
+ *
+ * Hits are taken in squares of pixels, whose quarters of quarters follow each other, so that those that follow each other
+ * are near each other.  Squares are dealt to all processors.
+ */
+#include "runtime/tracer/lane_surfaces.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "compiler/base/parallel.h"
+#include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/rendering.h"
+
+enum { SIDE = 128, OCCLUDERS_AT_ONCE = 4096 };
+static_assert(SIDE * SIDE == SURFACES_AT_ONCE, "surfaces.h");
+static_assert((int)PLAIN_SURFACE_NUMBERS == 4 * (int)PLAIN_SURFACE_ROWS &&
+                  (int)SURFACE_NUMBERS <= 4 * (int)SURFACE_ROWS &&
+                  (int)SURFACE_NUMBERS > 4 * ((int)SURFACE_ROWS - 1),
+              "rows of surfaces");
+
+bool lane_surfaces_suit(const Job *job)
+{
+    return job->options.methods.executor == KRS_EXECUTOR_LANES && job->gpu->texels &&
+           surface_field_suits(job->rendering->scene);
+}
+
+static bool has_layers(const KrsProgram *program) { return program->layers || program->subsurface; }
+
+uint32_t lane_surfaces_rows(const KrsRendering *rendering)
+{
+    return has_layers(rendering->program) ? SURFACE_ROWS : PLAIN_SURFACE_ROWS;
+}
+
+SurfaceField *lane_surfaces_new(Job *job)
+{
+    SurfaceField *field = surface_field_new(job->state, has_layers(job->rendering->program));
+    if (!field)
+        gpu_refuse(job->gpu, KRS_OUT_OF_MEMORY, "%s",
+                   "cannot make room for the surfaces of the picture");
+    return field;
+}
+
+/* ---- what is dealt ---- */
+
+/* Squares, or runs of a list, that are dealt out in one slice. */
+typedef struct Slice {
+    const Job          *job;
+    const SurfaceField *field;
+    const WorkBlock    *work;
+    uint32_t            across;      /* squares in a row */
+    uint32_t            list, count; /* where the list of occluders begins, and how many they are */
+    atomic_uint         next;
+    uint32_t            end;
+    SurfacePoint       *points[MAX_PARTS]; /* of each part */
+} Slice;
+
+/* Runs `work` on numbers up to `all`, in slices that end often enough. */
+static bool deal(Job *job, Slice *slice, KrsPhase phase, uint32_t all,
+                 void (*work)(void *task, size_t part, size_t parts))
+{
+    SurfacePoint *points  = gpu_alloc(job->gpu, parallel_parts() * SURFACES_AT_ONCE, sizeof *points,
+                                      "find surfaces");
+    uint32_t      at_once = (uint32_t)parallel_parts();
+    bool          good    = points != NULL;
+    for (size_t i = 0; i < parallel_parts() && good; i++)
+        slice->points[i] = points + i * SURFACES_AT_ONCE;
+    for (uint32_t begin = 0; begin < all && good; begin = slice->end) {
+        const double start = clock_ms();
+        slice->next        = begin;
+        slice->end         = all - begin < at_once ? all : begin + at_once;
+        run_in_parallel(work, slice);
+        const double ms = clock_ms() - start;
+        job->stats->phase_ms[phase] += ms;
+        at_once = ms > job->options.slice_ms ? (at_once + 1) / 2 : 2 * at_once;
+        good    = dispatch_report(job, (double)slice->end / all);
+    }
+    gpu_release(job->gpu, points);
+    return good;
+}
+
+/* ---- hits ---- */
+
+/* As in hit_lists.glsl. */
+static uint32_t slot_of(const WorkBlock *work, const uint32_t pixel[2])
+{
+    const uint32_t across = (work->extent[0] + TILE - 1) / TILE;
+    return TILE * TILE * (pixel[1] / TILE * across + pixel[0] / TILE) + pixel[1] % TILE * TILE +
+           pixel[0] % TILE;
+}
+
+static void pixel_of(const WorkBlock *work, uint32_t slot, uint32_t pixel[2])
+{
+    const uint32_t across = (work->extent[0] + TILE - 1) / TILE, tile = slot / (TILE * TILE);
+    pixel[0] = tile % across * TILE + slot % TILE;
+    pixel[1] = tile / across * TILE + slot / TILE % TILE;
+}
+
+/* As hit_point_of_slot of hit_lists.glsl: where the ray of a pixel hits, and how wide the pixel is there. */
+static float find_hit(const Slice *slice, const uint32_t pixel[2], float t, float position[3],
+                      float direction[3])
+{
+    const FrameBlock *frame       = &slice->job->frame;
+    const bool        perspective = slice->job->view.camera.projection == KRS_PERSPECTIVE;
+    const float       x      = (float)(slice->work->corner[0] + pixel[0]) + slice->work->offset[0];
+    const float       y      = (float)(slice->work->corner[1] + pixel[1]) + slice->work->offset[1];
+    const float       across = 2 * x / frame->size[0] - 1, up = 1 - 2 * y / frame->size[1];
+    float             square = 0;
+    for (int k = 0; k < 3; k++) {
+        const float aside = across * frame->right[k] + up * frame->up[k];
+        position[k]       = frame->eye[k] + (perspective ? 0 : aside);
+        direction[k]      = frame->forward[k] + (perspective ? aside : 0);
+        square += direction[k] * direction[k];
+    }
+    const float stretch = perspective ? sqrtf(square) : 1;
+    for (int k = 0; k < 3; k++) {
+        direction[k] /= stretch;
+        position[k] += t * direction[k];
+    }
+    return fmaxf(frame->pixel_base + frame->pixel_slope / stretch * t, 1e-30f);
+}
+
+/* The end of the ray of a pixel (frame.glsl). */
+static const uint32_t *end_of(const Slice *slice, const uint32_t pixel[2])
+{
+    const uint32_t(*ends)[2] = slice->job->rendering->band.ends.bytes;
+    return ends[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]];
+}
+
+static bool is_hit(const uint32_t *end)
+{
+    return (end[1] & 3) == STATE_HIT && (end[1] >> 4 & 15) != MARCH_GROUP_OF_PLATE;
+}
+
+static const float *facing_of(const Slice *slice, uint32_t slot)
+{
+    const float(*hits)[4] = slice->job->rendering->band.hits.bytes;
+    return hits[(size_t)HIT_ROWS * slot + FACING];
+}
+
+/* Adds the hit of a pixel, if it is one. */
+static size_t add_hit(const Slice *slice, const uint32_t pixel[2], SurfacePoint *to)
+{
+    const Band     *band = &slice->job->rendering->band;
+    const uint32_t *end = end_of(slice, pixel), slot = slot_of(slice->work, pixel);
+    const float    *facing = facing_of(slice, slot), side = end[1] & 4 ? -1.0f : 1.0f;
+    float           t;
+    if (!is_hit(end))
+        return 0;
+    memcpy(&t, &end[0], sizeof t);
+    to->footprint = 0.5f * find_hit(slice, pixel, t, to->position, to->view);
+    for (int k = 0; k < 3; k++)
+        to->normal[k] = side * facing[k];
+    to->found = (float *)band->surfaces.bytes +
+                4 * (size_t)lane_surfaces_rows(slice->job->rendering) * slot;
+    return 1;
+}
+
+/* The even bits of a number. */
+static uint32_t even_bits(uint32_t number)
+{
+    uint32_t bits = 0;
+    for (uint32_t bit = 0; bit < 16; bit++)
+        bits |= (number >> 2 * bit & 1) << bit;
+    return bits;
+}
+
+static void find_squares(void *task, size_t part, size_t parts)
+{
+    Slice        *slice  = task;
+    SurfacePoint *points = slice->points[part];
+    (void)parts;
+    for (uint32_t square; (square = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+        size_t count = 0;
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            const uint32_t pixel[2] = {SIDE * (square % slice->across) + even_bits(i),
+                                       SIDE * (square / slice->across) + even_bits(i >> 1)};
+            if (pixel[0] < slice->work->extent[0] && pixel[1] < slice->work->extent[1])
+                count += add_hit(slice, pixel, &points[count]);
+        }
+        surface_field_find(slice->field, part, points, count);
+    }
+}
+
+bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *work)
+{
+    const uint32_t down  = (work->extent[1] + SIDE - 1) / SIDE;
+    Slice          slice = {
+                 .job = job, .field = field, .work = work, .across = (work->extent[0] + SIDE - 1) / SIDE};
+    return deal(job, &slice, KRS_PHASE_SHADING, slice.across * down, find_squares);
+}
+
+/* ---- occluders ---- */
+
+/* As in samples.glsl. */
+static uint32_t spread_bits(uint32_t bits)
+{
+    bits = (bits | bits << 8) & 0x00ff00ffu;
+    bits = (bits | bits << 4) & 0x0f0f0f0fu;
+    bits = (bits | bits << 2) & 0x33333333u;
+    return (bits | bits << 1) & 0x55555555u;
+}
+
+static uint32_t reverse_bits(uint32_t bits)
+{
+    bits = (bits >> 1 & 0x55555555u) | (bits & 0x55555555u) << 1;
+    bits = (bits >> 2 & 0x33333333u) | (bits & 0x33333333u) << 2;
+    bits = (bits >> 4 & 0x0f0f0f0fu) | (bits & 0x0f0f0f0fu) << 4;
+    bits = (bits >> 8 & 0x00ff00ffu) | (bits & 0x00ff00ffu) << 8;
+    return bits >> 16 | bits << 16;
+}
+
+static uint32_t scramble_bits(uint32_t bits, uint32_t seed)
+{
+    bits ^= bits * 0x3d20adeau;
+    bits += seed;
+    bits *= seed >> 16 | 1u;
+    bits ^= bits * 0x05526c56u;
+    return bits ^ bits * 0x53a22864u;
+}
+
+static uint32_t hash_bits(uint32_t bits)
+{
+    bits = bits * 747796405u + 2891336453u;
+    bits = (bits >> ((bits >> 28) + 4) ^ bits) * 277803737u;
+    return bits >> 22 ^ bits;
+}
+
+/* As sample_square, for use 0. */
+static void sample_square(const uint32_t pixel[2], uint32_t ray, uint32_t seed, float square[2])
+{
+    static const float step[2] = {0.6287067f, 0.5385973f};
+    const uint32_t     number  = spread_bits(pixel[0]) | spread_bits(pixel[1]) << 1;
+    const uint32_t     own     = hash_bits(977u * seed);
+    const uint32_t     x       = scramble_bits(reverse_bits(number), own);
+    uint32_t           y       = x ^ (x & 0x55555555u) << 1;
+    y ^= (y & 0x33333333u) << 2;
+    y ^= (y & 0x0f0f0f0fu) << 4;
+    y ^= (y & 0x00ff00ffu) << 8;
+    y ^= (y & 0x0000ffffu) << 16;
+    y ^= hash_bits(own);
+    const uint32_t bits[2] = {x, y};
+    for (int k = 0; k < 2; k++) {
+        const float place = (float)(bits[k] >> 8) / 16777216.0f + step[k] * (float)ray;
+        square[k]         = place - floorf(place);
+    }
+}
+
+/* As find_hemisphere_ray of hemisphere.glsl, of a point of the square. */
+static void aim_over_hemisphere(const float normal[3], const float square[2], float direction[3])
+{
+    const float side = normal[2] < 0 ? -1.0f : 1.0f, a = -1 / (side + normal[2]);
+    const float b        = normal[0] * normal[1] * a;
+    const float right[3] = {1 + side * normal[0] * normal[0] * a, side * b, -side * normal[0]};
+    const float up[3]    = {b, side + normal[1] * normal[1] * a, -normal[1]};
+    const float angle = 6.2831853f * square[0], rise = 0.02f; /* MIN_RISE */
+    const float radius = sqrtf(square[1]) * sqrtf(1 - rise * rise);
+    const float x = radius * cosf(angle), y = radius * sinf(angle);
+    for (int k = 0; k < 3; k++)
+        direction[k] = x * right[k] + y * up[k] + sqrtf(1 - x * x - y * y) * normal[k];
+}
+
+/* Where the number of a pixel is in the room of a list (occluders.glsl). */
+static uint32_t *occluder_of(const Slice *slice, const uint32_t pixel[2])
+{
+    const uint32_t *extent = slice->work->extent;
+    return (uint32_t *)slice->job->rendering->band.queue.bytes +
+           (size_t)LIST_WIDE * extent[0] * extent[1] + (size_t)pixel[1] * extent[0] + pixel[0];
+}
+
+/* What the ray of a listed pixel has met; its color is found where its surface would be seen. */
+static void add_occluder(const Slice *slice, uint32_t slot, SurfacePoint *to, float *color)
+{
+    static const float  FOOTPRINT = 0.05f; /* as in occluders.comp */
+    const ControlBlock *control   = slice->job->rendering->control.bytes;
+    const uint32_t     *end;
+    uint32_t            pixel[2], in_picture[2];
+    float               square[2], along[3], t, length;
+    pixel_of(slice->work, slot, pixel);
+    for (int k = 0; k < 2; k++)
+        in_picture[k] = slice->work->corner[k] + pixel[k];
+    end = end_of(slice, pixel);
+    memcpy(&t, &end[0], sizeof t);
+    memcpy(&length, occluder_of(slice, pixel), sizeof length);
+    find_hit(slice, pixel, t, to->position, along);
+    sample_square(in_picture, control->ray, control->seed, square);
+    aim_over_hemisphere(facing_of(slice, slot), square, to->view);
+    for (int k = 0; k < 3; k++) {
+        to->position[k] += length * to->view[k];
+        to->normal[k] = -to->view[k];
+    }
+    to->footprint = FOOTPRINT * length;
+    to->found     = color;
+}
+
+static float luminance_of(const float color[3])
+{
+    static const float part[3] = {0.2126f, 0.7152f, 0.0722f};
+    float              sum     = 0;
+    for (int k = 0; k < 3; k++)
+        sum += part[k] * (color[k] > 0 ? fminf(color[k], 1) : 0);
+    return sum;
+}
+
+static void find_occluders(void *task, size_t part, size_t parts)
+{
+    Slice          *slice  = task;
+    SurfacePoint   *points = slice->points[part];
+    const uint32_t *lists = slice->job->rendering->band.queue.bytes, *list = lists + slice->list;
+    float           colors[OCCLUDERS_AT_ONCE][3];
+    (void)parts;
+    for (uint32_t run; (run = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+        const uint32_t first = run * OCCLUDERS_AT_ONCE, left = slice->count - first;
+        const uint32_t count = left < OCCLUDERS_AT_ONCE ? left : OCCLUDERS_AT_ONCE;
+        for (uint32_t i = 0; i < count; i++)
+            add_occluder(slice, list[first + i], &points[i], colors[i]);
+        surface_field_find_colors(slice->field, part, points, count);
+        for (uint32_t i = 0; i < count; i++) {
+            const float luminance = luminance_of(colors[i]);
+            uint32_t    pixel[2];
+            pixel_of(slice->work, list[first + i], pixel);
+            memcpy(occluder_of(slice, pixel), &luminance, sizeof luminance);
+        }
+    }
+}
+
+bool lane_surfaces_find_occluders(Job *job, const SurfaceField *field, uint32_t list,
+                                  const WorkBlock *work)
+{
+    const ControlBlock *control = job->rendering->control.bytes;
+    Slice               slice   = {
+                        .job = job, .field = field, .work = work, .list = list, .count = control->remaining};
+    return deal(job, &slice, KRS_PHASE_OCCLUSION,
+                (slice.count + OCCLUDERS_AT_ONCE - 1) / OCCLUDERS_AT_ONCE, find_occluders);
+}

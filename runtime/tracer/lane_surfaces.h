@@ -1,0 +1,24 @@
+/*
+ * lane_surfaces.h: surfaces of hits by lanes of the host (rays/surfaces.h), in the buffers of the device: for shaders
+ * that do not contain the scene.
+ */
+#ifndef KRS_LANE_SURFACES_H
+#define KRS_LANE_SURFACES_H
+
+#include "rays/surfaces.h"
+#include "runtime/tracer/job.h"
+
+/* Whether lanes find the surfaces of a frame: they march its rays, and none goes on behind a surface. */
+bool lane_surfaces_suit(const Job *job);
+/* How many rows a surface has. */
+uint32_t lane_surfaces_rows(const KrsRendering *rendering);
+/* Finds the surfaces of a frame; NULL with the failure noted. */
+SurfaceField *lane_surfaces_new(Job *job);
+/* Stores the surface of each hit of the band. */
+bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *work);
+/* Stores the luminance of what rays over the hemisphere have met, as occluders.comp does.  The list of their slots begins
+   at `list` in the queue. */
+bool lane_surfaces_find_occluders(Job *job, const SurfaceField *field, uint32_t list,
+                                  const WorkBlock *work);
+
+#endif
