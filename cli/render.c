@@ -346,9 +346,10 @@ static KrsPurpose purpose_of(const Render *render)
     const double            whole = count_samples(render, (double)how->width * how->height);
     const bool              small = whole <= SAMPLES_OF_SMALL_PICTURES &&
                        render->options->command != COMMAND_WATCH;
-    return how->integrator != KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PATHS
-           : small                                   ? KRS_FOR_SMALL_PICTURES
-                                                     : KRS_FOR_PICTURES;
+    return how->integrator != KRS_INTEGRATOR_PREVIEW     ? KRS_FOR_PATHS
+           : how->methods.executor == KRS_EXECUTOR_LANES ? KRS_FOR_LANES
+           : small                                       ? KRS_FOR_SMALL_PICTURES
+                                                         : KRS_FOR_PICTURES;
 }
 
 KrsStatus render_choose(Render *render)

@@ -21,7 +21,7 @@ UNIT        := specks texts watchdog front synonyms arguments visibility diagnos
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid instance_grid instances \
                instance_shaders instance_ends instance_pictures few_parts tables device_tables table_files printing printers gathered_noises answers structure update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
-               parity reach reach_trees iteration_boxes instances instances_apart instances_deformed instance_sums blends_of_many fillets moving_instances moving_scenes overlaps lanes lane_rows lane_instances lane_balls lane_cells lane_cells csg_nodes iterations
+               parity reach reach_trees iteration_boxes instances instances_apart instances_deformed instance_sums blends_of_many fillets moving_instances moving_scenes overlaps lanes lane_rows lane_instances lane_balls lane_cells found_surfaces csg_nodes iterations
 ORACLES     := research/moebius_images research/enhanced self distant patterns bumps primitives krs_expand folds trees maps moebius operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture executors \
@@ -43,7 +43,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/watchdog unit/front unit/syno
                unit/zones unit/printers unit/gathered_noises unit/structure unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/values unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/mesh_handles unit/mesh_sides unit/mesh_flat_proofs unit/assembly property/ops property/noise property/textures property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
-               property/reach_trees property/iteration_boxes property/instances property/instances_apart property/instances_deformed property/instance_sums property/blends_of_many property/fillets property/moving_instances property/moving_scenes property/overlaps property/lanes property/lane_rows property/lane_instances property/lane_balls property/lane_cells property/csg_nodes property/iterations oracle/primitives \
+               property/reach_trees property/iteration_boxes property/instances property/instances_apart property/instances_deformed property/instance_sums property/blends_of_many property/fillets property/moving_instances property/moving_scenes property/overlaps property/lanes property/lane_rows property/lane_instances property/lane_balls property/lane_cells property/found_surfaces property/csg_nodes property/iterations oracle/primitives \
                oracle/krs_expand oracle/folds oracle/bounds \
                oracle/cells oracle/maps oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/tangents oracle/drawings oracle/imports \

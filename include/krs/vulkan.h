@@ -108,8 +108,10 @@ typedef enum KrsPurpose {
     KRS_FOR_PICTURES,      /* krs_render, by the integrator preview */
     KRS_FOR_QUESTIONS,     /* krs_device_probe, krs_device_raycast */
     KRS_FOR_PATHS,         /* krs_render, by the integrators direct and path */
-    KRS_FOR_SMALL_PICTURES /* as KRS_FOR_PICTURES, of few rays in all: fewer shaders, which are ready
-                              earlier, and are slower.  Pictures differ within the permitted error */
+    KRS_FOR_SMALL_PICTURES, /* as KRS_FOR_PICTURES, of few rays in all: fewer shaders, which are ready
+                               earlier, and are slower.  Pictures differ within the permitted error */
+    KRS_FOR_LANES /* as KRS_FOR_PICTURES, by the executor LANES: no shader contains the scene, unless it
+                     has mirrors or glass */
 } KrsPurpose;
 
 /* Compiles the scene's shaders, for a purpose.  The scene must outlive the rendering.  On any status

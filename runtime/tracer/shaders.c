@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "rays/surfaces.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/variants.h"
@@ -209,7 +210,8 @@ static void request(Requests *requests, const char *file, ShaderVariant variant)
 
 static bool is_for_pictures(KrsPurpose purpose)
 {
-    return purpose == KRS_FOR_PICTURES || purpose == KRS_FOR_SMALL_PICTURES;
+    return purpose == KRS_FOR_PICTURES || purpose == KRS_FOR_SMALL_PICTURES ||
+           purpose == KRS_FOR_LANES;
 }
 
 /* Requests the shaders that march.  Where march groups are marched one after the other, each has
@@ -300,7 +302,10 @@ bool shaders_create(KrsRendering *rendering, KrsPurpose purpose)
     Requests    requests = {.rendering = rendering};
     rendering_choose(rendering, &trace, &schedule);
     request_sceneless(&requests, purpose);
-    if (is_for_pictures(purpose)) {
+    if (purpose == KRS_FOR_LANES) {
+        if (surface_field_suits(rendering->scene))
+            request(&requests, "shade.comp", variant_of_shade_found(rendering));
+    } else if (is_for_pictures(purpose)) {
         request_pictures(&requests, trace, schedule_of_shader(schedule));
     } else if (purpose == KRS_FOR_PATHS) {
         request_marches(&requests, trace, schedule_of_shader(schedule));
