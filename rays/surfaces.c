@@ -16,7 +16,7 @@
 #include "compiler/scene/program.h"
 
 /* Balls of balls of points.  A tape that is shorter than this is not made shorter. */
-enum { LEVELS = 2, OF_BALL = 64, SHORT_TAPE = 96 };
+enum { LEVELS = 2, OF_BALL = 256, SHORT_TAPE = 96 };
 
 /* Numbers of a surface, as outputs of a component; those of identities are integers. */
 enum { DISTANCE, NORMAL, FIRST_IDENTITY = NORMAL + 3 };
@@ -42,10 +42,25 @@ struct SurfaceField {
     uint32_t *rows_of_part[MAX_PARTS][LEVELS + 1];
 };
 
+/* Whether numbers of copies may be above 2^24, up to which single precision knows them. */
+static bool has_large_numbers(const KrsScene *scene)
+{
+    enum { MOST_PUSHES = 23 };
+    const Tape *tape   = &scene->surface;
+    size_t      pushes = 0;
+    for (size_t i = tape->frame_count; i < tape->count; i++) {
+        const Op op = (Op)scene->graph->items[tape->nodes[i]].op;
+        if (op == OP_hash_id || op == OP_join_id)
+            return true;
+        pushes += op == OP_push_id;
+    }
+    return pushes > MOST_PUSHES;
+}
+
 bool surface_field_suits(const KrsScene *scene)
 {
     return scene->component_count > 0 && !scene->program.media && !scene->program.mirrors &&
-           !scene->program.open_surfaces;
+           !scene->program.open_surfaces && !has_large_numbers(scene);
 }
 
 /* ---- tapes ---- */
@@ -322,7 +337,9 @@ static void divide(const Question *q, const CellTape *tape, uint32_t level, cons
 static void find(const Question *q, const CellTape *tape, uint32_t level, const Rows *rows,
                  size_t first, size_t count)
 {
-    const size_t size = level == 0 ? OF_BALL * CELL_LANES : OF_BALL;
+    size_t size = OF_BALL;
+    for (uint32_t i = level + 1; i < LEVELS; i++)
+        size *= CELL_LANES;
     if (level < LEVELS && tape->count > SHORT_TAPE) {
         for (size_t done = 0, now; done < count; done += now) {
             now = count - done < size * CELL_LANES ? count - done : size * CELL_LANES;
@@ -335,8 +352,6 @@ static void find(const Question *q, const CellTape *tape, uint32_t level, const 
         find_points(q, tape, level, rows, first + done, now);
     }
 }
-
-static_assert(SURFACES_AT_ONCE == OF_BALL * CELL_LANES * CELL_LANES, "a run of balls of balls");
 
 /* ---- questions ---- */
 

@@ -32,8 +32,8 @@ typedef enum PassKind {
     PASS_OCCLUDERS, /* and of what rays over the hemisphere have met */
     PASS_MARCH,     /* beams, then primary rays until all have ended */
     PASS_ITEMS,     /* a shader over items that all cost the same */
-    PASS_LANE_RAYS, /* the same, by lanes of the host */
-    PASS_RAYS       /* rays from the items of a list, each to its end */
+    PASS_RAYS,      /* rays from the items of a list, each to its end */
+    PASS_LANE_RAYS  /* the same, by lanes of the host */
 } PassKind;
 
 typedef struct Pass {

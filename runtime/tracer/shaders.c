@@ -303,8 +303,11 @@ bool shaders_create(KrsRendering *rendering, KrsPurpose purpose)
     rendering_choose(rendering, &trace, &schedule);
     request_sceneless(&requests, purpose);
     if (purpose == KRS_FOR_LANES) {
-        if (surface_field_suits(rendering->scene))
-            request(&requests, "shade.comp", variant_of_shade_found(rendering));
+        const bool found = surface_field_suits(rendering->scene);
+        request(&requests, "shade.comp",
+                found ? variant_of_shade_found(rendering) : variant_of_shade(rendering));
+        if (!found)
+            request(&requests, "occluders.comp", variant_of_occluders(rendering));
     } else if (is_for_pictures(purpose)) {
         request_pictures(&requests, trace, schedule_of_shader(schedule));
     } else if (purpose == KRS_FOR_PATHS) {
