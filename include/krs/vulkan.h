@@ -105,9 +105,9 @@ uint64_t krs_renderer_validation_messages(const KrsRenderer *renderer);
    first needed.  Empty zones (krs_state_set_zones) need shaders of their own: for the first
    zone, and when there are more than 1, 2, 4 or 8 for the first time. */
 typedef enum KrsPurpose {
-    KRS_FOR_PICTURES,      /* krs_render, by the integrator preview */
-    KRS_FOR_QUESTIONS,     /* krs_device_probe, krs_device_raycast */
-    KRS_FOR_PATHS,         /* krs_render, by the integrators direct and path */
+    KRS_FOR_PICTURES,       /* krs_render, by the integrator preview */
+    KRS_FOR_QUESTIONS,      /* krs_device_probe, krs_device_raycast */
+    KRS_FOR_PATHS,          /* krs_render, by the integrators direct and path */
     KRS_FOR_SMALL_PICTURES, /* as KRS_FOR_PICTURES, of few rays in all: fewer shaders, which are ready
                                earlier, and are slower.  Pictures differ within the permitted error */
     KRS_FOR_LANES /* as KRS_FOR_PICTURES, by the executor LANES: no shader contains the scene, unless it

@@ -38,12 +38,30 @@ static const char *const scenes[] = {
     "reflect plane([1, 0, 0], 0); kernel capsule([0, 0, 0], [0, 0.4, 0], radius: 0.05); } };",
     "camera { eye: [2, 2, 3] } show (box([2, 2, 2]) & sphere(1.3)).shell(0.05) - cylinder(0.4, 4); "
     "show plane([0, 1, 0.2], -1);",
+    /* Materials with all layers, and patterns. */
+    "material car { color: #a01020, coat: 0.5 + 0.3 * sin(9 * x), coat_roughness: 0.4, sheen: "
+    "[0.3, 0.2, 0.6] }"
+    "material foil { color: #c0c0b0, metallic: 0.9, roughness: 0.6, specular_roughness_anisotropy: "
+    "0.6, "
+    "tangent: [0, 1, 0.3], thin_film_weight: 0.8, thin_film_thickness: 0.4 + 0.1 * y, "
+    "thin_film_ior: 1.6 }"
+    "material skin { color: #e0b090, subsurface_weight: 0.6, subsurface_color: #ff6040, ior: 1.8 }"
+    "show union(sphere(0.8).paint(car), sphere(0.6).move([1, 0.3, 0]).paint(foil), blend: 0.25);"
+    "show box([0.8, 0.8, 0.8]).round(0.1).move([-1.4, 0, 0.3]).paint(skin); show plane([0, 1, 0], "
+    "-0.8);"
+    "camera { eye: [1, 2, 5], target: [0, 0, 0], fov: 40deg } light sun { direction: [1, 2, 3] }",
+    "use \"std/patterns.krs\"; material tiles { color: mix(#2c3a36, #efe9dd, checker([x, z] / "
+    "0.5)) }"
+    "material lit { color: 0.5 + 0.5 * normal, emission: [0.3, 0.1, 0], roughness: 0.8 }"
+    "show plane([0, 1, 0], -1).paint(tiles); show sphere(0.9).paint(lit); zone { center: [0.6, "
+    "0.6, 0.6], radius: 0.4 }"
+    "camera { eye: [1, 2, 5], target: [0, 0, 0], fov: 40deg }",
     "camera { eye: [0, 0, 0.2], target: [1, 0, 0], fov: 70deg } show box([4, 3, 4]).shell(0.2); "
     "show sphere(0.5).move([1.2, -0.4, 0.3]);",
 };
 
 typedef struct Verdict {
-    size_t hits, other_hits, other_depths, other_normals, other_light;
+    size_t hits, other_hits, other_depths, other_normals, other_light, other_albedos;
 } Verdict;
 
 static Verdict judge(const KrsPicture *a, const KrsPicture *b)
@@ -51,7 +69,7 @@ static Verdict judge(const KrsPicture *a, const KrsPicture *b)
     Verdict verdict = {0};
     for (size_t k = 0; k < PIXELS; k++) {
         const double depth = (double)a->depth[k];
-        double       turn = 0, light = 0;
+        double       turn = 0, light = 0, paint = 0;
         verdict.hits += a->component[k] != 0;
         if (a->component[k] != b->component[k] || a->instance[k] != b->instance[k]) {
             verdict.other_hits++;
@@ -60,12 +78,14 @@ static Verdict judge(const KrsPicture *a, const KrsPicture *b)
         for (size_t c = 0; c < 3; c++) {
             turn  = fmax(turn, fabs((double)(a->normal[3 * k + c] - b->normal[3 * k + c])));
             light = fmax(light, fabs((double)(a->color[4 * k + c] - b->color[4 * k + c])));
+            paint = fmax(paint, fabs((double)(a->albedo[3 * k + c] - b->albedo[3 * k + c])));
         }
         if (a->component[k] == 0)
             continue;
         verdict.other_depths += !(fabs(depth - (double)b->depth[k]) < 1e-3 * depth);
         verdict.other_normals += turn > 0.02;
         verdict.other_light += light > 0.03;
+        verdict.other_albedos += paint > 1.0 / 255;
     }
     return verdict;
 }
@@ -96,6 +116,7 @@ static void pictures_are_the_same(void **context)
         assert_true(v.other_depths <= PIXELS / 2000);
         assert_true(v.other_normals <= v.hits / 100);
         assert_true(v.other_light <= v.hits / 100);
+        assert_true(v.other_albedos <= v.hits / 1000);
     }
 }
 
