@@ -10,7 +10,7 @@ enum { CHILDREN = 8, MOST_CUBES = 1 << 15, DEEPEST = 5 };
 /* Shorter tapes are not worth another. */
 enum { SHORT_TAPE = 40 };
 /* The room for all tapes of a space: as many steps as so many times the whole has, within limits. */
-enum { TIMES_WHOLE = 1000, LEAST_STEPS = 1 << 16, MOST_STEPS = 1 << 21 };
+enum { TIMES_WHOLE = 1000, LEAST_STEPS = 1 << 18, MOST_STEPS = 1 << 22, CALLS_OF_CUBES = 1 << 12 };
 
 void space_new(Space *space, const CellTape *tape, CellWork *work, const float low[3],
                const float high[3], float margin, Arena *arena)
@@ -19,48 +19,65 @@ void space_new(Space *space, const CellTape *tape, CellWork *work, const float l
     size_t room = (size_t)tape->count * TIMES_WHOLE;
     for (int k = 0; k < 3; k++)
         side = fmax(side, (double)high[k] - (double)low[k]);
-    room = room < LEAST_STEPS ? LEAST_STEPS : room > MOST_STEPS ? MOST_STEPS : room;
-    /* Calls stay in the whole tape. */
-    const bool divides = side > 0 && side < 1e30 && tape->call_count == 0;
+    room               = room < LEAST_STEPS ? LEAST_STEPS : room > MOST_STEPS ? MOST_STEPS : room;
+    const bool divides = side > 0 && side < 1e30;
     *space             = (Space){.side       = divides ? (float)side : 0,
                                  .margin     = margin,
                                  .work       = work,
                                  .most       = divides ? MOST_CUBES : 1,
-                                 .most_steps = divides ? room : 0};
+                                 .most_steps = divides ? room : 0,
+                                 .most_calls = (size_t)tape->call_count * CALLS_OF_CUBES};
     space->cubes       = arena_new_array(arena, SpaceCube, space->most);
     space->steps       = arena_new_array(arena, CellStep, space->most_steps + 1);
+    space->calls       = arena_new_array(arena, CellCall, space->most_calls + 1);
     for (int k = 0; k < 3; k++)
         space->low[k] = low[k];
     for (; space->count < (divides ? 2u : 1u); space->count++)
         space->cubes[space->count] = (SpaceCube){.tape = *tape, .leaf = !divides, .rays = -1};
 }
 
+/* Keeps a tape that was made for a cube; false: there is no room. */
+static bool keep(Space *space, CellTape tape)
+{
+    CellStep *steps = space->steps + space->step_count;
+    CellCall *calls = space->calls + space->call_count;
+    if (tape.count > space->most_steps - space->step_count ||
+        tape.call_count > space->most_calls - space->call_count)
+        return false;
+    memcpy(steps, tape.steps, tape.count * sizeof *steps);
+    memcpy(calls, tape.calls, tape.call_count * sizeof *calls);
+    space->step_count += tape.count;
+    space->call_count += tape.call_count;
+    tape.steps                   = steps;
+    tape.calls                   = calls;
+    space->cubes[space->count++] = (SpaceCube){
+        .tape = tape, .leaf = tape.count < SHORT_TAPE, .rays = -1};
+    return true;
+}
+
 /* Makes the children of a cube with this corner; false: there is no room. */
 static bool divide(Space *space, uint32_t number, const float corner[3], float half)
 {
-    const CellTape tape = space->cubes[number].tape;
+    const CellTape tape   = space->cubes[number].tape;
+    const uint32_t first  = space->count;
+    const float    radius = 0.5f * sqrtf(3) * half * 1.0001f;
+    bool           good   = first + CHILDREN <= space->most;
     float          middles[3][CELL_LANES];
-    if (space->count + CHILDREN > space->most ||
-        space->step_count + CHILDREN * (size_t)tape.count > space->most_steps)
-        return false;
     for (int i = 0; i < CELL_LANES; i++)
         for (int k = 0; k < 3; k++)
             middles[k][i] = corner[k] + half * ((i >> k & 1) ? 1.5f : 0.5f);
-    cell_run(&tape, space->work, 0, (const float(*)[CELL_LANES])middles);
-    space->cubes[number].first_child = space->count;
-    for (uint32_t i = 0; i < CHILDREN; i++) {
+    if (good)
+        cell_run(&tape, space->work, 0, (const float(*)[CELL_LANES])middles);
+    for (uint32_t i = 0; i < CHILDREN && good; i++) {
         const CellMark mark = cell_mark(space->work);
-        CellTape  pruned    = cell_prune(&tape, space->work, 0, i, 0.5f * sqrtf(3) * half * 1.0001f,
-                                         space->margin);
-        CellStep *steps     = space->steps + space->step_count;
-        memcpy(steps, pruned.steps, pruned.count * sizeof *steps);
-        pruned.steps = steps;
-        space->step_count += pruned.count;
-        space->cubes[space->count++] = (SpaceCube){
-            .tape = pruned, .leaf = pruned.count < SHORT_TAPE, .rays = -1};
+        good = keep(space, cell_prune(&tape, space->work, 0, i, radius, space->margin));
         cell_release(space->work, mark);
     }
-    return true;
+    if (good)
+        space->cubes[number].first_child = first;
+    else
+        space->count = first;
+    return good;
 }
 
 uint32_t space_find(Space *space, const float point[3])

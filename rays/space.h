@@ -22,8 +22,9 @@ typedef struct Space {
     CellWork  *work;
     SpaceCube *cubes; /* the first: all of space; the second: the outermost cube */
     uint32_t   count, most;
-    CellStep  *steps; /* of all tapes */
-    size_t     step_count, most_steps;
+    CellStep  *steps; /* of all tapes, */
+    CellCall  *calls; /* and their calls */
+    size_t     step_count, most_steps, call_count, most_calls;
 } Space;
 
 /* Around what lies in the box. */

@@ -41,6 +41,11 @@ static const char *const others[] = {
     "show sphere(1).displace(0.05 * sin(9 * x) * sin(9 * y), 0.1);",
     "show box([1, 1, 1]).shell(0.1) & sphere(0.8); show plane([0, 1, 0], -1);",
     "show union([sphere(0.6), box([1, 0.3, 0.3])], blend: 0.2);",
+    "show union([sphere(0.1 + 0.0005 * i).move(1.5 * random_direction(i)) for i in 0..300]) - "
+    "union([box([0.2, 0.3, 0.1 + 0.001 * i]).rotate([1, 1, 0], i).move(1.2 * random_direction(i + "
+    "99)) for i in 0..400]);",
+    "show union([capsule([0, 0, 0], random_direction(i), 0.05 + 0.002 * i) for i in "
+    "0..30]).rotate([0, 1, 0], 1).move([0.2, 0, 0]);",
     "show text(\"S8\", size: 1).extrude(0.3);",
 };
 

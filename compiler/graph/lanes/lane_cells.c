@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "compiler/graph/bounds/numbers.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
 
 struct CellWork {
@@ -24,13 +25,87 @@ struct CellWork {
     CellStep *steps; /* a stack */
     CellCall *calls; /* a stack, too */
     size_t    step_count, call_count;
+    /* By call of the tape that is shortened: the instances that may count in the ball; none: it stays a call. */
+    uint32_t (*instances)[MAX_LANE_INSTANCES];
+    uint32_t *instance_counts;
+    uint32_t *body_rows, *body_scalars; /* of a body whose steps are added */
 };
+
+/* ---- instance groups ---- */
+
+/* The function of a call that takes the least distance of its instances, one after the other; NULL: it is none. */
+static const InstanceFunction *least_of_instances(const LaneTape *tape, const LaneCall *call)
+{
+    const Graph *graph = tape->tape->graph;
+    if (!call->body || tape->tape->by_cells || call->body->tape.call_count > 0 ||
+        graph->items[call->node].op != OP_instance_distance)
+        return NULL;
+    const InstanceFunction *function = &graph->instances->functions.items[call->body->function];
+    const InstanceTable    *table    = &graph->instances->tables.items[call->body->table];
+    const bool least = function->slope > 0 && function->state_count == 1 && !function->either &&
+                       !function->joins && !function->sums && function->type == TYPE_FLOAT;
+    return least && table->bounds ? function : NULL;
+}
+
+/* Steps that its body becomes for an instance at most: numbers of rows are steps, too. */
+static size_t steps_of_instance(const LaneBody *body)
+{
+    return body->tape.count + body->tape.scalar_count;
+}
 
 /* ---- the tape for all of space ---- */
 
 static uint32_t row_of(uint32_t operand, uint32_t inputs)
 {
     return operand & LANE_SCALAR ? operand & ~LANE_SCALAR : inputs + operand;
+}
+
+/* How fast a row changes at most; 0: not known. */
+static double steepest_of(const CellStep *steps, uint32_t inputs, uint32_t row)
+{
+    const uint32_t first = inputs + LANE_INPUTS;
+    if (row < inputs)
+        return 1e-30;
+    return row >= first                    ? (double)steps[row - first].steepest
+           : row < inputs + LANE_POINT + 3 ? 1
+                                           : 0;
+}
+
+/* That of a call, by how fast the point of the call moves. */
+static double steepest_of_call(const LaneTape *tape, const CellCall *call, const CellStep *steps,
+                               uint32_t inputs)
+{
+    const InstanceFunction *function = least_of_instances(tape, call->call);
+    double                  square   = 0;
+    bool                    itself   = true;
+    if (!function)
+        return 0;
+    for (uint32_t c = 0; c < 3; c++) {
+        const double by = steepest_of(steps, inputs, call->from[1][c]);
+        if (by == 0)
+            return 0;
+        square += by * by;
+        itself = itself && call->from[1][c] == inputs + LANE_POINT + c;
+    }
+    return function->slope * (itself ? 1 : sqrt(square));
+}
+
+/* That of what lane tapes know nothing of, since it is made of calls. */
+static double steepest_of_step(const CellStep *step, const CellStep *steps, uint32_t inputs)
+{
+    const double a = steepest_of(steps, inputs, step->from[0]),
+                 b = steepest_of(steps, inputs, step->from[1]);
+    switch (step->op) {
+    case OP_min:
+    case OP_max:
+    case LANE_LESSER:
+    case LANE_GREATER: return a > 0 && b > 0 ? fmax(a, b) : 0;
+    case OP_add:
+    case OP_sub: return a > 0 && b > 0 ? a + b : 0;
+    case OP_neg:
+    case OP_abs: return a;
+    default: return 0;
+    }
 }
 
 CellTape cell_tape_new(const LaneTape *tape, Arena *arena)
@@ -57,6 +132,12 @@ CellTape cell_tape_new(const LaneTape *tape, Arena *arena)
                 calls[i].from[k][c]    = operand == NODE_NONE ? NODE_NONE : row_of(operand, inputs);
             }
     }
+    for (size_t i = 0; i < tape->count; i++)
+        if (steps[i].steepest == 0)
+            steps[i].steepest = (float)(steps[i].op == LANE_CALL
+                                            ? steepest_of_call(tape, &calls[steps[i].from[0]],
+                                                               steps, inputs)
+                                            : steepest_of_step(&steps[i], steps, inputs));
     return (CellTape){.whole      = tape,
                       .steps      = steps,
                       .calls      = calls,
@@ -80,20 +161,41 @@ static float *new_rows(const CellTape *tape, size_t count, Arena *arena)
     return rows;
 }
 
+/* What bodies of instances may add to all tapes that are made of one, and the steps of the longest body. */
+static size_t steps_of_bodies(const CellTape *tape, size_t *longest)
+{
+    size_t all = 0;
+    *longest   = 0;
+    for (uint32_t i = 0; i < tape->call_count; i++)
+        if (least_of_instances(tape->whole, tape->calls[i].call)) {
+            const LaneBody *body = tape->calls[i].call->body;
+            const size_t    each = steps_of_instance(body);
+            all += each < MAX_STEPS_OF_INSTANCES ? MAX_STEPS_OF_INSTANCES : 0;
+            *longest = body->tape.count > *longest ? body->tape.count : *longest;
+            *longest = body->tape.scalar_count > *longest ? body->tape.scalar_count : *longest;
+        }
+    return all;
+}
+
 CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values, Arena *arena)
 {
     CellWork    *work = arena_new(arena, CellWork);
-    const size_t rows = (size_t)tape->inputs + LANE_INPUTS + tape->count;
-    *work             = (CellWork){
-                    .values = values,
-                    .rows   = arena_new_array(arena, float *, depth + 1),
-                    .needed = arena_new_array(arena, bool, rows),
-                    .now    = arena_new_array(arena, uint32_t, rows),
-                    .caps   = arena_new_array(arena, float, rows),
-                    .floors = arena_new_array(arena, float, rows),
-                    .same   = arena_new_array(arena, uint32_t, rows),
-                    .steps  = arena_new_array(arena, CellStep, (size_t)tape->count * depth + 1),
-                    .calls  = arena_new_array(arena, CellCall, (size_t)tape->call_count * depth + 1)};
+    size_t       longest;
+    const size_t count = tape->count + steps_of_bodies(tape, &longest);
+    const size_t rows = (size_t)tape->inputs + LANE_INPUTS + count, calls = tape->call_count + 1;
+    *work = (CellWork){.values          = values,
+                       .rows            = arena_new_array(arena, float *, depth + 1),
+                       .needed          = arena_new_array(arena, bool, rows),
+                       .now             = arena_new_array(arena, uint32_t, rows),
+                       .caps            = arena_new_array(arena, float, rows),
+                       .floors          = arena_new_array(arena, float, rows),
+                       .same            = arena_new_array(arena, uint32_t, rows),
+                       .steps           = arena_new_array(arena, CellStep, count * depth + 1),
+                       .calls           = arena_new_array(arena, CellCall, calls * depth),
+                       .instances       = arena_alloc(arena, calls, sizeof *work->instances),
+                       .instance_counts = arena_new_array(arena, uint32_t, calls),
+                       .body_rows       = arena_new_array(arena, uint32_t, LANE_INPUTS + longest),
+                       .body_scalars    = arena_new_array(arena, uint32_t, longest + 1)};
     for (uint32_t i = 0; i <= depth; i++)
         work->rows[i] = new_rows(tape, rows, arena);
     return work;
@@ -174,6 +276,8 @@ static float reach_of(const Ball *ball, uint32_t row)
         return 0;
     if (!step)
         return row < ball->tape->inputs + LANE_POINT + 3 ? ball->radius + ball->margin : HUGE_VALF;
+    if (step->op == LANE_NUMBER)
+        return 0;
     return step->steepest > 0 ? step->steepest * (ball->radius + ball->margin) : HUGE_VALF;
 }
 
@@ -286,8 +390,51 @@ static uint32_t only_operand(const Pruning *p, const CellStep *step, uint32_t ro
     return row;
 }
 
-static void need_of_call(Pruning *p, const CellCall *call)
+/* How far a box is from a range of points at least. */
+static double distance_of_boxes(const Box *box, const Range at[3])
 {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        const double off = max2(max2(box->axis[k].low - at[k].high, at[k].low - box->axis[k].high),
+                                0);
+        square += off * off;
+    }
+    return sqrt(square) * (1 - 1e-12);
+}
+
+/* Lists the instances of a call that may be the nearest in the ball; none: it stays a call. */
+static void find_instances(Pruning *p, const CellStep *step, uint32_t row)
+{
+    const CellTape *tape  = p->ball.tape;
+    const CellCall *call  = &tape->calls[step->from[0]];
+    uint32_t       *found = p->work->instances[step->from[0]], count = 0;
+    const Range     nearest = range_by_slope(&p->ball, row);
+    Range           at[3];
+    p->work->instance_counts[step->from[0]] = 0;
+    if (!least_of_instances(tape->whole, call->call) || !isfinite(nearest.high))
+        return;
+    const InstanceTable *table =
+        &tape->whole->tape->graph->instances->tables.items[call->call->body->table];
+    for (int k = 0; k < 3; k++) {
+        at[k] = range_by_slope(&p->ball, call->from[1][k]);
+        if (!isfinite(at[k].high))
+            return;
+    }
+    for (uint32_t i = 0; i < table->rows; i++) {
+        if (distance_of_boxes(&table->bounds[i], at) > nearest.high * table->stretch)
+            continue;
+        if (count == MAX_LANE_INSTANCES ||
+            (count + 1) * steps_of_instance(call->call->body) > MAX_STEPS_OF_INSTANCES)
+            return;
+        found[count++] = i;
+    }
+    p->work->instance_counts[step->from[0]] = count;
+}
+
+static void need_of_call(Pruning *p, const CellStep *step, uint32_t row)
+{
+    const CellCall *call = &p->ball.tape->calls[step->from[0]];
+    find_instances(p, step, row);
     for (uint32_t k = 0; k < MAX_OPERANDS; k++)
         for (uint32_t c = 0; c < 4 && call->from[k][c] != NODE_NONE; c++)
             need(p, call->from[k][c], HUGE_VALF, -HUGE_VALF);
@@ -325,7 +472,8 @@ static void need_of_step(Pruning *p, const CellStep *step, uint32_t row)
     case LANE_GREATER: need_of_least(p, step, row, -1); return;
     case OP_neg: need(p, step->from[0], -floor, -cap); return;
     case LANE_PART: need(p, row - 1, HUGE_VALF, -HUGE_VALF); return;
-    case LANE_CALL: need_of_call(p, &p->ball.tape->calls[step->from[0]]); return;
+    case LANE_CALL: need_of_call(p, step, row); return;
+    case LANE_NUMBER: return;
     default: break;
     }
     work->same[row] = only_operand(p, step, row);
@@ -376,6 +524,93 @@ static CellStep moved_step(Pruning *p, const CellStep *from, CellCall *calls, ui
     return step;
 }
 
+/* ---- bodies of instances in place of a call ---- */
+
+static uint32_t add_step(Pruning *p, CellTape *to, CellStep step)
+{
+    p->work->steps[p->work->step_count + to->count] = step;
+    return to->inputs + LANE_INPUTS + to->count++;
+}
+
+static uint32_t add_number(Pruning *p, CellTape *to, double number)
+{
+    const float single = (float)number + 0.0f;
+    CellStep    step   = {.op = LANE_NUMBER};
+    memcpy(&step.from[0], &single, sizeof single);
+    return add_step(p, to, step);
+}
+
+/* What a step of the body reads of the instance. */
+static double number_of_instance(const Pruning *p, const InstanceTable *table, const LaneStep *step,
+                                 uint32_t instance)
+{
+    const Instances *groups = p->ball.tape->whole->tape->graph->instances;
+    if (step->op == LANE_INSTANCE)
+        return instance;
+    const Node *nodes = column_nodes(groups, table, step->operands[0]);
+    return nodes ? p->work->values[nodes[instance]].v[0]
+                 : table->numbers[(size_t)instance * table->columns + step->operands[0]];
+}
+
+/* Adds the steps of a body for one instance; returns the row of its state.  What takes the lesser of the state
+   before and another number is a distance, so both are no steeper than the call. */
+static uint32_t add_instance(Pruning *p, CellTape *to, const CellCall *call, uint32_t instance,
+                             uint32_t state, float steepest)
+{
+    const LaneBody      *body = call->call->body;
+    const InstanceTable *table =
+        &p->ball.tape->whole->tape->graph->instances->tables.items[body->table];
+    uint32_t      *rows   = p->work->body_rows;
+    const uint32_t before = state, first = to->inputs + LANE_INPUTS;
+    for (int k = 0; k < 3; k++)
+        rows[LANE_POINT + k] = moved(p, call->from[1][k]);
+    for (size_t i = 0; i < body->tape.count; i++) {
+        const LaneStep *from = &body->tape.steps[i];
+        if (from->op == LANE_STATE) {
+            rows[LANE_INPUTS + i] = state;
+            continue;
+        }
+        if (from->op == LANE_ROW || from->op == LANE_INSTANCE) {
+            rows[LANE_INPUTS + i] = add_number(p, to, number_of_instance(p, table, from, instance));
+            continue;
+        }
+        CellStep step = {.op = from->op, .operand_count = from->operand_count};
+        for (uint32_t k = 0; k < step.operand_count; k++)
+            step.from[k] = from->operands[k] & LANE_SCALAR
+                               ? p->work->body_scalars[from->operands[k] & ~LANE_SCALAR]
+                               : rows[from->operands[k]];
+        const bool least = (step.op == OP_min || step.op == LANE_LESSER) &&
+                           (step.from[0] == before || step.from[1] == before);
+        const uint32_t other = step.from[0] == before ? step.from[1] : step.from[0];
+        step.steepest        = least ? steepest : 0;
+        if (least && other >= first &&
+            p->work->steps[p->work->step_count + other - first].op != LANE_NUMBER)
+            p->work->steps[p->work->step_count + other - first].steepest = steepest;
+        rows[LANE_INPUTS + i] = add_step(p, to, step);
+    }
+    const uint32_t output = body->tape.outputs[0];
+    return output & LANE_SCALAR ? p->work->body_scalars[output & ~LANE_SCALAR] : rows[output];
+}
+
+/* Adds the bodies of the instances that may count; returns the row of the result. */
+static uint32_t add_instances(Pruning *p, CellTape *to, const CellStep *step)
+{
+    const CellCall         *call     = &p->ball.tape->calls[step->from[0]];
+    const LaneTape         *body     = &call->call->body->tape;
+    const InstanceFunction *function = least_of_instances(p->ball.tape->whole, call->call);
+    for (size_t i = 0; i < body->scalar_count; i++)
+        p->work->body_scalars[i] = add_number(
+            p, to,
+            body->sources[i].node == NODE_NONE
+                ? body->sources[i].number
+                : p->work->values[body->sources[i].node].v[body->sources[i].component]);
+    uint32_t state = add_number(p, to, function->states[0].first[0]);
+    for (uint32_t i = 0; i < p->work->instance_counts[step->from[0]]; i++)
+        state = add_instance(p, to, call, p->work->instances[step->from[0]][i], state,
+                             step->steepest);
+    return state;
+}
+
 /* Adds what is needed of a step to the shorter tape. */
 static void move_step(Pruning *p, CellTape *to, uint32_t i)
 {
@@ -389,6 +624,10 @@ static void move_step(Pruning *p, CellTape *to, uint32_t i)
     work->needed[row] |= part;
     if (work->same[row] != row && !part) {
         work->now[row] = moved(p, work->same[row]);
+        return;
+    }
+    if (from->op == LANE_CALL && work->instance_counts[from->from[0]] > 0) {
+        work->now[row] = add_instances(p, to, from);
         return;
     }
     const uint32_t next = first + to->count;

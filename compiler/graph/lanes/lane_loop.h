@@ -11,6 +11,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 #include <tgmath.h>
 
 /* fmin and fmax as the C library has them, without calls. */
@@ -302,6 +303,14 @@ static inline void LOCAL(cell_length)(const CellStep *step, const REAL *rows, RE
     CELL_SQUARE(1, a * a)
 }
 
+static inline void LOCAL(cell_number)(const CellStep *step, REAL *to)
+{
+    REAL number;
+    static_assert(sizeof number == sizeof step->from[0], "its bits are in the place of an operand");
+    memcpy(&number, &step->from[0], sizeof number);
+    ALL_LANES { to[i] = number; }
+}
+
 void CELL_LOOP(const CellTape *tape, NodeValue *values, REAL *rows)
 {
     REAL *to = rows + (size_t)(tape->inputs + LANE_INPUTS) * CELL_LANES;
@@ -324,6 +333,7 @@ void CELL_LOOP(const CellTape *tape, NodeValue *values, REAL *rows)
             LOCAL(cell_call)(tape, values, &tape->calls[step->from[0]], rows, to);
             break;
         case LANE_PART: break;
+        case LANE_NUMBER: LOCAL(cell_number)(step, to); break;
         default: assert(!"no step");
         }
     }

@@ -29,7 +29,8 @@ enum {
     LANE_GREATER,         /* b where b > a, else a */
     LANE_INSTANCE,        /* in bodies of instance functions: the number of the instance */
     LANE_ROW,             /* its number in the column operands[0] of the table */
-    LANE_STATE            /* component operands[0] of the states, which have four each */
+    LANE_STATE,           /* component operands[0] of the states, which have four each */
+    LANE_NUMBER /* in cell tapes alone: a number, whose bits are in the place of the first operand */
 };
 
 /* What a step works on: the number of a value, or this bit and the number of a scalar.  Values are the
