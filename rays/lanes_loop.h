@@ -172,7 +172,7 @@ take_of_kind(RayBlock *block, const BlockRule *rule, const bool cones, const boo
         const bool  back  = overstepped & !(inside & !cones);
         const float risen = (1 - BLOCK_LEARNING) * old_slope +
                             BLOCK_LEARNING * (distance - before) * per_gap;
-        const float begun      = (steps == 1) & (distance > 2 * lift) ? -1.0f : old_slope;
+        const float begun      = ((steps == 1) & (distance > 2 * lift)) ? -1.0f : old_slope;
         const float slope      = back ? -1.0f : step > 0 ? risen : begun;
         const bool  blocked    = inside & !back;
         const bool  arrives    = at + greater(distance, least) >= end;
