@@ -10,7 +10,7 @@ enum { CHILDREN = 8, MOST_CUBES = 1 << 15, DEEPEST = 5 };
 /* Shorter tapes are not worth another. */
 enum { SHORT_TAPE = 40 };
 /* The room for all tapes of a space: as many steps as so many times the whole has, within limits. */
-enum { TIMES_WHOLE = 1000, LEAST_STEPS = 1 << 18, MOST_STEPS = 1 << 22, CALLS_OF_CUBES = 1 << 12 };
+enum { TIMES_WHOLE = 1000, LEAST_STEPS = 1 << 18, MOST_STEPS = 1 << 22, CALLS_OF_CUBES = 1 << 14 };
 
 void space_new(Space *space, const CellTape *tape, CellWork *work, const float low[3],
                const float high[3], float margin, Arena *arena)

@@ -14,6 +14,9 @@
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
 
+/* As many instances of a call have their bodies in a tape at most, and these as many steps. */
+enum { MAX_CELL_INSTANCES = 64, MAX_BODY_STEPS = 4096 };
+
 struct CellWork {
     NodeValue *values;
     float    **rows; /* of each depth */
@@ -26,7 +29,7 @@ struct CellWork {
     CellCall *calls; /* a stack, too */
     size_t    step_count, call_count;
     /* By call of the tape that is shortened: the instances that may count in the ball; none: it stays a call. */
-    uint32_t (*instances)[MAX_LANE_INSTANCES];
+    uint32_t (*instances)[MAX_CELL_INSTANCES];
     uint32_t *instance_counts;
     uint32_t *body_rows, *body_scalars; /* of a body whose steps are added */
 };
@@ -170,7 +173,7 @@ static size_t steps_of_bodies(const CellTape *tape, size_t *longest)
         if (least_of_instances(tape->whole, tape->calls[i].call)) {
             const LaneBody *body = tape->calls[i].call->body;
             const size_t    each = steps_of_instance(body);
-            all += each < MAX_STEPS_OF_INSTANCES ? MAX_STEPS_OF_INSTANCES : 0;
+            all += each < MAX_BODY_STEPS ? MAX_BODY_STEPS : 0;
             *longest = body->tape.count > *longest ? body->tape.count : *longest;
             *longest = body->tape.scalar_count > *longest ? body->tape.scalar_count : *longest;
         }
@@ -423,8 +426,8 @@ static void find_instances(Pruning *p, const CellStep *step, uint32_t row)
     for (uint32_t i = 0; i < table->rows; i++) {
         if (distance_of_boxes(&table->bounds[i], at) > nearest.high * table->stretch)
             continue;
-        if (count == MAX_LANE_INSTANCES ||
-            (count + 1) * steps_of_instance(call->call->body) > MAX_STEPS_OF_INSTANCES)
+        if (count == MAX_CELL_INSTANCES ||
+            (count + 1) * steps_of_instance(call->call->body) > MAX_BODY_STEPS)
             return;
         found[count++] = i;
     }
