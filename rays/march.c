@@ -34,14 +34,19 @@ typedef struct March {
     uint64_t       evaluations;
 } March;
 
-/* Of the rays that march. */
+static bool is_there(const RayBlock *block, int i)
+{
+    return block->state[i] == RAY_MARCHES || block->state[i] == RAY_IS_BESIDE;
+}
+
+/* Of the rays that march, and of those beside. */
 static void measure_bundle(const RayBlock *blocks, Bundle *bundle)
 {
     double sum[6] = {0}, rays = 0;
     float  origins = 0, directions = 0;
     for (size_t b = bundle->first; b < bundle->first + bundle->count; b++)
         for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-            const bool there = blocks[b].state[i] == RAY_MARCHES;
+            const bool there = is_there(&blocks[b], i);
             for (int k = 0; k < 3 && there; k++) {
                 sum[k] += (double)blocks[b].origin[k][i];
                 sum[3 + k] += (double)blocks[b].direction[k][i];
@@ -66,7 +71,7 @@ static void measure_bundle(const RayBlock *blocks, Bundle *bundle)
                 from += o * o;
                 aside += d * d;
             }
-            const bool there = blocks[b].state[i] == RAY_MARCHES;
+            const bool there = is_there(&blocks[b], i);
             origins          = there && from > origins ? from : origins;
             directions       = there && aside > directions ? aside : directions;
             bundle->width    = there ? fmaxf(bundle->width, blocks[b].width[i]) : bundle->width;
@@ -249,8 +254,9 @@ static void begin(March *m, size_t count, float *first, float *last)
             block->steps[i] = block->unresolved[i] = 0;
             if (block->state[i] == RAY_IS_ABSENT)
                 continue;
-            block->state[i] = block->start[i] <= block->end[i] ? RAY_MARCHES : RAY_MISSES;
-            if (block->state[i] == RAY_MARCHES) {
+            if (!(block->start[i] <= block->end[i]))
+                block->state[i] = block->state[i] == RAY_MARCHES ? RAY_MISSES : RAY_IS_ABSENT;
+            if (is_there(block, i)) {
                 *first = fminf(*first, block->start[i]);
                 *last  = fmaxf(*last, block->end[i]);
             }

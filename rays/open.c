@@ -44,7 +44,8 @@ static void fill(RayField *field)
     const KrsProgram *program = &field->state->scene->program;
     field->margin             = 2e-6f * largest_coordinate(program);
     for (int k = 0; k < 3; k++) {
-        const double low = program->rest_low[k], high = program->rest_high[k];
+        const double low   = field->planes ? program->rest_low[k] : program->low[k],
+                     high  = field->planes ? program->rest_high[k] : program->high[k];
         const double slack = 1e-4 * (high - low) + (double)field->margin;
         field->low[k]      = (float)fmax(low - slack, -1e30);
         field->high[k]     = (float)fmin(high + slack, 1e30);
@@ -54,15 +55,6 @@ static void fill(RayField *field)
         space_new(&field->spaces[i], &field->distance.cells, field->distance.works[i], field->low,
                   field->high, field->margin, &field->arena);
     }
-}
-
-/* Whether there are components of both kinds. */
-static bool has_more_than_planes(const KrsScene *scene)
-{
-    size_t planes = 0;
-    for (size_t i = 0; i < scene->component_count && scene->module.is_plane; i++)
-        planes += scene->module.is_plane[i];
-    return planes > 0 && planes < scene->component_count;
 }
 
 RayField *ray_field_new(KrsState *state, bool planes)
@@ -77,7 +69,7 @@ RayField *ray_field_new(KrsState *state, bool planes)
         .memory = {.allocate = from->allocate, .release = from->release, .user = from->user},
         .state  = state,
         .set    = set_of_lanes(),
-        .planes = planes && has_more_than_planes(state->scene)};
+        .planes = planes && state->scene->program.planes};
     field->arena.memory     = &field->memory;
     field->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0) {

@@ -34,6 +34,8 @@ struct RayField {
     float         margin; /* what rounding may make of coordinates */
 };
 
+/* Whether numbers of copies may be above 2^24, up to which single precision knows them. */
+bool ray_has_large_numbers(const Tape *tape);
 /* The least distance of the components that are planes, or of all others, for cells down to this depth. */
 void ray_field_make_distance(RayField *field, bool planes, RayTape *tape, uint32_t depth);
 /* How far it is to the nearest plane along a ray. */

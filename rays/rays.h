@@ -19,7 +19,15 @@ enum { RAYS_OF_BLOCK = 16, BLOCKS_OF_TILE = 256 };
 /* Rays of hits come in waves of as many blocks at most. */
 enum { BLOCKS_OF_WAVE = 1024 };
 
-typedef enum RayState { RAY_MARCHES, RAY_HITS, RAY_MISSES, RAY_REFINES, RAY_IS_ABSENT } RayState;
+/* RAY_IS_BESIDE: nobody asks for it, but cells are as wide as if somebody did, so that others do not depend on that. */
+typedef enum RayState {
+    RAY_MARCHES,
+    RAY_HITS,
+    RAY_MISSES,
+    RAY_REFINES,
+    RAY_IS_ABSENT,
+    RAY_IS_BESIDE
+} RayState;
 
 /* A lane for each ray. */
 typedef struct RayBlock {
@@ -29,7 +37,8 @@ typedef struct RayBlock {
     float start[RAYS_OF_BLOCK], end[RAYS_OF_BLOCK], plane[RAYS_OF_BLOCK];
     float width[RAYS_OF_BLOCK], spread[RAYS_OF_BLOCK]; /* of a pixel: width + spread t */
     /* What is found. */
-    uint32_t state[RAYS_OF_BLOCK], steps[RAYS_OF_BLOCK]; /* RAY_IS_ABSENT before: there is no ray */
+    uint32_t state[RAYS_OF_BLOCK],
+        steps[RAYS_OF_BLOCK]; /* before: RAY_MARCHES, _IS_ABSENT or _IS_BESIDE */
     float    t[RAYS_OF_BLOCK], side[RAYS_OF_BLOCK]; /* -1: inside of a solid, 1: outside of all */
     uint32_t unresolved[RAYS_OF_BLOCK];             /* it ran out of steps */
     float    normal[3][RAYS_OF_BLOCK], evenness[RAYS_OF_BLOCK]; /* of hits, if they are wanted */
@@ -64,8 +73,8 @@ typedef struct RayField RayField;
    once. */
 RayField *ray_field_new(KrsState *state, bool planes);
 void      ray_field_free(RayField *field);
-/* Whether rays can be marched: not where they go from root to root, or by research. */
-bool ray_field_suits(const KrsScene *scene);
+/* Why rays of a scene cannot be marched, in words of its author; NULL: they can. */
+const char *ray_field_refuses(const KrsScene *scene);
 
 /* Where rays meet planes, up to `farthest`. */
 void ray_field_meet_planes(RayField *field, size_t part, float farthest, RayBlock *block);

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "rays/ray_field.h"
 #include "compiler/base/parallel.h"
 #include "compiler/graph/lanes/lane_cells.h"
 #include "compiler/scene/program.h"
@@ -42,25 +43,10 @@ struct SurfaceField {
     uint32_t *rows_of_part[MAX_PARTS][LEVELS + 1];
 };
 
-/* Whether numbers of copies may be above 2^24, up to which single precision knows them. */
-static bool has_large_numbers(const KrsScene *scene)
-{
-    enum { MOST_PUSHES = 23 };
-    const Tape *tape   = &scene->surface;
-    size_t      pushes = 0;
-    for (size_t i = tape->frame_count; i < tape->count; i++) {
-        const Op op = (Op)scene->graph->items[tape->nodes[i]].op;
-        if (op == OP_hash_id || op == OP_join_id)
-            return true;
-        pushes += op == OP_push_id;
-    }
-    return pushes > MOST_PUSHES;
-}
-
 bool surface_field_suits(const KrsScene *scene)
 {
     return scene->component_count > 0 && !scene->program.media && !scene->program.mirrors &&
-           !scene->program.open_surfaces && !has_large_numbers(scene);
+           !scene->program.open_surfaces && !ray_has_large_numbers(&scene->surface);
 }
 
 /* ---- tapes ---- */

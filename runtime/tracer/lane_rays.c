@@ -22,15 +22,25 @@ static_assert(SIDE * SIDE == BLOCKS_OF_TILE * RAYS_OF_BLOCK &&
                   BLOCK_SIDE * BLOCK_SIDE == RAYS_OF_BLOCK,
               "rays.h");
 
-bool lane_rays_suit(const Job *job)
+const char *lane_rays_refuse(const Job *job)
 {
-    const KrsRendering *r    = job->rendering;
-    const bool          near = job->rebase_origin[0] == 0 && job->rebase_origin[1] == 0 &&
-                      job->rebase_origin[2] == 0;
-    return gpu_is_cpu(job->gpu) && r->rays == RAYS_OF_CAMERAS && near && !job->frame.snaps &&
-           r->zone_slots == 0 && job->options.methods.trace == KRS_TRACE_AUTO &&
-           !job->options.depth && job->options.noise == 0 && job->options.methods.even_hits == 0 &&
-           ray_field_suits(r->scene);
+    const KrsRendering     *r       = job->rendering;
+    const KrsRenderOptions *options = &job->options;
+    const bool              rebased = job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 ||
+                         job->rebase_origin[2] != 0;
+    if (!gpu_is_cpu(job->gpu))
+        return "the device is not of type CPU";
+    if (job->frame.snaps)
+        return "the integrator is not `preview`";
+    if (r->rays != RAYS_OF_CAMERAS)
+        return "the camera is a panorama, has a lens or a shift, or there is none";
+    if (rebased)
+        return "coordinates are so large that points are relative to another origin";
+    if (r->zone_slots > 0 || options->depth || options->noise > 0)
+        return "there are zones or depths of the caller, or samples end by noise";
+    if (options->methods.trace != KRS_TRACE_AUTO || options->methods.even_hits > 0)
+        return "another method to march rays is asked for";
+    return ray_field_refuses(r->scene);
 }
 
 bool lane_rays_find_normals(const Job *job)
@@ -55,7 +65,7 @@ typedef struct Slice {
     uint32_t    end;
     RayBlock   *blocks[MAX_PARTS]; /* of each part */
     uint64_t    evaluations[MAX_PARTS];
-    uint32_t    unresolved[MAX_PARTS], max_steps[MAX_PARTS];
+    uint32_t    max_steps[MAX_PARTS];
 } Slice;
 
 /* The even and the odd bits of a number: column and row in the order in which quarters of quarters follow each other. */
@@ -129,13 +139,16 @@ static void begin_block(const Slice *slice, Corner corner, RayBlock *block)
 {
     for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
         uint32_t   pixel[2];
-        const bool there = find_pixel(slice->work, corner, i, pixel);
-        float      at[2];
+        const bool asked = find_pixel(slice->work, corner, i, pixel);
+        const bool there = corner.at[0] + i % BLOCK_SIDE < slice->job->options.width &&
+                           corner.at[1] + i / BLOCK_SIDE < slice->job->options.height;
+        float at[2];
         for (int k = 0; k < 2; k++)
-            at[k] = (float)(slice->work->corner[k] + pixel[k]) + slice->work->offset[k];
+            at[k] = (float)(corner.at[k] + (k == 0 ? i % BLOCK_SIDE : i / BLOCK_SIDE)) +
+                    slice->work->offset[k];
         if (there)
             aim(slice->job, at, block, i);
-        block->state[i] = there ? RAY_MARCHES : RAY_IS_ABSENT;
+        block->state[i] = asked ? RAY_MARCHES : there ? RAY_IS_BESIDE : RAY_IS_ABSENT;
         if (there)
             clip(slice->box.low, slice->box.high, slice->job->frame.farthest, block, i);
     }
@@ -167,7 +180,6 @@ static void store_block(Slice *slice, size_t part, Corner corner, const RayBlock
         for (int k = 0; k < 3; k++)
             facing[k] = block->normal[k][i];
         facing[3] = block->evenness[i];
-        slice->unresolved[part] += block->unresolved[i];
         if (block->steps[i] > slice->max_steps[part])
             slice->max_steps[part] = block->steps[i];
     }
@@ -261,13 +273,12 @@ static void march_items(void *task, size_t part, size_t parts)
     }
 }
 
-/* Adds what shaders would have counted. */
+/* Adds what shaders would have counted; background.comp counts those that are unresolved. */
 static void add_counts(Job *job, const Slice *slice)
 {
     ControlBlock *control = job->rendering->control.bytes;
     for (size_t i = 0; i < MAX_PARTS; i++) {
         control->evaluations += (uint32_t)slice->evaluations[i];
-        control->unresolved += slice->unresolved[i];
         if (slice->max_steps[i] > control->max_evaluations)
             control->max_evaluations = slice->max_steps[i];
     }
@@ -290,7 +301,7 @@ static bool run_slices(Job *job, Slice *slice, KrsPhase phase, uint32_t tiles,
 {
     RayBlock *blocks  = gpu_alloc(job->gpu, parallel_parts() * BLOCKS_OF_WAVE, sizeof *blocks,
                                   "march rays");
-    uint32_t  at_once = 16;
+    uint32_t  at_once = (uint32_t)parallel_parts();
     bool      good    = blocks != NULL;
     for (size_t i = 0; i < parallel_parts() && good; i++)
         slice->blocks[i] = blocks + i * BLOCKS_OF_WAVE;

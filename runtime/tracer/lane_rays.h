@@ -7,8 +7,8 @@
 #include "rays/rays.h"
 #include "runtime/tracer/job.h"
 
-/* Whether lanes know these rays: on a device that is the host, of a camera whose rays need no sine and no lens. */
-bool lane_rays_suit(const Job *job);
+/* Why lanes cannot march the rays of a picture, in words of its author; NULL: they can. */
+const char *lane_rays_refuse(const Job *job);
 /* Whether they find normals as well, by the octahedron; else shaders do. */
 bool lane_rays_find_normals(const Job *job);
 /* Whether they meet planes without a march. */

@@ -200,11 +200,11 @@ bool primary_find_plate(Job *job, const Shader **shader)
 /* Adds the pass in which lanes of the host march all components. */
 static bool add_lanes(Job *job, Plan *plan, float weight)
 {
-    if (!lane_rays_suit(job))
-        return job_refuse(
-            job,
-            "lanes march the rays of perspective and orthographic cameras on devices of type CPU, "
-            "for previews of solids that are not far from the origin");
+    const char *reason = lane_rays_refuse(job);
+    if (reason)
+        gpu_refuse(job->gpu, KRS_BAD_ARGUMENT, "lanes cannot march these rays: %s", reason);
+    if (reason)
+        return false;
     plan->field  = ray_field_new(job->state, lane_rays_know_planes(job));
     plan->failed = plan->failed || !plan->field;
     if (!plan->field)

@@ -109,11 +109,11 @@ shape s() { distance: 0.0005*(length(p)-1), slope: 1, within: box([2,2,2]) }
 show s();
 camera { eye: [0,0,5], target: [0,0,0], fov: 40deg }
 END
-run render unresolved.krs --size 72x72 -o a.png
+run render unresolved.krs --size 72x72 --error 0.01 -o a.png
 said 0 "rays" "rays that ran out of steps are said"
 grep -q "^krs: warning: [0-9]* of [0-9]* rays .* ran out of steps" err
 result $? "as a warning"
-run render unresolved.krs --size 72x72 -o a.png --quiet
+run render unresolved.krs --size 72x72 --error 0.01 -o a.png --quiet
 [ "$status" -eq 0 ] && [ ! -s err ]
 result $? "unless the command is quiet"
 run render ball.krs --size 16x12 -o a.png

@@ -58,6 +58,10 @@ static const char *const scenes[] = {
     "camera { eye: [1, 2, 5], target: [0, 0, 0], fov: 40deg }",
     "camera { eye: [0, 0, 0.2], target: [1, 0, 0], fov: 70deg } show box([4, 3, 4]).shell(0.2); "
     "show sphere(0.5).move([1.2, -0.4, 0.3]);",
+    "camera { eye: [0, 2, 4] } show plane(); light s { direction: [1, 2, 1], softness: 2deg }",
+    "camera { eye: [0, 1, 5], target: [0, 1, 0], projection: \"orthographic\", height: 5 } show "
+    "plane(); "
+    "show box([4, 1.5, 1]).move([0, 2, 0]); light s { direction: [0, -1, 0.5], intensity: 3 }",
 };
 
 typedef struct Verdict {
@@ -98,7 +102,8 @@ static Verdict compare(const char *text, const char *other_text)
     options.methods.executor = KRS_EXECUTOR_LANES;
     KrsPicture   *lanes      = picture_of(other_text, &options);
     const Verdict verdict    = judge(kernels, lanes);
-    assert_int_equal(lanes->stats.unresolved, 0);
+    const double  steps      = (double)kernels->stats.unresolved - (double)lanes->stats.unresolved;
+    assert_true(fabs(steps) <= PIXELS / 20);
     krs_picture_free(kernels);
     krs_picture_free(lanes);
     return verdict;
@@ -129,32 +134,58 @@ static void a_moved_scene_is_seen(void **context)
     assert_true(v.other_depths > v.hits / 4);
 }
 
-static void what_lanes_do_not_know_is_refused(void **context)
+/* What a text is refused with, by lanes. */
+static void refused(const char *text, KrsIntegrator integrator, const char *words)
 {
-    (void)context;
-    static const char      text[]  = "show sphere(1);";
-    const KrsRenderOptions options = {.width            = 8,
-                                      .height           = 8,
-                                      .integrator       = KRS_INTEGRATOR_PATH,
-                                      .methods.executor = KRS_EXECUTOR_LANES};
-    KrsScene              *scene;
-    KrsState              *state;
-    KrsRendering          *rendering;
-    KrsPicture            *picture;
+    const KrsRenderOptions options = {
+        .width = 8, .height = 8, .integrator = integrator, .methods.executor = KRS_EXECUTOR_LANES};
+    KrsScene     *scene;
+    KrsState     *state;
+    KrsRendering *rendering;
+    KrsPicture   *picture;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
     assert_int_equal(krs_render(rendering, state, &options, &picture), KRS_BAD_ARGUMENT);
-    assert_non_null(strstr(krs_renderer_message(renderer), "lanes"));
+    assert_non_null(strstr(krs_renderer_message(renderer), words));
     krs_rendering_free(rendering);
     krs_state_free(state);
     krs_scene_free(scene);
+}
+
+static void what_lanes_do_not_know_is_refused(void **context)
+{
+    (void)context;
+    refused("show sphere(1);", KRS_INTEGRATOR_PATH, "`preview`");
+    refused("show sphere(1); camera { eye: [0, 0, 4], aperture: 0.1 }", KRS_INTEGRATOR_PREVIEW,
+            "lens");
+    refused("show algebraic(x^4 + y^4 + z^4 == 1);", KRS_INTEGRATOR_PREVIEW, "method");
+    refused("def pebble(cell) = sphere(0.15 + 0.2 * random(cell)); show pebble.repeat([1, 0, 1]);",
+            KRS_INTEGRATOR_PREVIEW, "single precision");
+}
+
+/* Rays do not depend on which others there are. */
+static void crops_are_parts_of_the_whole(void **context)
+{
+    enum { X = 37, Y = 21, CROPPED_WIDTH = 75, CROPPED_HEIGHT = 50 };
+    (void)context;
+    KrsRenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .methods.executor = KRS_EXECUTOR_LANES};
+    KrsPicture *whole = picture_of(scenes[0], &options);
+    options.crop      = (KrsWindow){X, Y, CROPPED_WIDTH, CROPPED_HEIGHT};
+    KrsPicture *crop  = picture_of(scenes[0], &options);
+    for (int row = 0; row < CROPPED_HEIGHT; row++)
+        assert_memory_equal(&crop->depth[row * CROPPED_WIDTH], &whole->depth[(Y + row) * WIDTH + X],
+                            CROPPED_WIDTH * sizeof *crop->depth);
+    krs_picture_free(whole);
+    krs_picture_free(crop);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures_are_the_same),
                                        cmocka_unit_test(a_moved_scene_is_seen),
-                                       cmocka_unit_test(what_lanes_do_not_know_is_refused)};
+                                       cmocka_unit_test(what_lanes_do_not_know_is_refused),
+                                       cmocka_unit_test(crops_are_parts_of_the_whole)};
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);
 }

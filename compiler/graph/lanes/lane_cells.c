@@ -34,6 +34,20 @@ struct CellWork {
     uint32_t *body_rows, *body_scalars; /* of a body whose steps are added */
 };
 
+/* ---- operations ---- */
+
+static bool is_lesser(uint16_t op) { return op == OP_min || op == LANE_LESSER; }
+static bool is_greater(uint16_t op) { return op == OP_max || op == LANE_GREATER; }
+
+/* What ops.def says of an operation. */
+static const NumberRow *row_of_op(uint16_t op)
+{
+    return &number_rows[is_lesser(op)    ? OP_min
+                        : is_greater(op) ? OP_max
+                        : op < OP_COUNT  ? op
+                                         : OP_CONSTANT];
+}
+
 /* ---- instance groups ---- */
 
 /* The function of a call that takes the least distance of its instances, one after the other; NULL: it is none. */
@@ -93,22 +107,29 @@ static double steepest_of_call(const LaneTape *tape, const CellCall *call, const
     return function->slope * (itself ? 1 : sqrt(square));
 }
 
-/* That of what lane tapes know nothing of, since it is made of calls. */
-static double steepest_of_step(const CellStep *step, const CellStep *steps, uint32_t inputs)
+/* That of what lane tapes know nothing of, since it is made of calls: by derivatives that hold everywhere. */
+static double steepest_of_step(const LaneTape *tape, const CellStep *step, const CellStep *steps,
+                               uint32_t inputs)
 {
-    const double a = steepest_of(steps, inputs, step->from[0]),
-                 b = steepest_of(steps, inputs, step->from[1]);
-    switch (step->op) {
-    case OP_min:
-    case OP_max:
-    case LANE_LESSER:
-    case LANE_GREATER: return a > 0 && b > 0 ? fmax(a, b) : 0;
-    case OP_add:
-    case OP_sub: return a > 0 && b > 0 ? a + b : 0;
-    case OP_neg:
-    case OP_abs: return a;
-    default: return 0;
+    const NumberRow *row = row_of_op(step->op);
+    Range            o[MAX_OPERANDS], by[MAX_OPERANDS];
+    double           sum = 0, most = 0;
+    if (!row->map || row->norm == NORM_NONE || row->norm == NORM_MIX)
+        return 0;
+    for (uint32_t k = 0; k < MAX_OPERANDS; k++)
+        o[k] = k < step->operand_count && step->from[k] < inputs
+                   ? range_of(tape->scalars[step->from[k]])
+                   : ANYTHING;
+    row->first(o, ANYTHING, by);
+    for (uint32_t k = 0; k < step->operand_count; k++) {
+        const double steep = steepest_of(steps, inputs, step->from[k]);
+        if (steep == 0)
+            return 0;
+        sum += range_largest(by[k]) * steep;
+        most = fmax(most, steep);
     }
+    most = row->norm == NORM_CONVEX ? most : sum;
+    return isfinite(most) ? most : 0;
 }
 
 CellTape cell_tape_new(const LaneTape *tape, Arena *arena)
@@ -140,7 +161,7 @@ CellTape cell_tape_new(const LaneTape *tape, Arena *arena)
             steps[i].steepest = (float)(steps[i].op == LANE_CALL
                                             ? steepest_of_call(tape, &calls[steps[i].from[0]],
                                                                steps, inputs)
-                                            : steepest_of_step(&steps[i], steps, inputs));
+                                            : steepest_of_step(tape, &steps[i], steps, inputs));
     return (CellTape){.whole      = tape,
                       .steps      = steps,
                       .calls      = calls,
@@ -443,9 +464,13 @@ static void need_of_call(Pruning *p, const CellStep *step, uint32_t row)
             need(p, call->from[k][c], HUGE_VALF, -HUGE_VALF);
 }
 
-/* Of sums with a constant, and products by one above 0. */
+/* Of opposites, sums with a constant, and products by one above 0. */
 static bool need_of_linear(Pruning *p, const CellStep *step, float cap, float floor)
 {
+    if (step->op == OP_neg) {
+        need(p, step->from[0], -floor, -cap);
+        return true;
+    }
     const uint32_t a = step->from[0], b = step->from[1];
     const bool     constant_a = is_constant(p->ball.tape, a);
     const float    by         = value_of(&p->ball, constant_a ? a : b);
@@ -468,17 +493,18 @@ static void need_of_step(Pruning *p, const CellStep *step, uint32_t row)
     CellWork   *work = p->work;
     const float cap = work->caps[row], floor = work->floors[row];
     work->same[row] = row;
-    switch (step->op) {
-    case OP_min:
-    case LANE_LESSER: need_of_least(p, step, row, 1); return;
-    case OP_max:
-    case LANE_GREATER: need_of_least(p, step, row, -1); return;
-    case OP_neg: need(p, step->from[0], -floor, -cap); return;
-    case LANE_PART: need(p, row - 1, HUGE_VALF, -HUGE_VALF); return;
-    case LANE_CALL: need_of_call(p, step, row); return;
-    case LANE_NUMBER: return;
-    default: break;
+    if (is_lesser(step->op) || is_greater(step->op)) {
+        need_of_least(p, step, row, is_lesser(step->op) ? 1 : -1);
+        return;
     }
+    if (step->op == LANE_CALL) {
+        need_of_call(p, step, row);
+        return;
+    }
+    if (step->op == LANE_PART)
+        need(p, row - 1, HUGE_VALF, -HUGE_VALF);
+    if (step->op == LANE_PART || step->op == LANE_NUMBER)
+        return;
     work->same[row] = only_operand(p, step, row);
     if (work->same[row] != row)
         need(p, work->same[row], cap, floor);
@@ -494,21 +520,20 @@ static uint32_t moved(const Pruning *p, uint32_t row)
     return step_of(p->ball.tape, row) ? p->work->now[row] : row;
 }
 
-static bool is_zero(const Pruning *p, uint32_t row)
-{
-    return is_constant(p->ball.tape, row) && value_of(&p->ball, row) == 0;
-}
-
-/* The row that stands for a step whose operands have moved: sums with 0 and products by 0; `row`: none. */
+/* The row that stands for a step whose operands have moved, by those that are constants; `row`: none. */
 static uint32_t simpler(const Pruning *p, const CellStep *step, uint32_t row)
 {
-    const uint32_t a = step->from[0], b = step->from[1];
-    switch (step->op) {
-    case OP_add: return is_zero(p, b) ? a : is_zero(p, a) ? b : row;
-    case OP_sub: return is_zero(p, b) ? a : row;
-    case OP_mul: return is_zero(p, a) ? a : is_zero(p, b) ? b : row;
-    default: return row;
+    Range o[MAX_OPERANDS] = {ANYTHING, ANYTHING, ANYTHING, ANYTHING};
+    if (!is_arithmetic(step->op))
+        return row;
+    for (uint32_t k = 0; k < step->operand_count; k++) {
+        const bool constant = is_constant(p->ball.tape, step->from[k]);
+        o[k] = constant ? range_of((double)value_of(&p->ball, step->from[k])) : ANYTHING;
+        if (step->op == OP_mul && constant && range_is_zero(o[k]))
+            return step->from[k];
     }
+    const unsigned chosen = row_of_op(step->op)->chooses(o);
+    return chosen == CHOOSES_A ? step->from[0] : chosen == CHOOSES_B ? step->from[1] : row;
 }
 
 static CellStep moved_step(Pruning *p, const CellStep *from, CellCall *calls, uint32_t *call_count)
@@ -582,8 +607,7 @@ static uint32_t add_instance(Pruning *p, CellTape *to, const CellCall *call, uin
             step.from[k] = from->operands[k] & LANE_SCALAR
                                ? p->work->body_scalars[from->operands[k] & ~LANE_SCALAR]
                                : rows[from->operands[k]];
-        const bool least = (step.op == OP_min || step.op == LANE_LESSER) &&
-                           (step.from[0] == before || step.from[1] == before);
+        const bool least = is_lesser(step.op) && (step.from[0] == before || step.from[1] == before);
         const uint32_t other = step.from[0] == before ? step.from[1] : step.from[0];
         step.steepest        = least ? steepest : 0;
         if (least && other >= first &&
