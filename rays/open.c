@@ -25,14 +25,6 @@ static const RaySet *set_of_lanes(void)
     return &ray_set_plain;
 }
 
-static float largest_coordinate(const KrsProgram *program)
-{
-    double most = 1;
-    for (int k = 0; k < 3; k++)
-        most = fmax(most, fmax(fabs(program->rest_low[k]), fabs(program->rest_high[k])));
-    return (float)fmin(most, 1e30);
-}
-
 static void fill(RayField *field)
 {
     state_refresh_points(field->state);
@@ -42,7 +34,7 @@ static void fill(RayField *field)
         ray_field_make_distance(field, true, &field->plane_distance, 0);
     }
     const KrsProgram *program = &field->state->scene->program;
-    field->margin             = 2e-6f * largest_coordinate(program);
+    field->margin             = ray_margin(program);
     for (int k = 0; k < 3; k++) {
         const double low   = field->planes ? program->rest_low[k] : program->low[k],
                      high  = field->planes ? program->rest_high[k] : program->high[k];

@@ -39,12 +39,20 @@ const char *ray_field_refuses(const KrsScene *scene)
 
 /* ---- tapes ---- */
 
-static NodeValue *copy_values(RayField *field)
+NodeValue *ray_copy_values(const KrsState *state, Arena *arena)
 {
-    const size_t count  = field->state->scene->graph->count;
-    NodeValue   *values = arena_new_array(&field->arena, NodeValue, count + 1);
-    memcpy(values, field->state->values, count * sizeof *values);
+    const size_t count  = state->scene->graph->count;
+    NodeValue   *values = arena_new_array(arena, NodeValue, count + 1);
+    memcpy(values, state->values, count * sizeof *values);
     return values;
+}
+
+float ray_margin(const KrsProgram *program)
+{
+    double most = 1;
+    for (int k = 0; k < 3; k++)
+        most = fmax(most, fmax(fabs(program->rest_low[k]), fabs(program->rest_high[k])));
+    return 2e-6f * (float)fmin(most, 1e30);
 }
 
 /* Completes a tape whose lanes are made; `values` are those of the frame. */
@@ -56,7 +64,9 @@ static void finish_tape(RayField *field, RayTape *tape, const NodeValue *values,
     tape->cells = cell_tape_new(lanes, &field->arena);
     for (size_t i = 0; i < parallel_parts(); i++)
         tape->works[i] = cell_work_new(
-            &tape->cells, depth, lanes->reads_tables ? copy_values(field) : NULL, &field->arena);
+            &tape->cells, depth,
+            lanes->reads_tables ? ray_copy_values(field->state, &field->arena) : NULL,
+            &field->arena);
 }
 
 /* The least distance of the components that are planes, or of all others, cut by zones. */
@@ -86,7 +96,7 @@ void ray_field_make_plane_t(RayField *field, RayTape *tape)
     const KrsScene *scene  = field->state->scene;
     const Node      root   = plane_roots(&scene->roots)->step;
     Tape           *of     = arena_new(&field->arena, Tape);
-    NodeValue      *values = copy_values(field);
+    NodeValue      *values = ray_copy_values(field->state, &field->arena);
     *of                    = tape_new(scene->graph, &root, 1, &field->arena);
     tape_run_frame(of, field->state->parameters, values);
     tape->lanes = lane_tape_new(of, &root, 1, false, 0, &field->arena);

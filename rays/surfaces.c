@@ -64,22 +64,6 @@ static void list_roots(const Node *of, bool layers, Node **next)
             *(*next)++ = of[r];
 }
 
-static float largest_coordinate(const KrsProgram *program)
-{
-    double most = 1;
-    for (int k = 0; k < 3; k++)
-        most = fmax(most, fmax(fabs(program->rest_low[k]), fabs(program->rest_high[k])));
-    return (float)fmin(most, 1e30);
-}
-
-static NodeValue *copy_values(SurfaceField *field)
-{
-    const size_t count  = field->state->scene->graph->count;
-    NodeValue   *values = arena_new_array(&field->arena, NodeValue, count + 1);
-    memcpy(values, field->state->values, count * sizeof *values);
-    return values;
-}
-
 static void make_tape(SurfaceField *field, bool layers)
 {
     const KrsScene *scene = field->state->scene;
@@ -107,14 +91,15 @@ static void fill(SurfaceField *field, bool layers)
     state_refresh_points(field->state);
     make_tape(field, layers);
     for (size_t i = 0; i < parallel_parts(); i++) {
-        field->works[i] = cell_work_new(&field->cells, LEVELS,
-                                        field->lanes.reads_tables ? copy_values(field) : NULL,
-                                        &field->arena);
+        field->works[i] = cell_work_new(
+            &field->cells, LEVELS,
+            field->lanes.reads_tables ? ray_copy_values(field->state, &field->arena) : NULL,
+            &field->arena);
         for (int level = 0; level <= LEVELS; level++)
             field->rows_of_part[i][level] = arena_new_array(&field->arena, uint32_t,
                                                             field->lanes.output_count + 1);
     }
-    field->margin = 2e-6f * largest_coordinate(&field->state->scene->program);
+    field->margin = ray_margin(&field->state->scene->program);
 }
 
 SurfaceField *surface_field_new(KrsState *state, bool layers)

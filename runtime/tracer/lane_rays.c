@@ -154,8 +154,7 @@ static void begin_block(const Slice *slice, Corner corner, RayBlock *block)
     }
 }
 
-/* As in hit_lists.glsl. */
-static uint32_t slot_of(const WorkBlock *work, const uint32_t pixel[2])
+uint32_t lane_rays_slot(const WorkBlock *work, const uint32_t pixel[2])
 {
     const uint32_t across = (work->extent[0] + TILE - 1) / TILE;
     return TILE * TILE * (pixel[1] / TILE * across + pixel[0] / TILE) + pixel[1] % TILE * TILE +
@@ -176,7 +175,7 @@ static void store_block(Slice *slice, size_t part, Corner corner, const RayBlock
         end[1] = (block->state[i] == RAY_HITS ? STATE_HIT : STATE_MISS) |
                  (block->side[i] < 0 ? 4u : 0u) | (block->unresolved[i] ? 8u : 0u) |
                  block->steps[i] << 8;
-        float *facing = hits[(size_t)HIT_ROWS * slot_of(slice->work, pixel) + FACING];
+        float *facing = hits[(size_t)HIT_ROWS * lane_rays_slot(slice->work, pixel) + FACING];
         for (int k = 0; k < 3; k++)
             facing[k] = block->normal[k][i];
         facing[3] = block->evenness[i];

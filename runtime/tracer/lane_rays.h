@@ -20,4 +20,7 @@ bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work);
 bool lane_rays_march_secondary(Job *job, RayField *field, KrsPhase phase, uint32_t count,
                                const WorkBlock *work);
 
+/* The slot of a pixel, which is counted in the band: as in hit_lists.glsl. */
+uint32_t lane_rays_slot(const WorkBlock *work, const uint32_t pixel[2]);
+
 #endif

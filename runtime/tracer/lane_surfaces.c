@@ -12,6 +12,7 @@
 
 #include "compiler/base/parallel.h"
 #include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/lane_rays.h"
 #include "runtime/tracer/rendering.h"
 
 enum { SIDE = 128, OCCLUDERS_AT_ONCE = 4096 };
@@ -83,14 +84,6 @@ static bool deal(Job *job, Slice *slice, KrsPhase phase, uint32_t all,
 
 /* ---- hits ---- */
 
-/* As in hit_lists.glsl. */
-static uint32_t slot_of(const WorkBlock *work, const uint32_t pixel[2])
-{
-    const uint32_t across = (work->extent[0] + TILE - 1) / TILE;
-    return TILE * TILE * (pixel[1] / TILE * across + pixel[0] / TILE) + pixel[1] % TILE * TILE +
-           pixel[0] % TILE;
-}
-
 static void pixel_of(const WorkBlock *work, uint32_t slot, uint32_t pixel[2])
 {
     const uint32_t across = (work->extent[0] + TILE - 1) / TILE, tile = slot / (TILE * TILE);
@@ -144,7 +137,7 @@ static const float *facing_of(const Slice *slice, uint32_t slot)
 static size_t add_hit(const Slice *slice, const uint32_t pixel[2], SurfacePoint *to)
 {
     const Band     *band = &slice->job->rendering->band;
-    const uint32_t *end = end_of(slice, pixel), slot = slot_of(slice->work, pixel);
+    const uint32_t *end = end_of(slice, pixel), slot = lane_rays_slot(slice->work, pixel);
     const float    *facing = facing_of(slice, slot), side = end[1] & 4 ? -1.0f : 1.0f;
     float           t;
     if (!is_hit(end))
