@@ -180,15 +180,15 @@ static bool for_groups(Mesher *m, WorkOnGroup *work, double goal)
    error of it. */
 static const double MIN_OFF_SURFACE = 1;
 /* Parts of the error: a mesh whose middles are farther off goes through a tetrahedron or a face more often than their corners
-   tell. */
-static const double OFF_SURFACE = 0.15;
+   tell.  Where pieces prove it to be near it does so less often: at an edge it may be off by more. */
+static const double OFF_SURFACE = 0.15, OFF_PIECES = 0.3;
 
 /* Tells whether its mesh passes near the surface, or it is too small to be bisected for that. */
 static bool is_near_surface(const Mesher *m, const Tet *tet)
 {
+    double off = tet->state == TET_FITS && tet->steep > 0 ? OFF_PIECES : OFF_SURFACE;
     return tet->triangle_count == 0 ||
-           patch_off(&m->contour, &m->contour.patches.items[tet->patch]) <=
-               OFF_SURFACE * m->error ||
+           patch_off(&m->contour, &m->contour.patches.items[tet->patch]) <= off * m->error ||
            tets_longest_edge(&m->tets, tet) <= MIN_OFF_SURFACE * m->error;
 }
 

@@ -243,7 +243,7 @@ static bool is_flat(Verifier *verifier, const Cell *cell, CellView *view)
 static bool is_on_one_side(Verifier *verifier, const Cell *cell, const CellView *view)
 {
     enum { MAX_IN_VAIN = 32 };
-    static const double SMALL = 0.5; /* errors */
+    static const double SMALL = 0.35; /* errors */
     if (view->radius >= SMALL * verifier->error || verifier->asked_in_vain == MAX_IN_VAIN)
         return false;
     Box  box  = corners_box((const double(*)[3])cell->corners, 4, 0);
