@@ -305,33 +305,46 @@ static size_t tidy(Place *place, uint32_t *moved, size_t most)
 
 enum { MAX_OF_CRUMB = 64 };
 
-/* All that is inside and hangs together with a point.  Returns how many; 0: too many, or some are far or deep. */
+/* Adds the points of a tetrahedron that are inside.  Returns false if one is no part of a crumb, or there is no room. */
+static bool add_neighbors(const Tets *tets, uint32_t tet, const bool *large,
+                          uint32_t crumb[MAX_OF_CRUMB], size_t *count)
+{
+    for (int k = 0; k < 4; k++) {
+        const uint32_t other = tets->list.items[tet].points[k];
+        size_t         known = 0;
+        if (!point_is_inside(tets, other))
+            continue;
+        while (known < *count && crumb[known] != other)
+            known++;
+        if (known < *count)
+            continue;
+        if (*count == MAX_OF_CRUMB || large[other])
+            return false;
+        crumb[(*count)++] = other;
+    }
+    return true;
+}
+
+/* Finds all points that are inside and hang together with one.  Returns how many; 0: they are no crumb, since there are too many,
+   or some are far or deep.  `large` are points of what is no crumb: those that were found are noted. */
 static size_t find_crumb(const Tets *tets, uint32_t point, const double center[3], double radius,
-                         double deep, uint32_t crumb[MAX_OF_CRUMB])
+                         double deep, bool *large, uint32_t crumb[MAX_OF_CRUMB])
 {
     size_t count = 1;
+    bool   small = true;
     crumb[0]     = point;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count && small; i++) {
         double at[3];
         tets_position(tets, crumb[i], at);
-        if (!(fabs(tets->points.items[crumb[i]].distance) <= deep) ||
-            distance3(at, center) > radius)
-            return 0;
-        for (uint32_t link = tets->points.items[crumb[i]].first; link;
+        small = fabs(tets->points.items[crumb[i]].distance) <= deep &&
+                distance3(at, center) <= radius;
+        for (uint32_t link = tets->points.items[crumb[i]].first; link && small;
              link          = tets->links.items[link - 1].next)
-            for (int k = 0; k < 4; k++) {
-                         uint32_t other = tets->list.items[tets->links.items[link - 1].tet].points[k];
-                         size_t   known = 0;
-                         while (known < count && crumb[known] != other)
-                    known++;
-                if (!point_is_inside(tets, other) || known < count)
-                    continue;
-                if (count == MAX_OF_CRUMB)
-                    return 0;
-                crumb[count++] = other;
-            }
+            small = add_neighbors(tets, tets->links.items[link - 1].tet, large, crumb, &count);
     }
-    return count;
+    for (size_t i = 0; i < count && !small; i++)
+        large[crumb[i]] = true;
+    return small ? count : 0;
 }
 
 static void move(Tets *tets, const uint32_t *points, size_t count)
@@ -342,19 +355,23 @@ static void move(Tets *tets, const uint32_t *points, size_t count)
     }
 }
 
-static bool drop_crumbs(Tets *tets, const double center[3], double radius, double deep)
+static bool drop_crumbs(Contour *contour, const double center[3], double radius, double deep)
 {
-    bool any = false;
+    Tets     *tets  = contour->tets;
+    ArenaMark mark  = arena_mark(contour->arena);
+    bool     *large = arena_new_array(contour->arena, bool, tets->points.count);
+    bool      any   = false;
     for (uint32_t i = 0; i < tets->points.count; i++) {
         uint32_t crumb[MAX_OF_CRUMB];
         double   at[3];
         tets_position(tets, i, at);
-        if (!point_is_inside(tets, i) || distance3(at, center) > radius)
+        if (!point_is_inside(tets, i) || large[i] || distance3(at, center) > radius)
             continue;
-        size_t count = find_crumb(tets, i, center, radius, deep, crumb);
+        size_t count = find_crumb(tets, i, center, radius, deep, large, crumb);
         move(tets, crumb, count);
         any = any || count > 0;
     }
+    arena_rewind(contour->arena, mark);
     return any;
 }
 
@@ -376,5 +393,5 @@ bool sides_tidy(Contour *contour, const double center[3], double radius, double 
     }
     arena_rewind(contour->arena, mark);
     move(tets, moved, count);
-    return drop_crumbs(tets, center, radius, deep) || count > 0;
+    return drop_crumbs(contour, center, radius, deep) || count > 0;
 }
