@@ -73,6 +73,12 @@ RayField *ray_field_new(KrsState *state, bool planes)
     return field;
 }
 
+void ray_field_begin(RayField *field)
+{
+    for (size_t i = 0; i < parallel_parts(); i++)
+        space_clear_full(&field->spaces[i]);
+}
+
 void ray_field_free(RayField *field)
 {
     if (!field)

@@ -73,6 +73,8 @@ typedef struct RayField RayField;
    once. */
 RayField *ray_field_new(KrsState *state, bool planes);
 void      ray_field_free(RayField *field);
+/* Begins another picture of the same values: forgets parts of space where there is no room for others. */
+void ray_field_begin(RayField *field);
 /* Why rays of a scene cannot be marched, in words of its author; NULL: they can. */
 const char *ray_field_refuses(const KrsScene *scene);
 

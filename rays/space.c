@@ -12,6 +12,15 @@ enum { SHORT_TAPE = 40 };
 /* The room for all tapes of a space: as many steps as so many times the whole has, within limits. */
 enum { TIMES_WHOLE = 1000, LEAST_STEPS = 1 << 18, MOST_STEPS = 1 << 22, CALLS_OF_CUBES = 1 << 14 };
 
+/* Leaves the cubes that are there from the beginning. */
+static void clear(Space *space, const CellTape *tape)
+{
+    const bool divides = space->side > 0;
+    space->step_count = space->call_count = 0;
+    for (space->count = 0; space->count < (divides ? 2u : 1u); space->count++)
+        space->cubes[space->count] = (SpaceCube){.tape = *tape, .leaf = !divides, .rays = -1};
+}
+
 void space_new(Space *space, const CellTape *tape, CellWork *work, const float low[3],
                const float high[3], float margin, Arena *arena)
 {
@@ -32,8 +41,15 @@ void space_new(Space *space, const CellTape *tape, CellWork *work, const float l
     space->calls       = arena_new_array(arena, CellCall, space->most_calls + 1);
     for (int k = 0; k < 3; k++)
         space->low[k] = low[k];
-    for (; space->count < (divides ? 2u : 1u); space->count++)
-        space->cubes[space->count] = (SpaceCube){.tape = *tape, .leaf = !divides, .rays = -1};
+    clear(space, tape);
+}
+
+void space_clear_full(Space *space)
+{
+    const CellTape whole = space->cubes[0].tape;
+    if (space->full)
+        clear(space, &whole);
+    space->full = false;
 }
 
 /* Keeps a tape that was made for a cube; false: there is no room. */
@@ -94,7 +110,7 @@ uint32_t space_find(Space *space, const float point[3])
     for (int depth = 0; depth < DEEPEST && !space->cubes[number].leaf; depth++, half *= 0.5f) {
         uint32_t child = 0;
         if (!space->cubes[number].first_child && !divide(space, number, corner, half)) {
-            space->cubes[number].leaf = true;
+            space->cubes[number].leaf = space->full = true;
             break;
         }
         for (int k = 0; k < 3; k++)

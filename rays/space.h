@@ -25,11 +25,14 @@ typedef struct Space {
     CellStep  *steps; /* of all tapes, */
     CellCall  *calls; /* and their calls */
     size_t     step_count, most_steps, call_count, most_calls;
+    bool       full; /* a cube was not divided, since there was no room */
 } Space;
 
 /* Around what lies in the box. */
 void space_new(Space *space, const CellTape *tape, CellWork *work, const float low[3],
                const float high[3], float margin, Arena *arena);
+/* Makes room where there was none for a cube: those before are made again where rays go. */
+void space_clear_full(Space *space);
 /* The cube whose tape is right at a point. */
 uint32_t space_find(Space *space, const float point[3]);
 

@@ -104,6 +104,8 @@ size_t krs_joined_rank(const KrsScene *scene, size_t component);
 bool krs_structure_is_affordable(const KrsScene *scene);
 /* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
+/* A number of the values of a state: another state, or other values, have another one. */
+uint64_t krs_state_stamp(KrsState *state);
 /* Camera `camera`, lights, sky and image at the state's parameters and time. */
 KrsStatus krs_state_view(KrsState *state, size_t camera, KrsView *view);
 /* Balls around what emits light in the state, within a box.  Returns how many; small ones and few

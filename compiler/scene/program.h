@@ -211,8 +211,9 @@ struct KrsState {
     uint64_t            ran; /* operations that marching rays has taken; one for many points at once
                                    counts as one */
     bool                fresh; /* the state values in `values` belong to the parameters */
-    double              zones[KRS_MAX_ZONES][4];
-    size_t              zone_count; /* zones of the caller */
+    uint64_t stamp; /* of those values, once they are fresh: no other values have had it */
+    double   zones[KRS_MAX_ZONES][4];
+    size_t   zone_count; /* zones of the caller */
 };
 
 /* Rays remain unresolved after so many steps each, or when the state has run so many operations. */

@@ -127,12 +127,20 @@ KrsStatus state_copy_of(const KrsState *state, KrsState **copy)
 
 void state_refresh(KrsState *state)
 {
+    static _Atomic uint64_t stamps;
     if (state->fresh)
         return;
+    state->stamp = ++stamps;
     tape_run_frame(&state->scene->frame, state->parameters, state->values);
     state->fresh = true;
     state_tables_change(state);
     state_lanes_refresh(state);
+}
+
+uint64_t krs_state_stamp(KrsState *state)
+{
+    state_refresh(state);
+    return state->stamp;
 }
 
 void state_refresh_points(KrsState *state)

@@ -340,7 +340,7 @@ static const Shader *find_shade(Preview *p)
     Job *job = p->job;
     if (!lane_surfaces_suit(job))
         return rendering_shade(job->rendering);
-    p->plan->surfaces     = lane_surfaces_new(job);
+    p->plan->surfaces     = lane_surfaces_field(job);
     p->plan->surface_rows = lane_surfaces_rows(job->rendering);
     return p->plan->surfaces ? rendering_shade_found(job->rendering) : NULL;
 }

@@ -43,6 +43,14 @@ typedef enum TexelKind {
     TEXEL_KINDS
 } TexelKind;
 
+/* What lanes of the host ask (lane_fields.h); zero: nothing is kept. */
+typedef struct LaneFields {
+    uint64_t             stamp;  /* of the values that they are of (krs_state_stamp) */
+    bool                 planes; /* which rays meet at once, are left out of the distance */
+    struct RayField     *rays;
+    struct SurfaceField *surfaces;
+} LaneFields;
+
 /* Shaders that are made while the host does other work (prewarm_thread.c). */
 typedef struct PrewarmThread PrewarmThread;
 
@@ -143,6 +151,7 @@ struct KrsRendering {
     ResidentBand resident;                    /* what the buffers of `band` hold */
     Buffer       points, answers;             /* for point_query.comp */
     Buffer       query_rays, ray_hits, taken; /* for query.comp */
+    LaneFields   lane_fields;
     /* The items of a slice, as learned, for each phase; [1]: for shaders with the scene. */
     double items_at_once[KRS_PHASE_COUNT][2];
 };

@@ -12,6 +12,7 @@
 
 #include "compiler/base/parallel.h"
 #include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/lane_fields.h"
 #include "runtime/tracer/lane_rays.h"
 #include "runtime/tracer/rendering.h"
 
@@ -35,13 +36,9 @@ uint32_t lane_surfaces_rows(const KrsRendering *rendering)
     return has_layers(rendering->program) ? SURFACE_ROWS : PLAIN_SURFACE_ROWS;
 }
 
-SurfaceField *lane_surfaces_new(Job *job)
+SurfaceField *lane_surfaces_field(Job *job)
 {
-    SurfaceField *field = surface_field_new(job->state, has_layers(job->rendering->program));
-    if (!field)
-        gpu_refuse(job->gpu, KRS_OUT_OF_MEMORY, "%s",
-                   "cannot make room for the surfaces of the picture");
-    return field;
+    return lane_fields_surfaces(job->rendering, job->state, has_layers(job->rendering->program));
 }
 
 /* ---- what is dealt ---- */

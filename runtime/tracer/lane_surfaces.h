@@ -12,8 +12,8 @@
 bool lane_surfaces_suit(const Job *job);
 /* How many rows a surface has. */
 uint32_t lane_surfaces_rows(const KrsRendering *rendering);
-/* Finds the surfaces of a frame; NULL with the failure noted. */
-SurfaceField *lane_surfaces_new(Job *job);
+/* The surfaces of a state, which belong to the rendering; NULL with the failure noted. */
+SurfaceField *lane_surfaces_field(Job *job);
 /* Stores the surface of each hit of the band. */
 bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *work);
 /* Stores the luminance of what rays over the hemisphere have met, as occluders.comp does.  The list of their slots begins

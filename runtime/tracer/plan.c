@@ -57,12 +57,7 @@ void plan_add_march_again(Plan *plan, float weight)
     plan_add(plan, (Pass){PASS_MARCH, march->phase, weight, .march = march});
 }
 
-void plan_free(Plan *plan)
-{
-    ray_field_free(plan->field);
-    surface_field_free(plan->surfaces);
-    gpu_release(plan->gpu, plan->passes);
-}
+void plan_free(Plan *plan) { gpu_release(plan->gpu, plan->passes); }
 
 /* ---- lists ---- */
 

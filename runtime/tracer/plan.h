@@ -59,8 +59,8 @@ typedef struct Plan {
     double        weight;                            /* of all passes together */
     March         marches[2 + KRS_MAX_MARCH_GROUPS]; /* of primary rays, and of those of paths */
     size_t        march_count;
-    RayField     *field;          /* of PASS_LANES; or NULL */
-    SurfaceField *surfaces;       /* of PASS_SURFACES; or NULL */
+    RayField     *field;    /* of PASS_LANES; or NULL.  It and surfaces belong to the rendering */
+    SurfaceField *surfaces; /* of PASS_SURFACES; or NULL */
     uint32_t      surface_rows;   /* of each hit, then */
     uint32_t      halo;           /* pixels on each side of a band that are traced as well */
     bool          has_paths;      /* each pixel follows a path */

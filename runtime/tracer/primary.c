@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "runtime/tracer/shaders.h"
+#include "runtime/tracer/lane_fields.h"
 #include "runtime/tracer/lane_rays.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
@@ -209,11 +210,8 @@ static bool add_lanes(Job *job, Plan *plan, float weight)
         gpu_refuse(job->gpu, KRS_BAD_ARGUMENT, "lanes cannot march these rays: %s", reason);
     if (reason)
         return false;
-    plan->field  = ray_field_new(job->state, lane_rays_know_planes(job));
+    plan->field  = lane_fields_rays(job->rendering, job->state, lane_rays_know_planes(job));
     plan->failed = plan->failed || !plan->field;
-    if (!plan->field)
-        gpu_refuse(job->gpu, KRS_OUT_OF_MEMORY, "%s",
-                   "cannot make room for the rays of the picture");
     plan_add(plan, (Pass){.kind = PASS_LANES, .phase = KRS_PHASE_PRIMARY, .weight = weight});
     return !plan->failed;
 }

@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "runtime/tracer/lane_fields.h"
 #include "runtime/tracer/prewarm_thread.h"
 #include "runtime/tracer/shaders.h"
 #include "runtime/tracer/layouts.h"
@@ -185,6 +186,7 @@ static void drop_scene(Gpu *gpu, KrsRendering *dropped)
     buffer_destroy(gpu, &dropped->table_rows);
     buffer_destroy(gpu, &dropped->table_cells);
     gpu_release(gpu, dropped->table_inputs);
+    lane_fields_free(&dropped->lane_fields);
 }
 
 /* Takes the rendering over to a scene.  What the scene before has stays, for the case that this fails. */
@@ -192,6 +194,7 @@ static bool change_scene(KrsRendering *rendering, const KrsScene *scene)
 {
     rendering->parameters = rendering->table_rows = rendering->table_cells = (Buffer){0};
     rendering->table_inputs                                                = NULL;
+    rendering->lane_fields                                                 = (LaneFields){0};
     rendering->zone_slots = rendering->max_zone_slots = 0;
     rendering->camera_relative                        = false;
     set_scene(rendering, scene);
@@ -270,6 +273,7 @@ void krs_rendering_free(KrsRendering *rendering)
     if (!gpu->stuck)
         vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
     gpu_release(gpu, rendering->table_inputs);
+    lane_fields_free(&rendering->lane_fields);
     gpu_release(gpu, rendering);
 }
 

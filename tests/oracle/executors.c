@@ -181,11 +181,85 @@ static void crops_are_parts_of_the_whole(void **context)
     krs_picture_free(crop);
 }
 
+/* One rendering after the other, with what is kept from picture to picture, or each from nothing. */
+typedef struct Kept {
+    KrsScene     *scene;
+    KrsState     *state;
+    KrsRendering *rendering;
+} Kept;
+
+static Kept open_scene(const char *text)
+{
+    Kept kept;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &kept.scene), KRS_OK);
+    assert_int_equal(krs_state_new(kept.scene, &kept.state), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, kept.scene, KRS_FOR_LANES, &kept.rendering),
+                     KRS_OK);
+    return kept;
+}
+
+static void close_scene(Kept *kept)
+{
+    krs_rendering_free(kept->rendering);
+    krs_state_free(kept->state);
+    krs_scene_free(kept->scene);
+}
+
+static KrsPicture *render(const Kept *kept, double x, double wide)
+{
+    const KrsRenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .methods.executor = KRS_EXECUTOR_LANES};
+    KrsCamera   camera;
+    KrsFilm    *film;
+    KrsPicture *picture;
+    assert_int_equal(krs_state_set(kept->state, "wide", &wide, 1), KRS_OK);
+    assert_int_equal(krs_state_camera(kept->state, 0, &camera), KRS_OK);
+    camera.eye[0] += x;
+    assert_int_equal(krs_film_new(kept->rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_add(film, kept->state, &camera, 1), KRS_OK);
+    assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
+    krs_film_free(film);
+    return picture;
+}
+
+static bool are_equal(const KrsPicture *a, const KrsPicture *b)
+{
+    return memcmp(a->depth, b->depth, PIXELS * sizeof *a->depth) == 0 &&
+           memcmp(a->color, b->color, 4 * PIXELS * sizeof *a->color) == 0;
+}
+
+/* The camera goes into a solid and out of it, so planes are met at once or not; a parameter changes, and goes back. */
+static void what_is_kept_changes_nothing(void **context)
+{
+    static const char text[] =
+        "param wide = 1 in [0.5, 2]; camera { eye: [2, 3, 5] } show box([wide, 1.4, 0.8]) - "
+        "sphere(0.7).move([0.4, 0.3, 0.4]); show plane([0, 1, 0], -0.8); show sphere(0.5).move([9, "
+        "3, 5]).paint([wide / 3, 0.3, 0.1]); light lamp { position: [3, 4, 2] }";
+    static const double asked[][2] = {{0, 1}, {0.5, 1}, {0.5, 1.7}, {7, 1.7}, {-3, 1.7}, {0, 1}};
+    Kept                kept       = open_scene(text);
+    KrsPicture         *last       = NULL;
+    (void)context;
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+        Kept        fresh   = open_scene(text);
+        KrsPicture *picture = render(&kept, asked[i][0], asked[i][1]);
+        KrsPicture *alone   = render(&fresh, asked[i][0], asked[i][1]);
+        assert_true(are_equal(picture, alone));
+        assert_true(!last || !are_equal(picture, last));
+        krs_picture_free(last);
+        krs_picture_free(alone);
+        last = picture;
+        close_scene(&fresh);
+    }
+    krs_picture_free(last);
+    close_scene(&kept);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures_are_the_same),
                                        cmocka_unit_test(a_moved_scene_is_seen),
                                        cmocka_unit_test(what_lanes_do_not_know_is_refused),
-                                       cmocka_unit_test(crops_are_parts_of_the_whole)};
+                                       cmocka_unit_test(crops_are_parts_of_the_whole),
+                                       cmocka_unit_test(what_is_kept_changes_nothing)};
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);
 }
