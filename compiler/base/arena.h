@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Where arenas get their blocks, shared by all arenas of one compilation. */
+/* The memory that arenas get their blocks from, shared by all arenas of one compilation. */
 typedef struct Memory {
     void *(*allocate)(void *user, size_t size); /* NULL means malloc */
     void (*release)(void *user, void *block);   /* NULL means free */

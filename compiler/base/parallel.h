@@ -19,7 +19,7 @@ void run_in_parallel(void (*work)(void *task, size_t part, size_t parts), void *
 /* Tells how many parts there are now. */
 size_t parallel_parts(void);
 
-/* Where a part of `count` items begins; part `parts` begins behind the last item. */
+/* Returns where a part of `count` items begins; part `parts` begins behind the last item. */
 static inline size_t part_begin(size_t count, size_t part, size_t parts)
 {
     return count / parts * part + count % parts * part / parts;

@@ -274,7 +274,7 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
     return above[b_length];
 }
 
-/* With the same letter, or with its first two swapped. */
+/* Tells whether two words begin with the same letter, or with the same two swapped. */
 static bool begin_alike(const char *word, const char *other)
 {
     return word[0] == other[0] || (word[0] == other[1] && word[1] == other[0]);

@@ -19,7 +19,7 @@ typedef struct Visible {
     size_t   used;    /* bytes that it stands for */
 } Visible;
 
-/* For the first of `length` bytes, of which there is one at least. */
+/* Finds how the first of `length` bytes is shown, of which there is one at least. */
 Visible visible_next(const char *bytes, size_t length);
 /* Writes a text so. */
 void visible_print(FILE *out, const char *text);

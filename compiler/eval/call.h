@@ -2,7 +2,7 @@
  * call.h: arguments of built-in functions and methods: which belongs to which parameter, what
  * it must be, and what is said when it is not.
  *
- * For the files of this folder, which get it by elaborate.h.
+ * It is for the files of this folder, which get it by elaborate.h.
  */
 #ifndef KRS_CALL_H
 #define KRS_CALL_H

@@ -218,20 +218,21 @@ typedef struct IterationLoop {
 Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show);
 /* Tells whether that may be tried: the shapes of this comprehension are joined. */
 bool iterations_possible(const Elaboration *e, const Syntax *comprehension);
-/* Behind the first element tries to make all of them; true: they are made. */
+/* Tries, behind the first element, to make all of them; true: they are made. */
 bool iterations_made(Elaboration *e, const Comprehension *c);
-/* While a loop is tried, that a condition must hold in each iteration; false: none is tried. */
+/* Requires that a condition holds in each iteration of a loop that is tried; false: none is
+   tried. */
 bool iterations_require(Elaboration *e, Node condition);
-/* An iteration of a loop that was made at once, by itself, for what needs its numbers: any other shape as it
-   is.  NULL: a limit was reached. */
+/* Returns an iteration of a loop that was made at once by itself, for what needs its numbers, and
+   any other shape as it is.  NULL: a limit was reached. */
 const Shape *iteration_alone(Elaboration *e, const Shape *shape);
 /* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->iterated, to be set
    again behind it. */
 struct Iterated *iterations_begin_definition(Elaboration *e, Definition *definition);
 
 /* ---- iteration_statements.c: a `for` that shows shapes, evaluated once ---- */
-/* Behind the first iteration that shows something tries to show what all iterations do, in their order; true: it is
-   shown.  `shown`: how many components were there before the loop. */
+/* Tries, behind the first iteration that shows something, to show what all iterations do, in their
+   order; true: it is shown.  `shown`: how many components were there before the loop. */
 typedef bool ShowShape(Elaboration *e, Value value, const Syntax *syntax);
 bool         statement_iterations_made(Elaboration *e, const Environment *env, const Syntax *loop,
                                        size_t shown, ShowShape *show);
@@ -404,7 +405,7 @@ Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const 
                    const Shape *no);
 
 /* hulls/beams.c */
-/* With KrsOptions.beams: what a component is the union of. */
+/* Finds what a component is the union of, with KrsOptions.beams. */
 void find_beams(Elaboration *e, Component *component);
 
 /* data/texture.c */

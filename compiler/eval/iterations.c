@@ -390,7 +390,7 @@ static bool find_iterations(Elaboration *e, Iterated *t, const Before *before)
     return good;
 }
 
-/* By what the evaluator makes one iteration by itself. */
+/* The source from which the evaluator makes one iteration by itself. */
 typedef struct IterationSource {
     IterationBody body;
     Environment   env; /* that of the body, kept */

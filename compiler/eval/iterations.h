@@ -47,8 +47,9 @@ struct Iterated {
     size_t  count;
 };
 
-/* For a body that is evaluated: a condition on all that follows, and a shape that the iteration gives.  False: it
-   has a value of another kind, never holds, or there are more shapes than in the first iteration. */
+/* Take from a body that is evaluated a condition on all that follows, and a shape that the
+   iteration gives.  False: it has a value of another kind, never holds, or there are more shapes
+   than in the first iteration. */
 bool iteration_condition(Elaboration *e, Iterated *iterated, Value condition);
 bool iteration_shape(Iterated *iterated, Value value);
 

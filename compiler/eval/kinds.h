@@ -1,7 +1,7 @@
 /*
  * kinds.h: what the parameters of a function take, and whom mistakes inside of it are told.
  *
- * For the files of this folder.
+ * It is for the files of this folder.
  */
 #ifndef KRS_KINDS_H
 #define KRS_KINDS_H

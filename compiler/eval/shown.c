@@ -66,7 +66,7 @@ static int compare_keys(const void *a, const void *b)
 
 /* ---- groups ---- */
 
-/* For each of what is shown: the first of its group, and the next. */
+/* The groups of what is shown: for each one the first of its group, and the next. */
 typedef struct Gathering {
     const Component *shown;
     size_t           count;

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where the statements of a `krs` block go; those at the top level have none (NULL). */
+/* The place where the statements of a `krs` block go; those at the top level have none (NULL). */
 typedef struct Sequence {
     struct {
         SequenceStage *items;

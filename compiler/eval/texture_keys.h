@@ -14,7 +14,7 @@ typedef struct TextureKey {
     uint32_t    wrap, space;
 } TextureKey;
 
-/* In the order of Graph.textures. */
+/* The keys of textures, in the order of Graph.textures. */
 typedef struct TextureKeys {
     TextureKey *items;
     size_t      count, capacity;

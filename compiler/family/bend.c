@@ -206,7 +206,7 @@ static void segment_region(Graph *g, const BendSegment *segment, Box box, Node *
     *high = row(g, graph_number(g, box.axis[0].high), y, top);
 }
 
-/* Where on y a point was: atan(u / w) / rate, and y / w for the rate 0. */
+/* Finds where on y a point was: atan(u / w) / rate, and y / w for the rate 0. */
 static Node unbent_height(Graph *g, Node rate, Node y, Node u, Node w)
 {
     Node tangent = over(g, u, w);

@@ -53,10 +53,10 @@ typedef struct InverseDeformation {
 /* The child where the deformation is undone, by a distance with the slope 1. */
 Lowered lower_undone(Lowering *l, const Shape *shape, LowerContext context,
                      const InverseDeformation *inverse);
-/* With g as the distance in C: the distance outside of C as well.  `is_inside`: a condition that tells C; NODE_NONE: the offset
-   is 0 there. */
+/* Finds the distance outside of C as well, from `result`, that in C.  `is_inside`: a condition that
+   tells C; NODE_NONE: the offset is 0 there. */
 Lowered with_region(Lowering *l, Lowered result, Node offset, Node is_inside);
-/* As much of a distance as a weight needs whose slope is `steep`: a fraction of the width of the solid
+/* Cuts a distance to what a weight of slope `steep` needs: a fraction of the width of the solid
    where that is less.  *cost is what the weight adds to the slope. */
 Node cut_distance(Graph *g, Node distance, double width, Node steep, Node *cost);
 /* Tells how far the solid reaches from the y axis. */

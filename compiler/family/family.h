@@ -87,7 +87,7 @@ const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32
                        Node level, Node reach, FalloffKind falloff, Span span);
 
 /* ---- iteration.c: shapes that a loop makes, which differ in numbers only ---- */
-/* In these iterations the leaf is the number; the boxes are theirs. */
+/* Makes the shapes of iterations in which the leaf is the number; the boxes are theirs. */
 void make_iterations(ShapeBuilder *builder, const Shape *shared,
                      const struct IterationSource *source, Node leaf, const double *numbers,
                      const Box *boxes, size_t count, const Shape **iterations);

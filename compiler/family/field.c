@@ -62,7 +62,7 @@ static const Shape *refuse_polynomial(ShapeBuilder *builder, SeriesFault fault, 
 
 /* ---- other expressions ---- */
 
-/* Where a point of all space is looked at: the nearest in C. */
+/* Returns where a point of all space is looked at: the nearest in C. */
 static Node nearest_in(Graph *g, Node point, Box box)
 {
     double low[3], high[3];

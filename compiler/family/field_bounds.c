@@ -226,7 +226,7 @@ typedef struct TrialRay {
     double from[3], direction[3];
 } TrialRay;
 
-/* From point to point of Roberts' sequence in six dimensions. */
+/* Makes a ray from point to point of Roberts' sequence in six dimensions. */
 static TrialRay trial_ray(Box box, uint32_t i)
 {
     static const double root = 1.1347241384015194;

@@ -6,7 +6,8 @@
 
 #include "compiler/shape/builder.h"
 
-/* For points in the box, as to what is in it; both with the sign of the expression. */
+/* Bounds on the distance of points in the box to what is in it, both with the sign of the
+   expression. */
 typedef struct FieldBounds {
     Node lipschitz; /* 1-Lipschitz */
     Node sharp;     /* a longer one that is not, or NODE_NONE */

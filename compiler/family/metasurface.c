@@ -167,7 +167,7 @@ typedef struct MetaTerms {
     Node     total;
 } MetaTerms;
 
-/* In pairs, so that the graph stays shallow. */
+/* Joins nodes in pairs, so that the graph stays shallow. */
 static Node reduce(Graph *g, Op op, const Node *nodes, uint32_t count)
 {
     if (count == 1)

@@ -111,7 +111,8 @@ static void paint_tangent(Lowering *l, const Material *material, Node point, Sur
         surface->tangent = tangent_of_uv(l->graph, surface->uv, l->scratch);
 }
 
-/* Where a material reads the first of its textures.  What paints a colour without one hides that below. */
+/* Finds where a material reads the first of its textures.  What paints a colour without one hides
+   that below. */
 static void paint_place(Lowering *l, const Material *material, Substitution with, Surface *surface)
 {
     Tape tape = material_tape(l->graph, material, l->scratch);

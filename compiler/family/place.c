@@ -40,7 +40,7 @@ static const Shape *make_inversion(ShapeBuilder *builder, const Shape *shape, co
     return inverted;
 }
 
-/* By a map without `first`. */
+/* Transforms a shape by a map without `first`. */
 static const Shape *transform_by(ShapeBuilder *builder, const Shape *shape, const Map *map,
                                  Span span)
 {

@@ -226,8 +226,8 @@ static Node cell_number(Graph *g, const Shape *shape, const Lattice *cells, Node
     return graph_op3(g, OP_clamp, number, start, end);
 }
 
-/* On one axis: where the point is in its own cell and in the neighbour's, and what these are
-   called. */
+/* The cells of one axis: where the point is in its own cell and in the neighbour's, and what these
+   are called. */
 typedef struct CellAxis {
     Node own, other, own_number, other_number;
     bool neighbour; /* counts */
@@ -391,7 +391,8 @@ static Lowered all_around(Lowering *l, const Shape *shape, LowerContext context,
     return join_two(l, blend_sharp, a, b);
 }
 
-/* Where a point is, seen from the sector next to its own on its side, turned towards +x. */
+/* Returns where a point is, seen from the sector next to its own on its side, rotated towards
+   +x. */
 static Node in_next_sector(Graph *g, const Shape *shape, Node local)
 {
     double sector = 2 * (M_PI / shape->cells[0]);

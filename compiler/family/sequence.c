@@ -1,9 +1,9 @@
 /*
  * sequence.c: kernel-reflection sequences.
  *
- * From the last statement to the first (math.md, sections 1 and 2.4): a mirror folds the point
- * and gives the instance its next bit, a map takes the point behind it, a kernel joins with the
- * level that it has: the mirrors before it.
+ * Statements are lowered from the last to the first (math.md, sections 1 and 2.4): a mirror folds
+ * the point and gives the instance its next bit, a map takes the point behind it, a kernel joins
+ * with the level that it has: the mirrors before it.
  */
 #include <math.h>
 
@@ -141,7 +141,7 @@ typedef struct SequenceState {
     Node                  unit;  /* `unit` of the lowering in front of it */
 } SequenceState;
 
-/* Before the first `count` stages, up to the next sphere among them. */
+/* Makes the state before the first `count` stages, up to the next sphere among them. */
 static SequenceState *sequence_state_new(Lowering *l, const Shape *krs, LowerContext context,
                                          uint32_t count)
 {

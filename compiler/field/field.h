@@ -23,7 +23,7 @@ typedef struct FieldRegion {
 
 enum { MAX_REGIONS = 8, MAX_FIELD_POINTS = LANES };
 
-/* For one thread. */
+/* A field for one thread. */
 typedef struct MeshField {
     KrsState        *state; /* its own */
     const MeshSolid *solid;
@@ -56,7 +56,7 @@ void field_leave(MeshField *field);
 /* The tape of the box that was entered last. */
 const LaneTape *field_tape(const MeshField *field);
 
-/* At up to MAX_FIELD_POINTS points. */
+/* Finds distances at up to MAX_FIELD_POINTS points. */
 void   field_distances(const MeshField *field, const double (*points)[3], size_t count,
                        double *distances);
 double field_distance(const MeshField *field, const double point[3]);
@@ -80,8 +80,9 @@ bool field_keep(MeshField *field, uint32_t *outputs, size_t count);
 
 enum { MAX_PIECES = 8, MAX_PIECE_STEPS = 32, PIECE_VALUES = 4 };
 
-/* In a box, a number of the same sign as the distance, and as often 0: made of pieces whose derivatives do not jump by
-   minima and maxima.  It is told in the order of a stack: a number of a piece, or one of these. */
+/* A number that has the sign of the distance in a box, and is as often 0: made of pieces whose
+   derivatives do not jump by minima and maxima.  It is told in the order of a stack: a number of a
+   piece, or one of these. */
 enum { PIECE_MIN = -1, PIECE_MAX = -2 };
 typedef struct FieldPieces {
     uint32_t origin; /* if it is one piece: of its step, as of LaneStep; else 0 */
@@ -95,7 +96,7 @@ typedef struct FieldPieces {
     LaneHessian hessians[MAX_PIECES];
 } FieldPieces;
 
-/* In the box that was entered last; false: it is not made like that. */
+/* Finds the pieces in the box that was entered last; false: it is not made like that. */
 bool field_pieces(MeshField *field, Box box, FieldPieces *pieces);
 /* -1 or 1 where pieces tell that all of a box of the region is inside or outside; 0: they do not. */
 int field_side(MeshField *field, Box box);

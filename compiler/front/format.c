@@ -25,7 +25,7 @@ typedef struct Column {
     bool     wide; /* some word is further to the right than one blank behind the word before it */
 } Column;
 
-/* Where a line of a statement begins. */
+/* The beginning of a line of a statement. */
 typedef struct Step {
     uint32_t from, to;
 } Step;
@@ -181,7 +181,7 @@ static const Piece *comment_above(const Layout *l, size_t index)
     return below ? &piece[-1] : NULL;
 }
 
-/* Where a line begins that goes on with a statement. */
+/* Returns where a line begins that goes on with a statement. */
 static uint32_t indent_inside(Layout *l, Statement *statement, uint32_t from)
 {
     Step *steps = statement->steps;

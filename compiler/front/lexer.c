@@ -24,7 +24,7 @@ typedef struct Lexer {
     Tokens      tokens;
     Text        doc;     /* the `///` lines since the last token */
     Text        scratch; /* the number or string being read */
-    /* By the first byte: find_beginnings. */
+    /* What find_beginnings knows of a token by its first byte. */
     bool    begins[256];    /* whether something can begin with it */
     bool    lookalike[256]; /* whether a lookalike can */
     uint8_t sign[256];      /* the first kind of token that is a sign and begins with it */

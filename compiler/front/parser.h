@@ -88,9 +88,9 @@ void leave(Parser *p);
 /* ---- recovery ---- */
 /* Tells whether a statement begins here that this block cannot have, because its brace is missing. */
 bool block_is_left(const Parser *p, size_t opener, BlockKind kind);
-/* After a mistake: goes behind a declaration with a block that stands where none may. */
+/* Goes, after a mistake, behind a declaration with a block that stands where none may. */
 void skip_declaration(Parser *p);
-/* After a failure: skips the rest of the statement, or property, that began at `start`. */
+/* Skip, after a failure, the rest of the statement, or property, that began at `start`. */
 void recover_statement(Parser *p, Level start);
 void recover_property(Parser *p, Level start);
 

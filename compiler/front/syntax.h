@@ -11,7 +11,7 @@
 #include "compiler/base/text.h"
 #include "compiler/front/token.h"
 
-/* Behind each kind: its name, its children, and the other members that are set. */
+/* Behind each kind are its name, its children, and the other members that are set. */
 typedef enum SyntaxKind {
     SYNTAX_ERROR, /* -      none; a mistake here has been reported */
     /* expressions */

@@ -66,8 +66,8 @@ static double below_threshold(double threshold, double height)
     return fmin(fmax(threshold - height, 0), 1);
 }
 
-/* From the threshold of the two nearest downwards, by Newton's method: the shares of all grow faster and faster with the
-   threshold, while there are two. */
+/* Finds the threshold from that of the two nearest downwards, by Newton's method: the shares of all
+   grow faster and faster with the threshold, while there are two. */
 static double cubic_threshold(const double *heights, uint32_t count, double threshold)
 {
     enum { ITERATIONS = 8 };

@@ -19,8 +19,8 @@ typedef struct BlendShares {
 typedef BlendShares FindShares(const double *distances, uint32_t count, double width);
 FindShares          shares_quadratic, shares_cubic;
 
-/* For an operation that is such a minimum of vectors: the same of two numbers, of one vector and of two, and
-   how its shares are found.  Other operations have zeros. */
+/* What belongs to an operation that is such a minimum of vectors: the same of two numbers, of one
+   vector and of two, and how its shares are found.  Other operations have zeros. */
 typedef struct SharingOp {
     Op          of_two, of_four, of_eight;
     FindShares *find;

@@ -22,7 +22,7 @@ typedef struct Inputs {
     double           footprint;
     bool             by_cells;
     uint64_t        *ran;
-    /* In bodies of instance functions, whose call has these operands: */
+    /* The operands of the call, in bodies of instance functions. */
     double           threshold;
     uint32_t         instance;
     const NodeValue *states;

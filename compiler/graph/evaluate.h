@@ -48,10 +48,10 @@ double tape_flops_separate(const Tape *tape);
 /* Iterations of the loops that its shaders have within operations and over instances of groups, at most. */
 uint32_t tape_loops(const Tape *tape);
 
-/* Where on the tape a node is that the roots need. */
+/* Returns where on the tape a node is that the roots need. */
 size_t tape_index(const Tape *tape, Node node);
 
-/* Whether a tape needs the value of a slot of the parameter block; ANY_SLOT: of any. */
+/* Tells whether a tape needs the value of a slot of the parameter block; ANY_SLOT: of any. */
 #define ANY_SLOT UINT32_MAX
 bool tape_depends_on(const Tape *tape, uint32_t slot);
 

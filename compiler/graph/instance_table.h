@@ -34,7 +34,7 @@ enum { NOT_LISTED = MAX_INSTANCE_STATES };
 /* A column whose numbers are known. */
 #define KNOWN_COLUMN UINT32_MAX
 
-/* Where an instance is in a frame: a box, moved by nodes of the frame. */
+/* The place of an instance in a frame: a box, moved by nodes of the frame. */
 typedef enum PlaceKind {
     PLACE_FIXED,   /* not at all: it is around the instance in all frames */
     PLACE_SHIFT,   /* by a shift */
@@ -146,8 +146,8 @@ Instances *graph_instances(Graph *graph);
 /* Adds a function, whose member first_body is set here, with a body for each of its states, and what joins
    them, if it does.  Returns its number. */
 uint32_t graph_add_instance_function(Graph *graph, InstanceFunction function, const Node *bodies);
-/* For a pass that makes a graph: the roots, and behind them the bodies and frame numbers of the
-   graph. */
+/* Lists, for a pass that makes a graph, the roots, and behind them the bodies and frame numbers of
+   the graph. */
 Node *roots_with_bodies(const Graph *graph, const Node *roots, size_t root_count, size_t *count,
                         Arena *arena);
 /* When the pass has made `to` of `from`, and all these nodes are of `to`: copies the roots back, and

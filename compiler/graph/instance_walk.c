@@ -86,8 +86,8 @@ static bool next_near(InstanceWalk *walk, double distance, uint32_t *instance)
     return false;
 }
 
-/* From what was looked at to all that may be as near as what is found.  The second time that is
-   enough: each further instance only makes a distance less. */
+/* Goes on from what was looked at to all that may be as near as what is found.  The second time
+   that is enough: each further instance only makes a distance less. */
 InstanceStep instance_walk_widen(InstanceWalk *walk, double distance)
 {
     if (!walk->to_nearest || !(how_far(walk, distance) > walk->radius && walk->radius < NOWHERE) ||

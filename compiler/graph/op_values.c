@@ -278,7 +278,7 @@ static uint64_t hash_seed(double seed, uint64_t stream)
     return bits ^ (bits >> 31);
 }
 
-/* In [0, 1). */
+/* Returns the number in [0, 1) that belongs to a seed. */
 static double unit_of_seed(double seed, uint64_t stream)
 {
     return (double)(hash_seed(seed, stream) >> 11) * 0x1p-53;

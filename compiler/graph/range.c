@@ -328,7 +328,7 @@ Range range_div(Range a, Range b)
                         max2(quotient_high(a.high, b.low), quotient_high(a.high, b.high)))};
 }
 
-/* Between 0 and b; less where the same multiple of b is taken off all over. */
+/* The range is between 0 and b, and less where the same multiple of b is taken off all over. */
 Range range_mod(Range a, Range b)
 {
     Range whole = {min2(b.low, 0), max2(b.high, 0)};

@@ -1,8 +1,8 @@
 /*
  * regions.c: what is needed only where a guard does not decide.
  *
- * From the last node to the first, users before operands: a node is in the innermost region that
- * holds all of its users, where a guard uses its rest from within its own region.
+ * Nodes are visited from the last to the first, users before operands: a node is in the innermost
+ * region that holds all of its users, where a guard uses its rest from within its own region.
  */
 #include "compiler/graph/regions.h"
 

@@ -77,7 +77,7 @@ static bool is_needed(const Window *window, uint32_t at)
     return window->needed[at / WORD] >> at % WORD & 1;
 }
 
-/* Where an earlier node is, or belongs. */
+/* Finds where an earlier node is, or belongs. */
 static uint32_t earlier_place(const Window *window, Node node)
 {
     uint32_t at = 0;

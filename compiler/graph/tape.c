@@ -237,7 +237,8 @@ static const InstanceTable *table_of(const Tape *tape, uint32_t function)
 
 static double flops_of(const Tape *tape, bool apart);
 
-/* For all instances, or a typical list and one instance more. */
+/* Counts the operations of a call for all instances, or for a typical list and one instance
+   more. */
 static double call_flops(const Tape *tape, uint32_t function, bool apart)
 {
     const InstanceTable *table = table_of(tape, function);
@@ -274,7 +275,7 @@ double tape_node_flops(const Tape *tape, Node node) { return node_flops(tape, no
 double tape_flops(const Tape *tape) { return flops_of(tape, false); }
 double tape_flops_separate(const Tape *tape) { return flops_of(tape, true); }
 
-/* For the longest list. */
+/* Counts the loops of a call for the longest list. */
 static double call_loops(const Tape *tape, uint32_t function)
 {
     return (double)table_of(tape, function)->cells.max_listed *

@@ -49,8 +49,8 @@ typedef struct Texture {
     TextureLevel levels[MAX_TEXTURE_LEVELS];
     TexelBits   *texels; /* of all levels */
     size_t       texel_count;
-    /* For each channel of level 0: the range of its values, and the largest difference of texels side by side
-       and one above the other. */
+    /* The range of the values of each channel of level 0, and the largest difference of texels side
+       by side and one above the other. */
     Range  range[TEXTURE_CHANNELS];
     double across[TEXTURE_CHANNELS], up[TEXTURE_CHANNELS];
     /* The largest slope, for steps of a texel: of the first channel, and of all four together. */

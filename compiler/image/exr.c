@@ -54,7 +54,7 @@ static bool begin(ExrReader *reader)
 
 /* ---- channels ---- */
 
-/* Where a channel's samples go in a pixel; -1: nowhere. */
+/* Returns where a channel's samples go in a pixel; -1: nowhere. */
 static int place_of(bool gray, const char *name)
 {
     static const char *const colors[] = {"R", "G", "B", "A"}, *const grays[] = {"Y", "A"};

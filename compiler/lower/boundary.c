@@ -406,7 +406,7 @@ static bool gather_mirror(Gathering *g, const Shape *shape, Curves *curves)
     return resolve(g, curves, FILL_NONZERO);
 }
 
-/* In a lattice about the origin that ends. */
+/* Gathers the copies of a lattice about the origin that ends. */
 static bool gather_repeat(Gathering *g, const Shape *shape, Curves *curves)
 {
     enum { MAX_COPIES = 1000 };
@@ -501,7 +501,7 @@ static bool join_arc(Arc *arc, const Arc *next, double size)
         hypot(arc->centre[0] - next->centre[0], arc->centre[1] - next->centre[1]) > slack ||
         arc->half + next->half > M_PI + 1e-7)
         return false;
-    /* From the middle of the first to the far end of the second, either way round. */
+    /* The second may go on at either end of the first. */
     for (int side = -1; side <= 1; side += 2) {
         double way = side * turn;
         way        = way < 0 ? way + 2 * M_PI : way;

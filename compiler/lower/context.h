@@ -59,8 +59,9 @@ typedef struct Lowering {
     bool           places;         /* find Surface.place */
 } Lowering;
 
-/* Where a shape is lowered: the point in the space of the shape, and the sequence around it.
-   `normal` and `footprint`, the radius of a pixel, are set in a lowering with surfaces only. */
+/* The place where a shape is lowered: the point in the space of the shape, and the sequence around
+   it.  `normal` and `footprint`, the radius of a pixel, are set in a lowering with surfaces
+   only. */
 typedef struct LowerContext {
     Node point, level, instance; /* level, instance: NODE_NONE outside of sequences */
     bool lipschitz; /* the slope is needed, as a blend or offset above moves the zero set */
@@ -83,7 +84,8 @@ extern const Lowered lowered_nothing;
 LowerContext context_at(LowerContext context, Node point);
 LowerContext context_lipschitz(LowerContext context);
 LowerContext context_lipschitz_within(LowerContext context, double more);
-/* With `lipschitz` set, where distances are divided by `factor`, at most, before they are used. */
+/* Returns the context with `lipschitz` set, where distances are divided by `factor`, at most,
+   before they are used. */
 LowerContext context_divided(LowerContext context, double factor);
 /* The reach behind a map that enlarges by `scale`. */
 double reach_behind(const Graph *graph, double reach, Node scale);

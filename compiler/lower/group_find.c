@@ -43,7 +43,7 @@ typedef struct Search {
 
 /* ---- parts ---- */
 
-/* Before a part is lowered. */
+/* What is noted before a part is lowered. */
 typedef struct PartMark {
     GraphMark graph;
     uint32_t  made;

@@ -103,7 +103,8 @@ static const double *numbers_of_iterations(const PartFinder *finder, const Insta
     return numbers;
 }
 
-/* In slots that depend on the iteration is then what the first instance has. */
+/* Fills the elements of slots that depend on the iteration, which then hold what the first instance
+   has. */
 static bool fill_iterated(const PartFinder *finder, InstanceGroup *group, const Turning *t)
 {
     Graph *graph       = finder->outer->graph;

@@ -174,7 +174,7 @@ static InstancePlace place_of(Graph *g, const Shape *part)
                              : (InstancePlace){rotate_box(g, map, box), PLACE_SHIFT};
 }
 
-/* Where the instances of a group are in each frame; nothing if none is known to move. */
+/* Finds where the instances of a group are in each frame; nothing if none is known to move. */
 static void find_places(const PartFinder *finder, const InstanceGroup *group, const GroupJoin *join,
                         InstanceTable *table)
 {

@@ -51,7 +51,7 @@ typedef struct PoleBounds {
 } PoleBounds;
 
 void pole_bounds_fold(Lowering *l, PoleBounds *pole_bounds, Node normal, Node offset);
-/* To be called before map_chain_append.  `ball` contains what the map is applied to.  Whether a
+/* Is called before map_chain_append.  `ball` contains what the map is applied to.  Tells whether a
    hull was added. */
 bool pole_bounds_append(Lowering *l, PoleBounds *pole_bounds, const MapChain *chain, const Map *map,
                         Ball ball);

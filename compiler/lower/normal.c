@@ -53,8 +53,8 @@ static LowerContext place_stretched(Graph *g, LowerContext context, Node stretch
     return context;
 }
 
-/* By how much a mirror reflects the normal: 0 or 1 or, for a smooth mirror, a ramp from 0 to 1
-   across it.  `height` is the point's signed distance to the mirror, `front` whether it is
+/* Returns by how much a mirror reflects the normal: 0 or 1 or, for a smooth mirror, a ramp from 0
+   to 1 across it.  `height` is the point's signed distance to the mirror, `front` whether it is
    reflected. */
 static Node mirrored_amount(Graph *g, LowerContext context, Node height, Node front)
 {

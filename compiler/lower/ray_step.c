@@ -40,7 +40,7 @@ typedef struct Ray {
         back; /* how far backwards open surfaces are looked for: to the previous point of the ray */
 } Ray;
 
-/* By how much one term may decrease over the interval, in units of c0.  Of the values from 1 to 16,
+/* One term may decrease by so much over the interval, in units of c0.  Of the values from 1 to 16,
    this one needs few evaluations.  To double the interval's length instead, whatever the degree,
    would let t^20 decrease by a million, and steps could be a millionth of the interval. */
 static const double MAX_FALL = 4;
@@ -165,8 +165,9 @@ static Node entrance(Lowering *l, Box box, Ray ray, Node enter)
     return clamp_to(l, add(l->graph, ray.point, offset), box);
 }
 
-/* For a polynomial whose zeros all lie in a box.  A ray from outside first goes to the box.  The
-   series is about the point where it enters: about a far point all its digits would be lost. */
+/* Finds the step along a polynomial whose zeros all lie in a box.  A ray from outside first goes to
+   the box.  The series is about the point where it enters: about a far point all its digits would
+   be lost. */
 static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph      *g = l->graph;
@@ -183,8 +184,8 @@ static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
                      step);
 }
 
-/* For a polynomial that is intersected with a region.  Outside of the region the result is 0, since
-   the distance to the region is larger there. */
+/* Finds the step along a polynomial that is intersected with a region.  Outside of the region the
+   result is 0, since the distance to the region is larger there. */
 static Node along_cut(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph      *g = l->graph;
@@ -216,10 +217,11 @@ static Node along_polynomial(Lowering *l, const Shape *shape, Ray ray)
 
 static Node along(Lowering *l, const Shape *shape, Ray ray);
 
-/* From outside: where a ray meets the ball of radius r about the origin.  The point of the ray that is
-   nearest to the middle is at t = m, and the chord reaches as far to both of its sides.  Its far end is
-   found first; the near one follows from the product of both, so that nothing cancels.  Inside it is the
-   distance, which is short behind the surface, as chords need it, and free behind the point as well. */
+/* Finds, from outside, where a ray meets the ball of radius r about the origin.  The point of the
+   ray that is nearest to the middle is at t = m, and the chord reaches as far to both of its sides.
+   Its far end is found first; the near one follows from the product of both, so that nothing
+   cancels.  Inside it is the distance, which is short behind the surface, as chords need it, and
+   free behind the point as well. */
 static Node along_ball(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph *g      = l->graph;

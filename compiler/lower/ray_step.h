@@ -6,7 +6,7 @@
 
 #include "compiler/lower/context.h"
 
-/* As lower_along, by this step along polynomials; NULL: by its own. */
+/* Lowers as lower_along does, by this step along polynomials; NULL: by its own. */
 Node lower_along_by(Graph *graph, const Shape *shape, Node plain, SeriesStep *step,
                     struct LoweredGroups *groups, Arena *scratch);
 

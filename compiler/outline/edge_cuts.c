@@ -93,7 +93,7 @@ static bool boxes_meet(const Span2 *a, const Span2 *b)
     return true;
 }
 
-/* By Newton's method; false: it does not end where both meet. */
+/* Refines a crossing by Newton's method; false: it does not end where both meet. */
 static bool refine(const Curve *a, const Curve *b, double *t, double *u, double tolerance)
 {
     double at[2], other[2], way[2], along[2], away[2];

@@ -41,7 +41,7 @@ static void visit_strips(Strips *strips)
     }
 }
 
-/* As many strips as give edges about four entries each. */
+/* Makes as many strips as give edges about four entries each. */
 static void size_strips(Strips *strips)
 {
     const Edges *edges = &strips->making->edges;
@@ -79,7 +79,7 @@ static Strips strips_make(const Making *making, int axis)
     return strips;
 }
 
-/* Where an edge that goes from one side of a line to the other crosses it. */
+/* Finds where an edge that goes from one side of a line to the other crosses it. */
 static double crosses_at(const Curve *curve, int axis, double level)
 {
     int    k   = 1 - axis;

@@ -26,8 +26,8 @@ static void way_and_bend(const Curve *curve, double way[2], double bend[2])
     }
 }
 
-/* Where a curve is to be cut: at the parabola's apex and where it has turned by 45 degrees from there
-   to either side, as far as these are between its ends.  Ascending, with 0 and 1. */
+/* Finds where a curve is to be cut: at the parabola's apex and where it has turned by 45 degrees
+   from there to either side, as far as these are between its ends.  Ascending, with 0 and 1. */
 static int find_cuts(const Curve *curve, double cuts[5])
 {
     double way[2], bend[2];
@@ -125,7 +125,7 @@ typedef struct RowCrossings {
     size_t  count, capacity;
 } RowCrossings;
 
-/* Where a piece, along which neither coordinate turns back, has this height. */
+/* Finds where a piece, along which neither coordinate turns back, has this height. */
 static double x_at(const Curve *curve, double y)
 {
     double low = 0, high = 1, point[2] = {curve->from[0], y};

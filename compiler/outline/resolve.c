@@ -27,7 +27,8 @@ void add_edge(Making *making, const Curve *curve, int weight)
     array_push_large(making->arena, &making->edges, edge);
 }
 
-/* Where an arc is farthest along an axis; at most two of these are in a quarter of a circle. */
+/* Finds where an arc is farthest along an axis; at most two of these are in a quarter of a
+   circle. */
 static int arc_turns(const Curve *curve, double turns[2])
 {
     static const double axes[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
@@ -68,7 +69,7 @@ static void add_monotone(Making *making, const Curve *curve)
 
 /* ---- edges that are one ---- */
 
-/* From the knot with the smaller number. */
+/* Returns an edge so that it starts from the knot with the smaller number. */
 static Edge ascending(const Edge *edge)
 {
     if (edge->from < edge->to)
@@ -119,7 +120,7 @@ static void reverse(Edge *edge)
     *edge = (Edge){curve_reversed(&edge->curve), edge->to, edge->from, edge->weight};
 }
 
-/* With the inside on the left. */
+/* Keeps the edges of the boundary, with the inside on the left. */
 static void retain_boundary(Making *making, FillRule rule)
 {
     const Sides *sides = edge_sides(making, rule);

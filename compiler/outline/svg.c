@@ -450,7 +450,7 @@ static const struct Kind *find_kind(const char *name)
     return NULL;
 }
 
-/* In pieces of the view's size; curves leave them by a millionth of it. */
+/* Returns how far pieces may be from their curves: a millionth of the view's size. */
 static double tolerance_of(const SvgDrawing *drawing)
 {
     double size = fmax(drawing->high[0] - drawing->low[0], drawing->high[1] - drawing->low[1]);
@@ -586,7 +586,8 @@ static void move_map(SvgMap *map, double x, double y)
     *map         = svg_product(map, &moved);
 }
 
-/* From the view of a part to its place, whose middle is that of the view, unless it is stretched. */
+/* Adds the map from the view of a part to its place, whose middle is that of the view, unless it is
+   stretched. */
 static void fit_view(Reader *reader, const SvgElement *element, const double size[2], State *state)
 {
     const char *box    = svg_attribute(element, "viewBox");

@@ -38,11 +38,11 @@ void pen_close(SvgPen *pen);
 
 /* The next number of a list, whose elements are apart by blanks or a comma; false: there is none. */
 bool svg_number(const char **text, double *number);
-/* As many numbers as there are, at most `most`. */
+/* Reads as many numbers as there are, at most `most`. */
 int svg_numbers(const char *text, double *numbers, int most);
-/* First `inner`, then `outer`. */
+/* Returns the map that applies first `inner`, then `outer`. */
 SvgMap svg_product(const SvgMap *outer, const SvgMap *inner);
-/* The attribute `transform`; false: it means nothing. */
+/* Reads the attribute `transform`; false: it means nothing. */
 bool svg_transform(const char *text, SvgMap *map);
 
 /* The attribute `d` of a path; false: from some place on it means nothing. */

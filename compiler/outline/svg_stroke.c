@@ -127,7 +127,7 @@ static double turn_between(const double a[2], const double b[2])
     return atan2(cross2(a, b), dot2(a, b));
 }
 
-/* Where the tangents of what is parallel to a piece meet. */
+/* Finds where the tangents of what is parallel to a piece meet. */
 static void control_beside(const Way *a, const Way *b, const double via[2], double distance,
                            double point[2])
 {
@@ -150,7 +150,7 @@ static void add_side(Contour *contour, const Curve *piece, const Way *a, const W
     bend(contour, via, to);
 }
 
-/* Where the lines across both ends of a piece meet: the middle of its circle. */
+/* Finds where the lines across both ends of a piece meet: the middle of its circle. */
 static void middle_of(const Way *a, const Way *b, double point[2])
 {
     double between[2] = {b->at[0] - a->at[0], b->at[1] - a->at[1]};
@@ -257,7 +257,7 @@ static void add_arc(const Stroker *stroker, Contour *contour, const double at[2]
     }
 }
 
-/* Between the end of one curve and the beginning of the next. */
+/* Draws what is between the end of one curve and the beginning of the next. */
 static void draw_join(Stroker *stroker, const Way *a, const Way *b)
 {
     const double SMALL = 1e-6;
@@ -335,7 +335,7 @@ static void draw_run(Stroker *stroker, const Curve *curves, size_t count, bool c
 
 /* ---- dashes ---- */
 
-/* By Gauss's three points on parts whose length is smooth. */
+/* Returns the length by Gauss's three points on parts whose length is smooth. */
 static double length_up_to(const Curve *curve, double end)
 {
     static const double places[3] = {0.1127016653792583, 0.5, 0.8872983346207417};

@@ -53,7 +53,8 @@ static bool matches_simple(const SvgElement *element, const char *text, size_t l
     return true;
 }
 
-/* From its end on: "g .thin" is inside of a `g`, however deep, "g > .thin" a child of one. */
+/* Tells whether a selector is that of an element, from its end on: "g .thin" is inside of a `g`,
+   however deep, "g > .thin" a child of one. */
 static bool matches(const SvgElement *element, const char *text, size_t length)
 {
     size_t from;
@@ -138,7 +139,7 @@ static char *without_comments(SvgTree *tree, const Text *text)
     return copy;
 }
 
-/* Behind the `}` that belongs to the `{` at `text`. */
+/* Returns what is behind the `}` that belongs to the `{` at `text`. */
 static const char *behind_block(const char *text)
 {
     int open = 0;

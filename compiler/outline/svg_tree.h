@@ -42,7 +42,7 @@ void svg_rules_read(SvgTree *tree, const SvgElement *style);
 
 /* NULL: there is none. */
 const char *svg_attribute(const SvgElement *element, const char *name);
-/* By `style`, rules, or as an attribute, in the order of CSS. */
+/* Returns a property by `style`, rules, or as an attribute, in the order of CSS. */
 const char *svg_property(const SvgTree *tree, const SvgElement *element, const char *name);
 /* The element that `#id` or `url(#id)` names, or NULL. */
 const SvgElement *svg_referred(const SvgTree *tree, const char *reference);

@@ -48,8 +48,8 @@ typedef struct KrsRefutation {
 KrsStatus krs_refute(const char *text, size_t length, const char *name, const KrsOptions *options,
                      const KrsRefuteOptions *how, KrsRefutation *result);
 
-/* As krs_distance, but as shaders find it: where the clearance of a grid's cell is less than the
-   distance to the parts that its list has, it is that clearance (graph/grid.h). */
+/* Finds what krs_distance does, but as shaders find it: where the clearance of a grid's cell is
+   less than the distance to the parts that its list has, it is that clearance (graph/grid.h). */
 KrsStatus krs_distance_bound(KrsState *state, const double (*points)[3], size_t count,
                              double *distances);
 

@@ -337,7 +337,7 @@ static void find_ball(KrsState *state, Box box, Rays *rays, Cells *cells, Ball *
    distance from which the ball fills the height, for things would look distorted from there. */
 static const double WIDE = 0.95, TALL = 0.82, FILLED = 0.68, NEAREST = 0.65;
 
-/* Where the default camera is, and the axes of its picture. */
+/* The default camera: where it is, and the axes of its picture. */
 typedef struct DefaultCamera {
     double eye[3], target[3], to_eye[3], right[3], up[3];
     double away;  /* from the target to the eye */
@@ -353,7 +353,7 @@ static void set_axes(DefaultCamera *camera)
     cross3(camera->to_eye, camera->right, camera->up);
 }
 
-/* From where to where the points reach along an axis of the picture; 1 is half its height. */
+/* Finds from where to where the points reach along an axis of the picture; 1 is half its height. */
 static Range reach_along(const Rays *rays, const DefaultCamera *camera, const double axis[3])
 {
     Range reach = {HUGE_VAL, -HUGE_VAL};
@@ -386,7 +386,8 @@ static void fill_picture(const Rays *rays, DefaultCamera *camera)
     }
 }
 
-/* Where the ball fills the height; or, where enough is seen to tell, what is seen. */
+/* Places the camera where the ball fills the height; or, where enough is seen to tell, what is
+   seen. */
 static DefaultCamera place_camera(const Rays *rays, const Ball *ball, double fov)
 {
     DefaultCamera camera = {.away = ball->radius / sin(0.5 * fov), .slope = tan(0.5 * fov)};
@@ -440,7 +441,7 @@ KrsStatus krs_state_fit_camera(KrsState *state)
     return status;
 }
 
-/* With the defaults of parameters. */
+/* Frames the scene with the defaults of parameters. */
 static KrsStatus frame_scene(KrsScene *scene)
 {
     KrsState     *state;

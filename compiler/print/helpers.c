@@ -13,7 +13,7 @@
 
 /* ---- files ---- */
 
-/* Behind the comment that text begins with, if any. */
+/* Skips the comment that text begins with, if any. */
 static const char *skip_comment(const char *text)
 {
     if (strncmp(text, "/*", 2) == 0) {

@@ -62,8 +62,8 @@ typedef struct Module {
    parameters; `zone_slots` stay free before those of camera-relative points. */
 void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *scratch);
 
-/* In how many parts so many components are marched, where each ray goes on with the one that comes
-   next. */
+/* Tells in how many parts so many components are marched, where each ray goes on with the one that
+   comes next. */
 uint32_t module_scene_part_count(size_t components);
 /* The first component of a part, or of the one behind the last. */
 uint32_t module_scene_part_first(size_t part, size_t components);

@@ -133,7 +133,7 @@ static uint32_t zone_slot(const Emitter *e)
     return plain->first_slot + (found ? plain->slots : 0);
 }
 
-/* Where zones of the caller are read from. */
+/* Emits the reads of zones of the caller. */
 static void emit_zone_reads(Emitter *e)
 {
     if (emit_reads_zones(e))

@@ -127,7 +127,7 @@ void emit_shared_distance(Emitter *e, const ModuleFunction *distance, const Node
     text_format(e->out, "    return %s;\n}\n\n", call_text(e, shared, distance->component));
 }
 
-/* In a list of statements of the rest; the distance is `d`. */
+/* Emits the statements of the rest, in a list; the distance is `d`. */
 void emit_shared_rest(Emitter *e, const ModuleFunction *surface, const NodeList *shared)
 {
     emit_variables(e, shared);

@@ -102,7 +102,8 @@ void state_values_assign(StateValues *values, const Graph *graph, const Node *wa
     values->slots = (used + 3) / 4 - values->first_slot;
 }
 
-/* As literals are: what single precision does not have is the largest number that it has. */
+/* Rounds to single precision as literals are: what that does not have is the largest number that it
+   has. */
 static float to_single(double number)
 {
     return (float)(number > FLT_MAX ? FLT_MAX : number < -FLT_MAX ? -FLT_MAX : number);

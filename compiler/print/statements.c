@@ -113,7 +113,8 @@ static const char *fold_text(Emitter *e, const Expr *expr)
     return mirror ? mirror : fill_template(e, expr);
 }
 
-/* By the ray and the normal of the component's surface, whose function this is. */
+/* Returns the text of the side that is seen, by the ray and the normal of the component's surface,
+   whose function this is. */
 static const char *front_text(Emitter *e, const Expr *expr)
 {
     Text        text  = {.arena = e->scratch};

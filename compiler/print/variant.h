@@ -79,7 +79,7 @@ typedef enum KrsRayStep {
     KRS_STEP_DIRECTIONAL
 } KrsRayStep;
 
-/* In place of a march group's number: the planes that rays meet without a march. */
+/* Stands in place of a march group's number, for the planes that rays meet without a march. */
 enum { KRS_MARCH_GROUP_OF_PLANES = 255 };
 
 /*

@@ -21,7 +21,7 @@
 /* So fast is the machine whose seconds are counted; most of today's are as fast, or faster. */
 static const double OPERATIONS_PER_SECOND = 1e8;
 
-/* After so many somebody is asked whether to go on. */
+/* After so many operations somebody is asked whether to go on. */
 static const uint64_t SLICE = 10000000;
 
 enum { MAX_SHAPES = 4096, MAX_TRIALS = 6 };

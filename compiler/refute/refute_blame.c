@@ -11,7 +11,7 @@
 
 #include "compiler/refute/search.h"
 
-/* By how much a lowered shape breaks its claim at two points; below 1: it does not. */
+/* Returns by how much a lowered shape breaks its claim at two points; below 1: it does not. */
 static double claim_ratio(const LoweredShape *lowered, bool lipschitz, const NodeValue *at_p,
                           const NodeValue *at_q)
 {
@@ -104,7 +104,7 @@ static bool refute_from(Refuter *r, size_t suspect, const double p[3], const dou
     return true;
 }
 
-/* From a refuted shape to a smaller one that is refuted; false: there is none. */
+/* Goes from a refuted shape to a smaller one that is refuted; false: there is none. */
 static bool descend(Refuter *r, Finding *finding, uint64_t operations)
 {
     LoweringTrace       trace = trace_of(r, finding);

@@ -6,7 +6,7 @@
 
 #include "compiler/refute/refuter.h"
 
-/* From what was refuted to the smallest shape that is refuted too. */
+/* Goes from what was refuted to the smallest shape that is refuted too. */
 void find_culprit(Refuter *r, Finding *finding);
 
 #endif

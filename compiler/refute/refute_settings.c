@@ -78,7 +78,7 @@ void prepare_slopes(Refuter *r)
     r->workspace = arena_alloc(r->in->arena, most, 1);
 }
 
-/* As states have them: all components outside of everything. */
+/* Prepares frames as states have them: all components outside of everything. */
 void prepare_frames(Refuter *r)
 {
     Arena *arena = r->in->arena;

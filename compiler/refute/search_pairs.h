@@ -6,7 +6,7 @@
 
 #include "compiler/refute/search_types.h"
 
-/* In [low, high), and a number below `count`. */
+/* Return a random number in [low, high), and a random whole number below `count`. */
 double search_between(Search *s, double low, double high);
 size_t search_index(Search *s, size_t count);
 
@@ -20,7 +20,7 @@ bool is_decided(const Search *s);
 /* The distance at a point; what one point alone refutes is noted at once. */
 double distance_at(Search *s, double p[3]);
 
-/* At the point that was looked at last. */
+/* Returns the side at the point that was looked at last. */
 static inline double side_now(const Search *s) { return s->values[s->side].v[0]; }
 
 static inline bool are_sides_different(double a, double b) { return (a > 0) != (b > 0); }

@@ -42,7 +42,7 @@ static void start_at_surface(Search *s, double p[3])
     nudge(s, p, 1e-5);
 }
 
-/* At a corner of the box, on an edge, or on a face. */
+/* Starts at a corner of the box, on an edge, or on a face. */
 static void start_at_edge(Search *s, double p[3])
 {
     random_point(s, p);

@@ -28,7 +28,7 @@ typedef struct Witness {
     double p[3], q[3], at_p, at_q;
 } Witness;
 
-/* Where on the way from smooth to steep an expression is looked at. */
+/* The places, on the way from smooth to steep, at which an expression is looked at. */
 typedef enum Goal {
     GOAL_EQUAL, /* a = b */
     GOAL_ZERO,  /* a = 0 */
@@ -40,7 +40,7 @@ typedef enum Goal {
     GOAL_WALL   /* a lies between two cells of period b */
 } Goal;
 
-/* Where an operation is worth looking at. */
+/* A place where an operation is worth looking at. */
 typedef struct Target {
     Goal     goal;
     Node     a, b, c;

@@ -230,7 +230,8 @@ void krs_camera_toggle_perspective(KrsCamera *camera)
 
 void krs_camera_axis(KrsCamera *camera, const double from[3])
 {
-    /* From above or below, a little to the front: the picture needs to know what is up. */
+    /* Above or below the target the eye is a little to the front: the picture needs to know what is
+       up. */
     const double aside = fabs(from[1]) > 0.5 ? 1e-4 : 0, up[3] = {0, 1, 0};
     const double away = distance(camera);
     make_orthographic(camera);

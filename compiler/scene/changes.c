@@ -451,7 +451,8 @@ static bool same_solids(Comparison *c)
            same_textures(c->a->graph->textures, c->b->graph->textures);
 }
 
-/* As files of meshes have them: of components, materials and parts. */
+/* Tells whether names that files of meshes have are the same: of components, materials and
+   parts. */
 static bool same_names(const KrsScene *a, const KrsScene *b)
 {
     bool same = a->shown_count == b->shown_count && a->material_count == b->material_count &&

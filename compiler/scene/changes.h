@@ -6,7 +6,7 @@
 
 #include "compiler/scene/program.h"
 
-/* From `a` to `b`; KRS_OUT_OF_MEMORY: it is not known. */
+/* Finds the changes from `a` to `b`; KRS_OUT_OF_MEMORY: they are not known. */
 KrsStatus scene_changes(const KrsScene *a, const KrsScene *b, KrsChanges *changes);
 
 #endif

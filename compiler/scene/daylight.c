@@ -26,7 +26,8 @@
 #define AHEAD      (FORWARD * FORWARD) /* the part that it scatters so far ahead that it is not lost */
 #define SUN_RADIUS 0.00465             /* radians */
 
-/* For red, green and blue: on a kilometre at the ground; haze is in parts of that of green. */
+/* What red, green and blue lose on a kilometre: to air at the ground, and to ozone where it is
+   densest.  That of haze is in parts of that of green. */
 static const double air[3]         = {5.802e-3, 13.558e-3, 33.1e-3};
 static const double ozone[3]       = {0.650e-3, 1.881e-3, 0.085e-3};
 static const double haze[3]        = {0.759, 1, 1.337}; /* wavelength to the power of -1.3 */
@@ -83,7 +84,7 @@ static double horizon_at(double radius)
     return -sqrt(1 - sine * sine);
 }
 
-/* Where a ray is after a length: its radius, and the cosine to a direction that is given by its
+/* The place of a ray after a length: its radius, and the cosine to a direction that is given by its
    cosines to the vertical and to the ray. */
 typedef struct Place {
     double radius, cosine;
@@ -141,7 +142,7 @@ static void fill_sun(Air *a)
         }
 }
 
-/* Between four numbers of a table; x and y in rows and columns. */
+/* Interpolates between four numbers of a table; x and y in rows and columns. */
 static void mix_table(const double *table, int rows, int columns, double y, double x, double to[3])
 {
     const double low  = fmin(fmax(floor(y), 0), rows - 2),

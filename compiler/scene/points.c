@@ -217,7 +217,7 @@ KrsStatus points_distances(KrsState *state, const double (*points)[3], size_t co
 
 enum { BESIDE = 6, AT_ONCE = 1024 };
 
-/* Where a normal needs distances: behind and before the point along each axis. */
+/* Places points where a normal needs distances: behind and before the point along each axis. */
 static double place_beside(const double point[3], double (*to)[3])
 {
     double step = 1e-6 * (1 + largest3(point));
@@ -263,7 +263,8 @@ static double output_of(const LaneTape *tape, const LaneWork *work, size_t outpu
     return ((const double *)work->rows)[(size_t)row * LANES + lane];
 }
 
-/* As distance_by of query.c: behind output 0 are the distances of the components. */
+/* Finds the nearest component as distance_by of query.c does: behind output 0 are the distances of
+   the components. */
 static uint32_t nearest_component(const KrsState *state, size_t lane)
 {
     const struct StateLanes *lanes   = state->lanes;

@@ -126,7 +126,7 @@ typedef struct RetainedSlope {
     const char *place; /* "scene.krs:3:14" */
 } RetainedSlope;
 
-/* Where something is in the texts of the scene. */
+/* The place of something in the texts of the scene. */
 typedef struct RetainedPlace {
     const char *source; /* name of the text */
     Position    position;
@@ -230,7 +230,8 @@ KrsStatus state_view(KrsState *state, size_t camera, KrsView *view);
 KrsStatus state_raycast(KrsState *state, const double (*origins)[3], const double (*directions)[3],
                         size_t count, double farthest, double tolerance, RayLimits limits,
                         KrsHit *hits);
-/* As krs_probe; without `normals` those of the answers may be 0, and materials must not depend on them. */
+/* Answers as krs_probe does; without `normals` those of the answers may be 0, and materials must
+   not depend on them. */
 KrsStatus state_probe(KrsState *state, const double (*points)[3], size_t count, bool normals,
                       KrsHit *hits);
 void      scene_free(KrsScene *scene);
@@ -249,7 +250,8 @@ void state_refresh_points(KrsState *state);
 /* state_boxes.c: the boxes of the shown components, but for a floor, at the values of the state; NULL:
    they are those of all states. */
 const Box *state_find_boxes(KrsState *state);
-/* With these boxes: that of a component, and that around all which have an end, empty if none has. */
+/* Return, with these boxes, that of a component, and that around all which have an end, empty if
+   none has. */
 Box state_box(const KrsState *state, const Box *boxes, size_t component);
 Box state_outer_box(const KrsState *state, const Box *boxes);
 /* Puts the height of the floor into its slot, if it depends on another one. */

@@ -77,8 +77,8 @@ static Tape march_tape(const KrsState *state, const Tape *tape)
     return march;
 }
 
-/* In a scene with open surfaces: how far a ray may go from a point.  `step` is the length from the
-   previous point to it. */
+/* Returns how far a ray may go from a point, in a scene with open surfaces.  `step` is the length
+   from the previous point to it. */
 static double step_ahead(KrsState *state, const double point[3], const double direction[3],
                          double step)
 {
@@ -247,7 +247,7 @@ static void probe(KrsState *state, const double point[3], const double view[3], 
     copy_surface(state, nearest, hit);
 }
 
-/* As many points as lanes. */
+/* Probes as many points as there are lanes. */
 static KrsStatus probe_lanes(KrsState *state, const double (*points)[3], size_t count,
                              bool with_normals, KrsHit *hits)
 {

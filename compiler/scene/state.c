@@ -331,7 +331,7 @@ static void view_camera(const KrsState *state, size_t index, KrsCamera *camera)
     }
 }
 
-/* Where a light shines, and what is right of it and above it, with y up. */
+/* Finds where a light shines, and what is right of it and above it, with y up. */
 static void aim_light(KrsLight *light)
 {
     const double upright[3] = {0, 1, 0}, ahead[3] = {0, 0, -1}, down[3] = {0, -1, 0};

@@ -11,7 +11,7 @@
 
 typedef uint32_t Texel[2];
 
-/* Where the parts of a table are, in texels. */
+/* The places of the parts of a table, in texels. */
 typedef struct Place {
     size_t row, copy, cell, list;
 } Place;
@@ -163,8 +163,8 @@ static void put_grid(const Grid *grid, Texel *records, Texel *lists)
         lists[entries / 2][1] = 0;
 }
 
-/* As other values of the state are: what single precision does not have is the largest number that it
-   has. */
+/* Rounds to single precision as other values of the state are: what that does not have is the
+   largest number that it has. */
 static float to_single(double number)
 {
     return (float)(number > FLT_MAX ? FLT_MAX : number < -FLT_MAX ? -FLT_MAX : number);

@@ -144,9 +144,9 @@ Ball ball_hull(Ball a, Ball b)
 }
 
 /*
- * For one mirror, e = u.c - w: empty when e >= r, else centre c - e u and radius r - e when
- * e <= 0, sqrt(r^2 - e^2) when e > 0.  Mirrors that move: the radius of the least e, about the
- * middle of all centres, and as much more as the centres leave it.
+ * Finds what one mirror makes of a ball, with e = u.c - w: empty when e >= r, else centre c - e u
+ * and radius r - e when e <= 0, sqrt(r^2 - e^2) when e > 0.  Mirrors that move: the radius of the
+ * least e, about the middle of all centres, and as much more as the centres leave it.
  */
 Ball ball_fold(Ball ball, const Range u[3], Range w)
 {

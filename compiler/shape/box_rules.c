@@ -90,7 +90,8 @@ static Box box_of_ball(double radius)
     return (Box){{side, side, side}};
 }
 
-/* By what its declaration says of it; corners that are known stand in its box. */
+/* Finds a primitive's box by what its declaration says of it; corners that are known stand in its
+   box. */
 static Box box_primitive(const BoxInput *in)
 {
     const Shape *shape = in->shape;

@@ -10,7 +10,7 @@
 #include "compiler/shape/cover.h"
 #include "compiler/shape/shape.h"
 
-/* Where rules have the ranges of numbers from, which are nodes of frame time. */
+/* The source of the ranges of numbers, which are nodes of frame time. */
 typedef struct BoxNumbers {
     Range (*range)(const struct BoxNumbers *numbers, Node node, uint32_t component);
 } BoxNumbers;

@@ -250,7 +250,7 @@ static void merge_balls(Arena *arena, Cover *cover, size_t from)
         cover->items[from + i] = (CoverCell){.ball = heap[i].ball};
 }
 
-/* At most MAX_CELLS; what is outside of balls comes first. */
+/* Leaves at most MAX_CELLS cells; what is outside of balls comes first. */
 static void merge(Arena *arena, Cover *cover)
 {
     size_t outside = 0;

@@ -11,7 +11,8 @@
 #include "compiler/graph/op_values.h"
 #include "compiler/shape/box_plan.h"
 
-/* As found when a shape is made, where a quarter turn's cosine is 0 and other roundings differ. */
+/* Finds ranges as when a shape is made, where a quarter turn's cosine is 0 and other roundings
+   differ. */
 static void round_out(const double *vector, uint32_t size, Range *ranges)
 {
     double largest = 0;

@@ -10,12 +10,12 @@
 Map       *map_new(ShapeBuilder *builder); /* the identity, to be changed */
 const Map *map_identity(ShapeBuilder *builder);
 const Map *map_translation(ShapeBuilder *builder, Node shift);
-/* By a number above 0. */
+/* Scales by a number above 0. */
 const Map *map_scaling(ShapeBuilder *builder, Node scale);
-/* By an angle in radians about an axis of any length but 0; from a direction to another. */
+/* Rotate by an angle in radians about an axis of any length but 0; from a direction to another. */
 const Map *map_rotation(ShapeBuilder *builder, Node axis, Node angle);
 const Map *map_alignment(ShapeBuilder *builder, Node from, Node to);
-/* In the plane of a unit normal and an offset. */
+/* Mirrors in the plane of a unit normal and an offset. */
 const Map *map_reflection(ShapeBuilder *builder, Node normal, Node offset);
 /* f(g(x)). */
 const Map *map_product(ShapeBuilder *builder, const Map *f, const Map *g);
@@ -23,13 +23,13 @@ const Map *map_inverse(ShapeBuilder *builder, const Map *f);
 Node       map_rotate(ShapeBuilder *builder, const Map *f, Node vector); /* rows times vector */
 Node       map_apply(ShapeBuilder *builder, const Map *f, Node point);   /* without `first` */
 void       rotate_product(ShapeBuilder *builder, const Node a[3], const Node b[3], Node product[3]);
-/* For all values of the parameters, without `first`; the box around the image of a box under a
-   similarity. */
+/* Return a map's ranges for all values of the parameters, without `first`; and the box around the
+   image of a box under a similarity. */
 MapRange map_range(ShapeBuilder *builder, const Map *f);
 Box      map_box(ShapeBuilder *builder, const Map *f, Box box);
 
 /* ---- moebius.c: maps of frame time that invert ---- */
-/* In the sphere about `center`; the radius is not 0. */
+/* Inverts in the sphere about `center`; the radius is not 0. */
 const Map *map_inversion(ShapeBuilder *builder, Node center, Node radius);
 /* (a q + b) (c q + d)^-1 for the quaternions a, b, c, d; NULL when that does not map space to
    space, with *reason set. */

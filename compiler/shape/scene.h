@@ -20,8 +20,8 @@ typedef struct SceneBeam {
 typedef struct Component {
     const char *name;
     size_t      first, count; /* of those in Scene.shown that it has: the first, and how many */
-    /* In Scene.shown: its index in Scene.components; how many before it are lowered with it; and the
-       index of the next that is, or NO_COMPONENT. */
+    /* Set in Scene.shown: the index in Scene.components; how many before it are lowered with it;
+       and the index of the next that is, or NO_COMPONENT. */
     size_t       lowered, rank, next;
     const Shape *shape;
     Span         span;

@@ -85,8 +85,8 @@ typedef struct BlendMany {
     Op of_four, of_eight; /* SHARE: operations on distances in vectors */
 } BlendMany;
 BlendMany blend_many(BlendKind kind);
-/* For so many operands, in widths: how far the least may exceed a result of 0; and how far above a result an
-   operand no longer changes it. */
+/* Tell for so many operands, in widths, how far the least may exceed a result of 0, and how far
+   above a result an operand no longer changes it. */
 double blend_bulge(BlendKind kind, uint32_t count);
 double blend_reach(BlendKind kind, double n);
 /* Tells how far above the least of the others one of them changes nothing. */

@@ -12,8 +12,8 @@ typedef struct Steepness {
     Box    region; /* over which; infinite: all space */
     Blame  blame;  /* what changes fastest */
 } Steepness;
-/* Over the first of these regions where the slope of an expression has a bound; false: it has none.
-   `span` is its place. */
+/* Finds the slope over the first of these regions where that of an expression has a bound; false:
+   it has none.  `span` is its place. */
 bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
                 Steepness *found);
 /* The slope of an expression over all space and in all states; infinite: it has no bound. */

@@ -10,7 +10,7 @@
 
 #include "compiler/base/arena.h"
 
-/* From the specification of SPIR-V. */
+/* Numbers of the specification of SPIR-V. */
 enum {
     HEADER_WORDS             = 5,
     BOUND_WORD               = 3, /* of the header: ids are below it */

@@ -6,7 +6,7 @@
 
 #include "compiler/target/instructions.h"
 
-/* For each id whether it is needed; the module is flat, and its stores are forwarded. */
+/* Tells for each id whether it is needed; the module is flat, and its stores are forwarded. */
 bool *find_live(const ShaderModule *module);
 /* Tells whether an instruction of the module is needed. */
 bool is_live(const ShaderModule *module, const bool *live, const Instruction *instruction);

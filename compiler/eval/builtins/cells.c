@@ -66,7 +66,7 @@ static bool shape_of_cell(Elaboration *e, const Cells *cells, Value cell, Value 
     return shape->type == VALUE_SHAPE;
 }
 
-/* From the middle of all cells to that of one. */
+/* Returns the vector from the middle of all cells to that of one. */
 static Node place_of_cell(Elaboration *e, const Cells *cells, const double index[3])
 {
     double steps[3];

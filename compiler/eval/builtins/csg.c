@@ -5,7 +5,8 @@
 #include "compiler/eval/declared/declare.h"
 #include "compiler/eval/hulls/fillet.h"
 
-/* Behind the kinds of blends: fillets are unions of circular ones, cut. */
+/* The number of a fillet is behind the kinds of blends: fillets are unions of circular ones,
+   cut. */
 enum { FILLET = BLEND_COUNT };
 static const char *const blend_spellings[] = {
 #define BLEND(name, ...) #name,

@@ -33,7 +33,7 @@ static bool want_iterations(Elaboration *e, const Call *call, uint32_t index, do
     return true;
 }
 
-/* As many as give details of about a thousandth of the whole. */
+/* Returns as many iterations as give details of about a thousandth of the whole. */
 static double usual_iterations(uint32_t power) { return ceil(10 / log2(power)); }
 
 /* A list of four numbers of frame time; NODE_NONE: reported. */

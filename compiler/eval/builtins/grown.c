@@ -3,7 +3,7 @@
 #include "compiler/family/family.h"
 #include "compiler/lower/boundary.h"
 
-/* In sizes of the figure: how far parabolas may be from arcs. */
+/* How far parabolas may be from arcs, in sizes of the figure. */
 static const double TOLERANCE = 1e-6;
 /* How far a part of an arc may turn. */
 static const double MAX_TURN = 0.8;
@@ -14,7 +14,8 @@ static void point_of_arc(const Curve *arc, double angle, double away, double poi
     point[1] = arc->centre[1] + away * sin(angle);
 }
 
-/* As parabolas with the tangents of the arc at their ends, which are radius turn^4 / 128 off in the middle. */
+/* Adds an arc as parabolas with its tangents at their ends, which are radius turn^4 / 128 off in
+   the middle. */
 static void add_arc(Arena *arena, Curves *curves, const Curve *arc, double off)
 {
     double begin = atan2(arc->from[1] - arc->centre[1], arc->from[0] - arc->centre[0]);

@@ -39,7 +39,8 @@ static Node random_of_cell(Elaboration *e, const Call *call, uint32_t stream)
     return graph_op1(e->graph, OP_id_unit, id_of_cell(e->graph, cell, stream));
 }
 
-/* As far up as evenly, and as far round (Archimedes: the sphere has the area of the cylinder). */
+/* Chooses a direction whose height and angle are uniform (Archimedes: the sphere has the area of
+   the cylinder). */
 static Value direction_of_cell(Elaboration *e, const Call *call, uint32_t stream)
 {
     Graph *g     = e->graph;
@@ -157,7 +158,7 @@ Value builtin_noise(Elaboration *e, Call *call)
     return value_of_node(e, noise_of(e->graph, point));
 }
 
-/* Where an octave begins: all are 0 on their lattices, which must not meet. */
+/* Returns where an octave begins: all are 0 on their lattices, which must not meet. */
 static Node octave_start(Graph *g, GraphType type, uint32_t octave)
 {
     static const double steps[3] = {17.137, 9.713, 5.371};

@@ -27,7 +27,7 @@ static void skip_line_end(DataText *data)
     data->at += !at_end(data) && data->text[data->at] == '\n';
 }
 
-/* Behind its first quote; two quotes are one in the text. */
+/* Reads a cell from its first quote on; two quotes are one in the text. */
 static Value quoted_cell(const Table *table)
 {
     DataText *data       = table->data;

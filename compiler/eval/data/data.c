@@ -39,7 +39,7 @@ static uint32_t skip_digits(const DataText *data, uint32_t at)
     return at;
 }
 
-/* Where an exponent that begins at a place ends; the same place without one. */
+/* Returns where an exponent that begins at a place ends; the same place without one. */
 static uint32_t skip_exponent(const DataText *data, uint32_t at)
 {
     uint32_t sign = data->text[at] == 'e' || data->text[at] == 'E' ? at + 1 : at;

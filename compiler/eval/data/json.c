@@ -53,7 +53,7 @@ static void add_character(Text *text, uint32_t c)
     text_add_bytes(text, bytes, count);
 }
 
-/* Behind `\u`: a character, or the two halves of one above U+FFFF. */
+/* Reads, behind `\u`, a character, or the two halves of one above U+FFFF. */
 static bool read_code(DataText *data)
 {
     uint32_t code = hexadecimal(data->text + data->at), low = UINT32_MAX;
@@ -112,7 +112,7 @@ static Value read_string(DataText *data)
 
 static Value read_value(DataText *data, uint32_t level);
 
-/* Behind an element: whether another one follows.  *good becomes false after a mistake. */
+/* Tells, behind an element, whether another one follows.  *good becomes false after a mistake. */
 static bool another(DataText *data, char closer, bool *good)
 {
     skip_blanks(data);

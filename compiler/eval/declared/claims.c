@@ -213,7 +213,8 @@ static bool refutes(const Sampling *s, const ShapeClaim *claim, double point[3])
     return s->values[claim->a].v[0] > s->rounding && s->values[claim->b].v[0] > s->rounding;
 }
 
-/* At a sample, or at the surfaces of the two numbers between it and the one before. */
+/* Tells whether a claim is refuted at a sample, or at the surfaces of the two numbers between it
+   and the one before. */
 static bool refutes_between(const Sampling *s, const ShapeClaim *claim, const double before[3],
                             double point[3])
 {

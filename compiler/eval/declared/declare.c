@@ -256,8 +256,9 @@ static bool known_corner(Value value, double corner[4])
     return count == 2 || (count == 3 && corner[2] == 0);
 }
 
-/* Where outlines are wanted, of figures of the library that cannot be rounded better by their `core`, too: their formulas
-   fold the plane, and meshes do not see where that is smooth. */
+/* Returns the syntax of an outline.  Where outlines are wanted, figures of the library that cannot
+   be rounded better by their `core` have one, too: their formulas fold the plane, and meshes do not
+   see where that is smooth. */
 static const Syntax *outline_syntax(const Elaboration *e, const Syntax *declaration)
 {
     const Syntax *outline = find_property(declaration, "outline");

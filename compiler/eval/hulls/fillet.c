@@ -18,7 +18,8 @@
 
 enum { MAX_PARTS = 20000, MAX_PAIRS = 20000 };
 
-/* At how many points it is looked for what a fillet adds: of a pair of few, and of many. */
+/* The numbers of points at which it is looked for what a fillet adds: for a pair of few, and of
+   many. */
 enum { POINTS_OF_FEW = 2000, POINTS_OF_MANY = 200 };
 
 /* A part of a CSG node, and the number of the shape that it belongs to. */

@@ -131,7 +131,7 @@ static double greatest_at(Elaboration *e, Node distance, const double point[3])
     return node_range(e->builder, there, 0).high;
 }
 
-/* At a corner it is greatest. */
+/* Tells whether a distance is above 0 somewhere in a box; it is greatest at a corner. */
 static bool box_goes_beyond(Elaboration *e, const Box *box, Node distance)
 {
     bool beyond = !box_is_finite(*box);

@@ -229,7 +229,7 @@ static double parts_size(const Axis *axis, const HullParts *parts)
     return size;
 }
 
-/* With its axes along these unit vectors, its origin on the axis. */
+/* Moves a shape so that its axes are along these unit vectors, and its origin is on the axis. */
 static Value put_in_place(const Hulling *h, const Shape *shape, double axes[3][3], const Axis *axis,
                           double along)
 {

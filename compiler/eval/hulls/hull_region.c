@@ -36,7 +36,7 @@ static bool known_numbers(const Graph *g, Node node, uint32_t count, double *num
     return known;
 }
 
-/* In numbers; false: some depend on the frame, or there is a half-space. */
+/* Finds the parts in numbers; false: some depend on the frame, or there is a half-space. */
 static bool parts_of_extents(Elaboration *e, const Extents *extents, HullParts *parts)
 {
     bool known    = extents->half_spaces.count == 0;
@@ -64,7 +64,8 @@ static void add_point(Elaboration *e, Points *points, const double centre[3], do
         array_push(e->values, points, centre[k] + away * direction[k]);
 }
 
-/* On a spiral that turns by the golden angle: as far from each other as it goes. */
+/* Adds points of a ball on a spiral that turns by the golden angle: they are far from each
+   other. */
 static void add_ball(Elaboration *e, Points *points, const double centre[3], double radius,
                      int corners)
 {

@@ -7,8 +7,8 @@
 #include "compiler/eval/hulls/extents.h"
 #include "compiler/eval/hulls/fillet_zone.h"
 
-/* As far as that matters in a zone; NULL: all of the zone is in it.  `many`: it is one of many, which had
-   best be alike. */
+/* Makes the hull as far as that matters in a zone; NULL: all of the zone is in it.  `many`: it is
+   one of many, which had best be alike. */
 const Shape *hull_region(Elaboration *e, const Call *call, const Extents *extents,
                          const FilletZone *zone, bool many);
 

@@ -43,7 +43,7 @@ static uint32_t named_colors(Elaboration *e, const Argument *argument, Node *col
     return STOPS;
 }
 
-/* Where an element of a list is written, or all of the list. */
+/* Returns where an element of a list is written, or all of the list. */
 static const Syntax *stop_syntax(const Syntax *written, const List *list, size_t index)
 {
     bool elements = written->kind == SYNTAX_LIST && written->count == list->count;

@@ -30,7 +30,7 @@ static Box box_around(const Box *boxes, size_t count)
     return box;
 }
 
-/* For all values of the parameters. */
+/* Returns the box around the scene for all values of the parameters. */
 static Box box_of_all_frames(Elaboration *e)
 {
     const Scene *scene = e->scene;

@@ -44,7 +44,7 @@ typedef struct SlopeTask {
 SlopeTask slope_task(const Graph *graph, Node root, Box box, uint32_t cells, Arena *arena);
 /* Bytes that it needs to be run, aligned as doubles. */
 size_t slope_task_size(const SlopeTask *task);
-/* As graph_slope. */
+/* Finds the slope as graph_slope does. */
 double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *workspace,
                       Node *blame);
 

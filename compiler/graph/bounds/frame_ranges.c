@@ -12,7 +12,7 @@
 #include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/bounds/rules.h"
 
-/* In place of the range of a node that depends on parameters. */
+/* Stands in place of the range of a node that depends on parameters. */
 static Range varies;
 
 /* Nodes whose ranges are not found yet. */
@@ -60,7 +60,7 @@ static bool common_range(Op op, uint32_t index, uint32_t size, Range *const *o,
     return op == OP_COMPONENT || builds || map;
 }
 
-/* By the rule of the row, as if nothing depended on the point. */
+/* Finds a range by the rule of the row, as if nothing depended on the point. */
 static void range_by_rule(const Graph *graph, const Expr *e, Op op, Range *const *o, Range *result)
 {
     GraphType types[MAX_OPERANDS];

@@ -88,7 +88,8 @@ static unsigned clamped(Range a, Range b, Range c)
     return above.high <= c.low ? inner : above.low >= c.high ? C : inner | C;
 }
 
-/* As guard_decides of op_values.h: everywhere, nowhere, or neither. */
+/* Finds which operands count, as guard_decides of op_values.h does: everywhere, nowhere, or
+   neither. */
 static unsigned guarded(Range bound, Range least, Range far)
 {
     Range nearer = range_min(least, far), inside = range_min(far, ZERO);

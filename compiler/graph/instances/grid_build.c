@@ -274,7 +274,7 @@ static void choose_cells(Builder *b)
 
 /* ---- Lists ---- */
 
-/* Between a box and a cell along an axis; 0 where they overlap. */
+/* Returns the gap between a box and a cell along an axis; 0 where they overlap. */
 static double gap_along(const Builder *b, const Box *box, int axis, uint32_t cell)
 {
     double low   = b->grid->low[axis] + cell * b->grid->size;
@@ -293,7 +293,7 @@ static void put_in_list(Grid *grid, size_t cell, uint32_t instance)
         grid->first[cell]++;
 }
 
-/* From lengths to where lists begin. */
+/* Replaces the lengths of lists by where they begin. */
 void grid_begin_lists(Grid *grid, Arena *arena)
 {
     size_t   cells   = grid_cell_count(grid);

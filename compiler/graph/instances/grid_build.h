@@ -63,7 +63,8 @@ bool grid_box_is_empty(const Box *box);
 void grid_begin_lists(Grid *grid, Arena *arena);
 void grid_end_lists(Grid *grid);
 
-/* Where the cells, or few, of a grid are that will be refined; false: there are too many boxes, or one is endless. */
+/* Finds where the cells, or few, of a grid are that will be refined; false: there are too many
+   boxes, or one is endless. */
 bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                        bool few, Arena *scratch);
 

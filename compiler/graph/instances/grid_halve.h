@@ -29,7 +29,7 @@ typedef struct Halving {
     double          least[GRID_PARTS]; /* found: no result in a part is less */
 } Halving;
 
-/* For lists of up to `most` instances. */
+/* Makes a desk for lists of up to `most` instances. */
 HalvingDesk halving_desk_new(const GridBlend *blend, uint32_t most, Arena *scratch);
 double      halving_pad(const Grid *grid);
 

@@ -186,7 +186,7 @@ static int levels_around(const Grid *grid)
     return levels;
 }
 
-/* From the lists that processors have found to those of the grid. */
+/* Gathers the lists that processors have found into those of the grid. */
 static void gather_lists(const Sifter *s, Arena *scratch)
 {
     Grid     *grid    = s->grid;

@@ -14,7 +14,7 @@ typedef struct Parabolas {
     size_t *center;
 } Parabolas;
 
-/* Where the lower of two parabolas changes, the second one centered to the right. */
+/* Finds where the lower of two parabolas changes, the second one centered to the right. */
 static double parabolas_cross(double value, size_t center, double other, size_t right)
 {
     double a = (double)center, b = (double)right;

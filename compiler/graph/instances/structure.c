@@ -100,8 +100,8 @@ static uint64_t hash_value(NodeValue value)
     return hash;
 }
 
-/* Without numbers where a slot would be.  Nodes are not told apart by where they stand: others may
-   have stood there before (graph_release). */
+/* Hashes a use without numbers where a slot would be.  Nodes are not told apart by where they
+   stand: others may have stood there before (graph_release). */
 static uint64_t hash_use(const Structures *structures, const Expr *user, int operand, Node node)
 {
     if (node == NODE_NONE)

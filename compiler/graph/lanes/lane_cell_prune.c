@@ -51,7 +51,7 @@ static Range range_by_slope(const Ball *ball, uint32_t row)
     return isfinite(value) && isfinite(reach) ? (Range){value - reach, value + reach} : ANYTHING;
 }
 
-/* By the slope, or else by those of the operands. */
+/* Finds the range of a row by its slope, or else by the ranges of the operands. */
 static Range range_of_row(const Ball *ball, uint32_t row)
 {
     const CellStep *step = step_of(ball->tape, row);
@@ -249,7 +249,8 @@ static void need_of_step(Pruning *p, const CellStep *step, uint32_t row)
 
 /* ---- the shorter tape ---- */
 
-/* Where a row of the longer tape is in the shorter one; what is before the steps stays where it is. */
+/* Returns where a row of the longer tape is in the shorter one; what is before the steps stays
+   where it is. */
 static uint32_t moved(const Pruning *p, uint32_t row)
 {
     return step_of(p->ball.tape, row) ? p->work->now[row] : row;

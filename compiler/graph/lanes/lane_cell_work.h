@@ -8,21 +8,22 @@
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_cells.h"
 
-/* As many instances of a call have their bodies in a tape at most, and these as many steps. */
+/* At most so many instances of a call have their bodies in a tape, and these so many steps. */
 enum { MAX_CELL_INSTANCES = 64, MAX_BODY_STEPS = 4096 };
 
 struct CellWork {
     NodeValue *values;
     float    **rows; /* of each depth */
-    /* By row, while a tape is made: whether it is needed, and then between a floor and a cap; the row that stands for it;
-       and where that is in the tape that is made. */
+    /* What is known of rows while a tape is made: whether one is needed, and then between a floor
+       and a cap; the row that stands for it; and where that is in the tape that is made. */
     bool     *needed;
     float    *caps, *floors;
     uint32_t *same, *now;
     CellStep *steps; /* a stack */
     CellCall *calls; /* a stack, too */
     size_t    step_count, call_count;
-    /* By call of the tape that is shortened: the instances that may count in the ball; none: it stays a call. */
+    /* The instances that may count in the ball, of each call of the tape that is shortened; none:
+       it stays a call. */
     uint32_t (*instances)[MAX_CELL_INSTANCES];
     uint32_t *instance_counts;
     uint32_t *body_rows, *body_scalars; /* of a body whose steps are added */

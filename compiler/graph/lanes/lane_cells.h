@@ -20,7 +20,8 @@
 
 enum { CELL_LANES = 16 };
 
-/* On rows: those of constants are the first, then inputs, then a row for each step, in their order. */
+/* A step works on rows: those of constants are the first, then inputs, then a row for each step, in
+   their order. */
 typedef struct CellStep {
     uint16_t op, operand_count;
     uint32_t from[MAX_OPERANDS]; /* 0 behind the last; of LANE_CALL the number of the call */
@@ -78,9 +79,9 @@ float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float mar
 /* How much the distance differs in a ball from that in its middle, at most. */
 float cell_reach(const CellTape *tape, float radius, float margin);
 
-/* After a run in the middles of balls: what is left in the ball of a lane.  `margin` is what rounding may
-   make of coordinates.  It lives until its mark, which was taken before, is released.  As many may live as
-   the work has depth. */
+/* Shorten a tape, after a run in the middles of balls, to what is left in the ball of a lane.
+   `margin` is what rounding may make of coordinates.  The new tape lives until its mark, which was
+   taken before, is released.  As many may live as the work has depth. */
 typedef struct CellMark {
     size_t steps, calls;
 } CellMark;

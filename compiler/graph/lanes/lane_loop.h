@@ -39,7 +39,7 @@ LESSER(float, float)
 #define LANE_NAME_(loop, name) loop##_##name
 #define LANE_NAME(loop, name)  LANE_NAME_(loop, name)
 
-/* For each lane i of the blocks; rows are the same or apart. */
+/* Goes through each lane i of the blocks; rows are the same, or do not overlap. */
 #define EACH_LANE(blocks)                             \
     for (size_t block = 0; block < (blocks); block++) \
     LANES_APART for (size_t i = LANE_BLOCK * block; i < LANE_BLOCK * block + LANE_BLOCK; i++)

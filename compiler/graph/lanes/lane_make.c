@@ -241,7 +241,7 @@ static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *t
         emit_call(b, node, to);
 }
 
-/* In a body, a number of the instance's own row. */
+/* Emits, in a body, a number of the instance's own row. */
 static bool emit_row(Builder *b, const Expr *e, uint32_t *to)
 {
     if (e->op != OP_row || !b->in_body || b->graph->items[e->operands[1]].op != OP_INSTANCE_ROW)
@@ -303,7 +303,8 @@ static void add_outputs(Builder *b, Node root)
         array_push(b->arena, &b->to->outputs, parts->of[k]);
 }
 
-/* As queries find the distance of a scene: the least of the first ones, cut by the others. */
+/* Emits the distance of a scene as queries find it: the least of the first ones, cut by the
+   others. */
 static uint32_t emit_least(Builder *b, const Node *roots, size_t count, size_t cuts)
 {
     assert(count > cuts);

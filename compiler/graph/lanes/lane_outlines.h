@@ -7,8 +7,8 @@
 
 #include "compiler/graph/lanes/lanes.h"
 
-/* After a run over a box: those that may be the nearest in it, of the call that is step `step`.  False: it is no
-   outline, or there are more of them. */
+/* Finds, after a run over a box, the instances that may be the nearest in it, of the call that is
+   step `step`.  False: it is no outline, or there are more of them. */
 bool lane_outline_instances(const LaneTape *tape, const LaneRanges *ranges, size_t step,
                             uint32_t instances[MAX_LANE_INSTANCES], uint32_t *count);
 /* The straight instances that come near a box, if there is one, or two that meet.  A line is by x, by y and what is added; it
@@ -18,13 +18,14 @@ typedef struct OutlineLines {
     uint32_t count;
     bool     convex; /* where two meet: the inside is where both are below 0, else where one is */
 } OutlineLines;
-/* After a run over a box.  In the box the distance less `level` has the sign that the greater of the lines less `level`, or at
-   a reflex corner the lesser, has; if the level is not above 0 at a convex corner, nor below at a reflex one.  False: more come
-   near than that, or they are curved. */
+/* Finds the lines after a run over a box.  In the box the distance less `level` has the sign that
+   the greater of the lines less `level`, or at a reflex corner the lesser, has; if the level is not
+   above 0 at a convex corner, nor below at a reflex one.  False: more come near than that, or they
+   are curved. */
 bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t step, double level,
                         OutlineLines *lines);
 
-/* Its derivatives by x and y of the point of the call. */
+/* The derivatives of a distance by x and y of the point of the call. */
 typedef struct OutlinePartials {
     Range first[2], second[2][2]; /* second[1][0] is not set */
     bool  known;

@@ -159,7 +159,7 @@ static uint32_t find_sharers(const Pruning *p, const LaneCall *call, uint32_t ve
     return count;
 }
 
-/* Where one or two have a share; false: it stays a call. */
+/* Replaces a call where one or two instances have a share; false: it stays a call. */
 static bool prune_shares(Pruning *p, size_t i)
 {
     LaneStep step = p->from->steps[i];
@@ -282,7 +282,7 @@ static uint32_t add_instance(Pruning *p, const LaneCall *call, const InstanceTab
     return output & LANE_SCALAR ? body_scalar(p, body, output & ~LANE_SCALAR) : values[output];
 }
 
-/* Where few instances are near, the steps of these; false: it stays a call. */
+/* Replaces a call by the steps of its instances where few are near; false: it stays a call. */
 static bool prune_group(Pruning *p, size_t i)
 {
     const LaneStep *step  = &p->from->steps[i];

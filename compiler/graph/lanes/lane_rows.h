@@ -30,7 +30,8 @@ typedef struct LaneSteps {
 uint32_t lane_steps_add(LaneSteps *steps, LaneStep step);
 /* A scalar that is this number; returns the operand. */
 uint32_t lane_steps_number(LaneSteps *steps, double number);
-/* By node: how fast it changes with the point at most, wherever that is; infinite: it may jump, or there is no bound. */
+/* Finds how fast each node changes with the point at most, wherever that is; infinite: it may jump,
+   or there is no bound. */
 double *lane_steepest(const Graph *graph, Arena *arena);
 /* Drops the steps that no output needs, and gives the others rows. */
 LaneTape lane_steps_finish(LaneSteps *steps, const Tape *tape);

@@ -260,8 +260,8 @@ typedef struct Boundless {
 
 static bool is_boundless(Boundless *b, uint32_t operand);
 
-/* By what its row says: its own derivatives have no bound or, if it may be one of its operands somewhere or is linear, those
-   of an operand that counts. */
+/* Tells by a step's row whether its own derivatives have no bound or, if it may be one of its
+   operands somewhere or is linear, those of an operand that counts. */
 static bool step_is_boundless(Boundless *b, const LaneStep *step, Range result)
 {
     const NumberRow *row = lane_row(step);

@@ -78,7 +78,7 @@ typedef struct LaneCall {
     uint32_t        from[MAX_OPERANDS][4], to[4]; /* rows */
 } LaneCall;
 
-/* Where a scalar comes from: a component of a node of the frame, or, with NODE_NONE, a number. */
+/* The source of a scalar: a component of a node of the frame, or, with NODE_NONE, a number. */
 typedef struct LaneScalar {
     Node     node;
     uint32_t component;
@@ -173,7 +173,7 @@ static inline size_t lane_most_rows(const LaneTape *tape)
 size_t   lane_work_bytes(const LaneTape *tape);
 LaneWork lane_work_in(void *memory, NodeValue *values);
 
-/* Where points are: on surfaces with these normals, seen by pixels of these radii; NULL: 0. */
+/* Points on surfaces with these normals, seen by pixels of these radii; NULL: 0. */
 typedef struct LanePoints {
     const double (*points)[3], (*normals)[3];
     const double *footprints;
@@ -197,7 +197,7 @@ typedef struct LaneSet {
 
 /* The sets that this processor has, best first; the last is plain C. */
 size_t lane_sets(const LaneSet **sets);
-/* For tests: only this one is used, by all threads; NULL: the best. */
+/* Makes all threads use this set only, for tests; NULL: the best. */
 void lane_use_set(const LaneSet *set);
 /* The one that is used. */
 const LaneSet *lane_used_set(void);
@@ -245,12 +245,14 @@ typedef struct LaneSlope {
 
 /* Room for those of a lane tape, and of all that it is pruned to; for one thread. */
 LaneSlope *lane_slopes_new(const LaneTape *tape, Arena *arena);
-/* After a run over a box: those of output 0 in it.  They are of its pieces if it chooses between some.  False: it may not be a number, or there is no bound. */
+/* Finds, after a run over a box, the slopes of output 0 in it.  They are of its pieces if it
+   chooses between some.  False: it may not be a number, or there is no bound. */
 bool lane_slopes_run(const LaneTape *tape, const LaneRanges *ranges, LaneSlope *slopes,
                      LaneSlope *slope);
 
-/* After a run over a box: whether it is clear at once that lane_slopes_run finds no bound for an operand, which then need
-   not be asked.  So it is behind a sign, or behind a root of what may be 0. */
+/* Tells, after a run over a box, whether it is clear at once that lane_slopes_run finds no bound
+   for an operand, which then need not be asked.  So it is behind a sign, or behind a root of what
+   may be 0. */
 bool lane_is_boundless(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand);
 
 /* Ranges of the second derivatives of a value: by xx, yy, zz, yz, xz and xy. */
@@ -261,16 +263,17 @@ typedef struct LaneHessian {
 
 /* Room for those of a lane tape, and of all that it is pruned to; for one thread. */
 LaneHessian *lane_hessians_new(const LaneTape *tape, Arena *arena);
-/* After a run of slopes over a box: those of output 0 in it, whose first derivatives do not jump there.  False: they
-   may, or there is no bound. */
+/* Finds, after a run of slopes over a box, the second derivatives of output 0 in it, whose first
+   derivatives do not jump there.  False: they may, or there is no bound. */
 bool lane_hessians_run(const LaneTape *tape, const LaneRanges *ranges, const LaneSlope *slopes,
                        LaneHessian *hessians, LaneHessian *hessian);
 
-/* After a run over a box: whether output 0 is one of several numbers there and it is not known which.  Then it has no
-   second derivatives, and need not be asked for them. */
+/* Tells, after a run over a box, whether output 0 is one of several numbers there and it is not
+   known which.  Then it has no second derivatives, and need not be asked for them. */
 bool lane_is_undecided(const LaneTape *tape, const LaneRanges *ranges);
 
-/* After a run over a box: the first `outputs` outputs without what has no influence in it. */
+/* Makes, after a run over a box, a tape of the first `outputs` outputs without what has no
+   influence in it. */
 LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outputs, Arena *arena);
 
 #endif

@@ -298,7 +298,8 @@ static bool is_in_question(Search *s, const Cell *cell, uint32_t i, const bool *
     return more && !size.least;
 }
 
-/* From the whole downwards; returns whether anything is in question for smaller boxes. */
+/* Finds influences from the whole downwards; returns whether anything is in question for smaller
+   boxes. */
 static bool find_influences(Search *s, const Cell *cell, bool *matters, Size size)
 {
     CsgTree *tree            = s->tree;

@@ -227,7 +227,7 @@ static uint32_t add_part(const Making *m, Node node)
     return *known - 1;
 }
 
-/* In which ways the whole depends on its parts. */
+/* Finds in which ways the whole depends on its parts. */
 static void find_signs(CsgTree *tree)
 {
     tree->parts[tree->count - 1].upwards = true;

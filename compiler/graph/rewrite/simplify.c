@@ -220,7 +220,7 @@ static Node simplify_extremum(const Rewrite *s)
     return NODE_NONE;
 }
 
-/* From constant to constant by k x + b is a constant times x and another. */
+/* Simplifies a ramp: from constant to constant by k x + b it is a constant times x and another. */
 static Node simplify_ramp(const Rewrite *s)
 {
     Node from = s->o[0], x = s->o[2];

@@ -66,7 +66,7 @@ static Node logistic(Blending *x, Node t)
 
 /* ---- the column `weights` ---- */
 
-/* By the weight of the farther one: 1/2 at most, the less the farther it is. */
+/* Returns both weights by that of the farther one: 1/2 at most, the less the farther it is. */
 static Weights by_farther(Blending *x, Node far)
 {
     Graph  *g    = x->graph;

@@ -54,8 +54,9 @@ static BallTerm size_term(const BallContext *x, Node value, BallTerm u)
     return term;
 }
 
-/* Between edges that are known: t^2 (3 - 2 t), t = (u - low) / (high - low) within 0 and 1.  Its
-   second derivative by t is at most 6, and 0 where t does not come within 0 and 1. */
+/* Finds the term of a smoothstep between known edges: t^2 (3 - 2 t), t = (u - low) / (high - low)
+   within 0 and 1.  Its second derivative by t is at most 6, and 0 where t does not come within 0
+   and 1. */
 static BallTerm smoothstep_term(BallContext *x, Node value, Node low, Node high, BallTerm u)
 {
     Graph      *g = x->graph;

@@ -11,7 +11,8 @@ typedef struct Curve {
     Node slope, bend;
 } Curve;
 
-/* From u, f(u) and how far u may go in the ball; without a radius there is no `bend`. */
+/* Finds a curve from u, f(u) and how far u may go in the ball; without a radius there is no
+   `bend`. */
 typedef Curve CurveOf(BallContext *x, BallTerm u, Node value, Node reach);
 
 CurveOf curve_square, curve_sin, curve_cos, curve_atan, curve_tanh, curve_exp, curve_exp2,

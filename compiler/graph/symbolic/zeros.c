@@ -127,7 +127,7 @@ static bool bound_by_leading_form(ZeroSearch *search, Box *zeros)
 
 /* ---- by slabs ---- */
 
-/* Where to cut a side in two. */
+/* Returns where to cut a side in two. */
 static double cut_of(Range side)
 {
     if (isfinite(side.low) && isfinite(side.high))
@@ -173,7 +173,8 @@ static bool cut_side(ZeroSearch *search, Box *box, int side, double at, int sign
     return true;
 }
 
-/* From as far out as numbers of single precision can be squared inwards, by ever smaller steps. */
+/* Cuts an endless side from as far out as numbers of single precision can be squared inwards, by
+   ever smaller steps. */
 static bool cut_endless_side(ZeroSearch *search, Box *box, int side, int sign)
 {
     double other = side % 2 ? box->axis[side / 2].low : box->axis[side / 2].high;
@@ -205,7 +206,7 @@ static bool cut_finite_side(ZeroSearch *search, Box *box, int side, int sign)
     return false;
 }
 
-/* As near to the zeros as ranges tell. */
+/* Cuts sides as near to the zeros as ranges tell. */
 static void cut_sides(ZeroSearch *search, Box *box, int sign)
 {
     bool any = true;
