@@ -8,7 +8,8 @@
 
 typedef struct RaySet {
     const char *name; /* as of LaneSet */
-    /* Where the distance is evaluated next, at `last` at the farthest; returns how many rays march before that. */
+    /* Finds where the distance is evaluated next, at `last` at the farthest; returns how many rays
+       march before that. */
     uint32_t (*place)(const RayBlock *block, float last, float at[RAYS_OF_BLOCK],
                       float points[3][RAYS_OF_BLOCK]);
     /* Takes the distances there, which are right up to the cap. */

@@ -19,7 +19,7 @@
     _Pragma("GCC ivdep") _Pragma("GCC unroll 1") for (size_t i = 0; i < RAYS_OF_BLOCK; i++)
 #endif
 
-/* As in trace.comp, frame.glsl and march_step.glsl. */
+/* These numbers are those of trace.comp, frame.glsl and march_step.glsl. */
 static const float ROUNDING = 2.4e-7f, TOLERANCE = 0.05f, MAX_TOLERANCE = 0.0125f, LEARNING = 0.3f,
                    OVERSHOOT = 1.05f, SHALLOW = 0.25f, SEAM = 4;
 
@@ -127,7 +127,7 @@ static void take(RayBlock *block, const RayRule *rule, const float ats[RAYS_OF_B
     }
 }
 
-/* As in secondary.comp. */
+/* These numbers are those of secondary.comp. */
 static const float SAFETY = 0.6f, BLOCK_LEARNING = 0.5f, STEEPEST = 0.9f, NEAR_START = 8,
                    MIN_OF_LENGTH = 0.25f;
 /* A cone that takes longer proves nothing: rays are sent. */

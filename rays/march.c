@@ -264,7 +264,7 @@ static void begin(March *m, size_t count, float *first, float *last)
     }
 }
 
-/* Where slab `number` begins: slabs are longer where rays are wider. */
+/* Returns where slab `number` begins: slabs are longer where rays are wider. */
 static float slab_at(float first, float last, int number)
 {
     const float even = first < last ? sqrtf(first / last) : 1, part = (float)number / SLABS;

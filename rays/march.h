@@ -7,7 +7,7 @@
 #include "compiler/graph/lanes/lane_cells.h"
 #include "rays/lanes.h"
 
-/* In a cell: distances are by its tape, and rows of the work of this depth. */
+/* A cell that rays are in: its tape gives distances, in the rows of the work of this depth. */
 typedef struct RayCell {
     const CellTape *tape;
     CellWork       *work;

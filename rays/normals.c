@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* As there. */
+/* These numbers are those of the two files. */
 static const float NOISE = 1e-4f, MAX_WIDTH = 1.0f / 64, ROUNDING = 2.4e-7f, NEARER = 0.02f,
                    NOISE_NEARER = 4e-5f, OUTWARD_REACHES = 3, FLAT_ENOUGH = 0.0175f,
                    FLATTER = 0.008f, BESIDE_REACHES = 8, ABOVE_REACHES = 4, FACING_ALIKE = 0.3f,

@@ -78,7 +78,7 @@ void ray_field_begin(RayField *field);
 /* Why rays of a scene cannot be marched, in words of its author; NULL: they can. */
 const char *ray_field_refuses(const KrsScene *scene);
 
-/* Where rays meet planes, up to `farthest`. */
+/* Finds where rays meet planes, up to `farthest`. */
 void ray_field_meet_planes(RayField *field, size_t part, float farthest, RayBlock *block);
 /* Marches the rays of a tile, in one of the parts of run_in_parallel.  Returns how many distances were evaluated. */
 uint64_t ray_field_march(RayField *field, size_t part, RayBlock *blocks, size_t count,
