@@ -24,8 +24,9 @@ typedef struct Buffer {
 /* A buffer of `size` bytes (at least 1) for every use a shader has.  `name` stands in messages:
    "cannot make room for the <name>". */
 bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, const char *name);
-/* At least so many bytes, for a buffer that is read as texels: llvmpipe compiles a shader anew when
-   the size of one becomes a power of two, or 256 times it a multiple of that; this is neither. */
+/* Returns at least so many bytes, for a buffer that is read as texels: llvmpipe compiles a shader
+   anew when the size of one becomes a power of two, or 256 times it a multiple of that; this is
+   neither. */
 VkDeviceSize buffer_texel_bytes(VkDeviceSize bytes);
 /* Makes it readable as texels of so many bytes and that format, where it is not so far. */
 bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes, const char *name);

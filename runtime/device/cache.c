@@ -33,7 +33,8 @@ static const char *const endings[CACHE_KIND_COUNT] = {
 };
 static const char temporary_prefix[] = ".krs-cache-";
 
-/* In the byte order of the machine: foreign numbers do not match.  No padding. */
+/* The header of a file, in the byte order of the machine: foreign numbers do not match.  It has no
+   padding. */
 typedef struct Header {
     char     magic[8];
     uint64_t kind;

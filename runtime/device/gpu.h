@@ -30,10 +30,10 @@ bool gpu_begin(Gpu *gpu);
 /* Notes the time when all that was recorded so far has run; at most MAX_MARKS times. */
 enum { MAX_MARKS = 64 };
 void gpu_mark(Gpu *gpu);
-/* After gpu_finish: milliseconds up to the mark of this number, from the one before or from the
-   start; 0 without a clock. */
+/* Tells, after gpu_finish, the milliseconds up to the mark of this number, from the one before or
+   from the start; 0 without a clock. */
 bool gpu_marked(Gpu *gpu, uint32_t mark, double *ms);
-/* Between two commands of which the second uses what the first wrote. */
+/* Separates two commands of which the second uses what the first wrote. */
 void gpu_barrier(Gpu *gpu);
 /* Runs what was recorded, waits, and adds its milliseconds to *ms: by the device's clock where
    it has one. */
@@ -45,11 +45,11 @@ bool gpu_finish(Gpu *gpu, double *ms);
 bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes,
                  uint32_t *number);
-/* After gpu_wait: how long prewarming took on the device; 0 without a clock, and behind the first
-   MAX_TIMED_PREWARMS. */
+/* Tells, after gpu_wait, how long prewarming took on the device; 0 without a clock, and behind the
+   first MAX_TIMED_PREWARMS. */
 enum { MAX_TIMED_PREWARMS = 256 };
 double gpu_prewarm_ms(const Gpu *gpu, uint32_t number);
-/* Until all that is prewarmed has run. */
+/* Waits until all that is prewarmed has run. */
 bool gpu_wait(Gpu *gpu);
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "runtime/device/gpu_state.h"
 
-/* After the device was opened, and before it is closed. */
+/* These are called after the device was opened, and before it is closed. */
 void pipelines_open(Gpu *gpu);
 void pipelines_close(Gpu *gpu);
 

@@ -44,7 +44,8 @@ static bool has_surfaces(const ShaderSource *source)
     return !source->scene && source->defines && strstr(source->defines, "#define SURFACES\n");
 }
 
-/* With the files that it includes in place of the lines that say so; false: one is missing. */
+/* Appends a file, with those that it includes in place of the lines that say so; false: one is
+   missing. */
 static bool append_file(IncludeExpansion *to, const char *name, size_t name_length)
 {
     static const char include[] = "#include \"";

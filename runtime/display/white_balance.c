@@ -14,7 +14,7 @@ static ColorMatrix multiply(ColorMatrix a, ColorMatrix b)
     return product;
 }
 
-/* By the cofactors; the matrices here are far from singular. */
+/* Inverts by the cofactors; the matrices here are far from singular. */
 static ColorMatrix invert(ColorMatrix of)
 {
     ColorMatrix out;

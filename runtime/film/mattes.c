@@ -72,7 +72,8 @@ void mattes_clear(KrsPicture *picture)
             memset(picture->mattes[kind], 0, entries_of(picture) * sizeof(KrsMatte));
 }
 
-/* By insertion; equal ones stay in the order in which they were hit. */
+/* Sorts by insertion, the most covered first; equal ones stay in the order in which they were
+   hit. */
 static void sort_entries(KrsMatte entries[KRS_MATTE_RANKS])
 {
     for (int i = 1; i < KRS_MATTE_RANKS; i++) {

@@ -9,13 +9,13 @@
 
 /* Tells whether the error of pixels is estimated, for these options. */
 bool noise_is_wanted(const KrsRenderOptions *options);
-/* Before samples are added to the band in the buffers, whose pixels have `samples` so far.  Clears
-   *goes_on if all of them have ended. */
+/* Lists the pixels that go on, before samples are added to the band in the buffers, whose pixels
+   have `samples` so far.  Clears *goes_on if all of them have ended. */
 bool noise_resume(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples,
                   bool *goes_on);
-/* After a sample of each pixel: there are `samples` now. */
+/* Estimates errors after a sample of each pixel: there are `samples` now. */
 bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples, bool *goes_on);
-/* After all samples: gives pixels that have ended their colours back. */
+/* Gives pixels that have ended their colours back, after all samples. */
 bool noise_restore(Job *job, const WorkBlock *work, uint32_t samples);
 
 /* Completes the AOVs of noise of a picture for pixels that have not ended. */

@@ -107,7 +107,7 @@ static void add_background(Preview *p)
                    0);
 }
 
-/* By the host, or by a shader. */
+/* Adds the pass that finds occluders, by the host or by a shader. */
 static void add_occluders(Preview *p, PassConstants constants)
 {
     plan_add(p->plan, (Pass){.kind      = p->plan->surfaces ? PASS_OCCLUDERS : PASS_ITEMS,

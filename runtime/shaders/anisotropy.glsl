@@ -44,7 +44,7 @@ vec2 load_wide_albedo(uint number, vec4 weights)
                 dot(weights, vec4(unpackUnorm2x16(row.z), unpackUnorm2x16(row.w))));
 }
 
-// Between two cosines and two roughnesses.
+// Interpolates between two cosines and two roughnesses.
 vec2 mix_wide_albedos(uint low, vec2 part, vec4 weights)
 {
     uint high = low + WIDE_COSINES;

@@ -53,9 +53,10 @@ float find_height(HitPoint hit, float evenness, float distance)
 }
 #endif
 
-// Where a ray starts that leaves the hit into a direction, on the side `side` of the surface.  That
-// is so far along the ray that it is as high above the surface as it must be.  So the ray itself is
-// not displaced, unless it leaves the surface at less than this cosine: then it is lifted, too.
+// Finds where a ray starts that leaves the hit into a direction, on the side `side` of the surface.
+// That is so far along the ray that it is as high above the surface as it must be.  So the ray
+// itself is not displaced, unless it leaves the surface at less than this cosine: then it is
+// lifted, too.
 const float MIN_COSINE = 0.25;
 vec3 find_start(HitPoint hit, vec3 direction, vec4 facing, float side, float distance)
 {

@@ -34,8 +34,9 @@ struct RayEnd {
 // texels.  lavapipe compiles each number of a buffer access to a loop over the lanes, which takes
 // five times as long.  Buffers are for what is written, and what is counted.
 
-// Where rays and beams end: the bits of t, and the rest by pack_ray.  First are the rays of pixels,
-// then the beams of 8x8 tiles, of 32x32 tiles, and of the quarters of 8x8 tiles, tile by tile.
+// The ends of rays and beams: the bits of t, and the rest by pack_ray.  First are the rays of
+// pixels, then the beams of 8x8 tiles, of 32x32 tiles, and of the quarters of 8x8 tiles, tile by
+// tile.
 layout(std430, set = 1, binding = ENDS_BINDING) buffer Ends { uvec2 ends[]; };
 layout(std430, set = 1, binding = HITS_BINDING) writeonly buffer HitNumbers {
     float hit_numbers[];
@@ -206,14 +207,14 @@ bool has_rays(uint tile, uint quarter, bool is_pixel, uint number)
     return (is_pixel ? bits >> (number & 15u) & 1u : all) != 0u;
 }
 
-// Where the rows of a pixel's path begin; hits have rows for whole tiles.
+// Returns where the rows of a pixel's path begin; hits have rows for whole tiles.
 uint path_at(uint index) { return HIT_ROWS * 64u * count_tiles() + PATH_ROWS * index; }
 
 vec4 load_path(uint row, uint index) { return load_hit_row(path_at(index) + row); }
 
 void store_path(uint row, uint index, vec4 numbers) { hits[path_at(index) + row] = numbers; }
 
-// From the lowest bit on: state, side, unresolved, march group; then the steps.
+// Packs from the lowest bit on: state, side, unresolved, march group; then the steps.
 uint pack_ray(RayEnd ray)
 {
     return ray.state | (ray.side < 0.0 ? 4u : 0u) | (ray.unresolved ? 8u : 0u) |

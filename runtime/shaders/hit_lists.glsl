@@ -88,8 +88,8 @@ uint sparse_pixels_of_quarter(uint number)
     return ((number & 1u) == 0u ? 0x0505u : 0x0a0au) << ((number & 2u) == 0u ? 0u : 4u);
 }
 
-// Where the ray of a pixel hits.  This is computed again wherever it is needed, which costs no more
-// than to load it.
+// The point that the ray of a pixel hits.  It is computed again wherever it is needed, which costs
+// no more than to load it.
 struct HitPoint {
     uint  slot;
     vec3  position;

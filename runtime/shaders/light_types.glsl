@@ -106,7 +106,7 @@ float gap_of_sine(float sine_squared)
     return sine_squared / (1.0 + sqrt(max(1.0 - sine_squared, 0.0)));
 }
 
-// As seen from a place: 1 less the cosine of its radius.
+// Finds 1 less the cosine of a light's angular radius, as seen from a place.
 float find_gap(Light light, float distance_squared)
 {
     if (is_positional(light))
@@ -189,7 +189,7 @@ float find_share(Light light, vec3 direction)
                ? share * smoothstep(light.outer, light.inner + 1e-6, cosine) : share;
 }
 
-// As place_on_NAME; a disc is as it is given.
+// Places a point as place_on_NAME does; a disc is as it is given.
 void place_on_light(Light light, vec2 square, inout vec2 point, inout vec3 right, inout vec3 up)
 {
     uint type = light.kind / LIGHT_FIRST_TYPE;

@@ -12,8 +12,8 @@
 #include "limits.glsl"
 #include "plate.glsl"
 
-// Where a ray meets the plane of the plate in its pixel.  At an edge of the plate that may be far from
-// the pixel's own depth, which holds then.
+// Finds where a ray meets the plane of the plate in its pixel.  At an edge of the plate that may be
+// far from the pixel's own depth, which holds then.
 const float MAX_TILTED = 1.25;
 float find_plate(uint index, vec3 origin, vec3 direction, float at_depth)
 {

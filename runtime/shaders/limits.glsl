@@ -18,8 +18,8 @@ float find_depth_rate(vec3 direction)
     return along ? dot(direction, frame.forward.xyz) : 1.0;
 }
 
-// Where the ray of a pixel need go no farther.  It goes a little beyond its depth, so that the steps
-// before stay as they are; limit.comp ends it there.
+// Finds where the ray of a pixel need go no farther.  It goes a little beyond its depth, so that
+// the steps before stay as they are; limit.comp ends it there.
 const float BEYOND_LIMIT = 1.02;
 float find_end_by_limit(uint index, vec3 direction)
 {

@@ -30,7 +30,7 @@ layout(std430, set = 1, binding = QUERY_RAYS_BINDING) readonly buffer QueryRays 
     QueryRay query_rays[];
 };
 layout(std430, set = 1, binding = RAY_HITS_BINDING) writeonly buffer RayHits { RayHit ray_hits[]; };
-// Where rays hit, or were given up, for point_query.comp.
+// The points where rays hit, or were given up, for point_query.comp.
 layout(std430, set = 1, binding = POINTS_BINDING) writeonly buffer Points { Point points[]; };
 
 uint  index;              // of the ray

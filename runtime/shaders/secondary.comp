@@ -106,7 +106,7 @@ void take_distance(float distance)
     bool  arrives = t + max(distance, min_step) >= end;
     step_limit = !steps_back && (inside || arrives) ? 0u : step_limit;
     took_least_step = !steps_back && distance < min_step;
-    // Where the ray enters the solid, between the last position and this one.
+    // The ray enters the solid between the last position and this one.
     float crossing = last_step * distance / max(last_distance - distance, 1e-30);
     float relaxed = relax(around);
 #ifdef STEPS // inside of a polynomial the length may reach to its other side

@@ -37,7 +37,7 @@ const float STEP_GROWTH = 1.008, STEP_GROWTH_OF_SKY = 1.08;
 // of all of it where it is farther than so many reaches: what is out there and counts is large.  Most of
 // those that recede more slowly graze a surface, so that they count little.
 const float MIN_OF_LENGTH = 0.25, FAR_REACHES = 60.0;
-// For so long a ray of a path that begins behind its surface is not blocked by that.
+// A ray of a path that begins behind its surface is not blocked by that for so long.
 const float LEAVING_IN_PIXELS = 0.125;
 // The margin around a cone, in pixels: if the cone is empty, the light is visible from pixels as
 // near as that, too.
@@ -105,7 +105,7 @@ vec2 sample_now()
     return sample_square(work.corner + pixel_of(hit.slot), control.ray, use, control.seed);
 }
 
-// Where a cone, with its whole width, has left the box around the scene.
+// Finds where a cone, with its whole width, has left the box around the scene.
 float find_end_of_cone()
 {
     vec3 to_walls = mix(start - frame.low.xyz, frame.high.xyz - start,
@@ -168,7 +168,8 @@ void aim_over_hemisphere(vec3 normal, vec2 disc)
 vec3 added; // by the light if it is visible,
 uint row;   // to this row of results
 
-// Where the path was scattered; its ray has gone on.  That of the light starts as high at least.
+// Finds where the path was scattered; its ray has gone on.  That of the light starts as high at
+// least.
 HitPoint hit_of_path(uint slot)
 {
     uint index = index_of(pixel_of(slot));

@@ -23,7 +23,7 @@ bool has_sky_map() { return frame.sky_map.x > 0.0; }
 
 uvec2 sky_size() { return uvec2(frame.sky_map.xy); }
 
-// Where a direction is on the picture, in parts of its width and height.
+// Finds where a direction is on the picture, in parts of its width and height.
 vec2 place_on_sky(vec3 direction)
 {
     float longitude = krs_atan2(direction.x, -direction.z) + frame.sky_map.z;

@@ -37,14 +37,14 @@ void begin_chances(uvec2 pixel)
               hash_bits(0x30000u + control.value + hash_bits(control.seed)))));
 }
 
-// In (0, 1).
+// Returns a random number in (0, 1).
 float find_chance()
 {
     chances += 0x9e3779b9u;
     return (float(hash_bits(chances) >> 9u) + 0.5) / 8388608.0;
 }
 
-// On the unit sphere.
+// Chooses a point on the unit sphere, evenly.
 vec3 choose_anywhere()
 {
     float z = 2.0 * find_chance() - 1.0, angle = 2.0 * PI * find_chance();
@@ -81,7 +81,7 @@ vec3 find_diffused(Inside inside, float radius)
     return mix(sunk, vec3(1.0), lessThan(x, vec3(1e-3)));
 }
 
-// By how much each colour is chosen.
+// Finds with what probability each colour is chosen.
 vec3 find_shares(vec3 weight) { return weight / max(dot(weight, vec3(1.0)), 1e-30); }
 
 float choose_length(Inside inside, vec3 weight)
@@ -94,7 +94,7 @@ float choose_length(Inside inside, vec3 weight)
     return -log(find_chance()) / density;
 }
 
-// After a length at whose end there is an event, or a wall.
+// Weighs light after a length at whose end there is an event, or a wall.
 vec3 weigh_event(Inside inside, vec3 weight, float length)
 {
     vec3 left = inside.density * exp(-inside.density * length);

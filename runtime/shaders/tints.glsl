@@ -26,7 +26,7 @@ Glass find_glass_at(vec3 position, vec3 toward, float width)
                  max(surface.absorption, 0.0), 1.0 - head_on * head_on);
 }
 
-// Where the way to a light ends.  The middle of the light stands for all of it.
+// Finds the way to a light, and where it ends.  The middle of the light stands for all of it.
 vec3 find_way_to(Light light, vec3 start, out float end)
 {
     bool  positional = (light.kind & LIGHT_POSITIONAL) != 0u;
@@ -37,7 +37,7 @@ vec3 find_way_to(Light light, vec3 start, out float end)
     return toward;
 }
 
-// Where such a way starts.
+// Finds where such a way starts.
 vec3 find_start_of_way(HitPoint hit, vec3 facing)
 {
     return hit.position + find_height(hit, 0.0, 0.0) * facing;

@@ -417,7 +417,7 @@ float item_distance(vec3 position)
 #endif
 }
 
-// Where the distance is evaluated next; with PROBE the centre of a ball.
+// Returns where the distance is evaluated next; with PROBE the centre of a ball.
 vec3 item_position()
 {
 #ifdef TOUCHES

@@ -64,7 +64,7 @@ CONSTANT(SKY_ROUGH_WIDTH, 64); /* roughness 1, 0.8, 0.6 and 0.4 */
 CONSTANT(SKY_ROUGH_LEVELS, 4);
 CONSTANT(SKY_SMOOTH_WIDTH, 128);   /* 0.2 */
 CONSTANT(SKY_SMOOTHER_WIDTH, 256); /* 0.1 */
-/* Where these begin. */
+/* The rows at which these begin. */
 CONSTANT(SKY_ROUGH, 512);
 CONSTANT(SKY_SMOOTH, 512 + 4 * 2048);
 CONSTANT(SKY_SMOOTHER, 512 + 4 * 2048 + 8192);
@@ -97,7 +97,7 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
     FLOATS(13, error, occlusion_reach, normal_reach, sky_power)                                        \
     /* Most steps of a ray; balls around what emits light; 1: hits are snapped (march_step.glsl). */   \
     UINTS(14, max_steps, emissive_count, snaps, gap_a)                                                 \
-    /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp, */ \
+    /* The lens, if LENS is set: its radius in `right` and `up`, 1 / the distance of what is sharp, */ \
     /* corners of the aperture; 0: it is round. */                                                     \
     ONE(15, lens)                                                                                      \
     /* How far the picture moves, in half widths and half heights; how far the eye of a panorama */    \
@@ -318,7 +318,8 @@ CONSTANT(STATE_HIT, 1);
 /* This is also what pack_ray (frame.glsl) makes of a miss without a step. */
 CONSTANT(STATE_MISS, 2);
 CONSTANT(STATE_REFINING, 3);
-/* In place of the march group of what a ray has hit: it is the plate of another renderer. */
+/* Stands in place of the march group of what a ray has hit, where that is the plate of another
+   renderer. */
 CONSTANT(MARCH_GROUP_OF_PLATE, 15);
 
 /* The rows of a hit, of four numbers each.  FACING: the normal, towards the side that the ray comes
@@ -477,7 +478,7 @@ CONSTANT(ANSWERS_BINDING, 2);
 CONSTANT(RAY_HITS_BINDING, 3);
 CONSTANT(QUERY_RAYS_BINDING, 5);
 
-/* For point_query.comp, std430; answers.h has the block of its answers. */
+/* A point for point_query.comp, std430; answers.h has the block of its answers. */
 struct Point {
     vec3  point;
     float gap_a;
@@ -485,7 +486,7 @@ struct Point {
     float gap_b;
 };
 
-/* For query.comp, std430. */
+/* A ray for query.comp, std430. */
 struct QueryRay {
     vec3  origin;
     float end;       /* the ray goes no farther */

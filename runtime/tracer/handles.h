@@ -22,8 +22,8 @@ typedef enum PixelShader {
     PIXEL_SHADERS
 } PixelShader;
 
-/* Where the rays of pixels come from.  Each kind has its own shaders.  Those of a kind of camera
-   serve the kinds of cameras before it as well. */
+/* Says where the rays of pixels come from.  Each kind has its own shaders.  Those of a kind of
+   camera serve the kinds of cameras before it as well. */
 typedef enum RayKind {
     RAYS_OF_CAMERAS,   /* perspective or orthographic */
     RAYS_OF_PANORAMAS, /* and all other cameras of a scene with a panorama */
@@ -74,7 +74,7 @@ struct KrsRenderer {
     Shader next_dispatch;         /* on graphics cards only (dispatch.c), */
     Shader clear_shared;          /* and likewise */
     double spirv_ms, pipeline_ms; /* the time to make these shaders */
-    /* For prewarming: sets in which a shader finds no items, and the buffers of zeros that they
+    /* Sets for prewarming, in which a shader finds no items, and the buffers of zeros that they
        bind. */
     VkDescriptorPool idle_pool;
     VkDescriptorSet  idle_scene, idle_frame;
@@ -94,10 +94,11 @@ typedef struct Band {
     Buffer fetched;
 } Band;
 
-/* In place of a march group's number: all components but planes, which rays intersect without a
-   march. */
+/* Stands in place of a march group's number, for all components but planes, which rays intersect
+   without a march. */
 enum { MARCH_WITHOUT_PLANES = 1 + KRS_MAX_MARCH_GROUPS };
-/* Likewise: all components, which each ray marches scene part by scene part (packed.glsl). */
+/* Stands likewise for all components, which each ray marches scene part by scene part
+   (packed.glsl). */
 enum { MARCH_PACKED = 1 + MARCH_WITHOUT_PLANES, MARCH_KINDS };
 
 /* The shaders that contain functions of the scene, each made when it is first needed

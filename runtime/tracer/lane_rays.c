@@ -99,7 +99,7 @@ static bool find_pixel(const WorkBlock *work, Corner corner, uint32_t ray, uint3
            pixel[1] < work->extent[1];
 }
 
-/* As find_ray_of_picture of frame.glsl. */
+/* Aims a ray as find_ray_of_picture of frame.glsl does. */
 static void aim(const Job *job, const float at[2], RayBlock *block, uint32_t ray)
 {
     const FrameBlock *frame       = &job->frame;
@@ -119,7 +119,7 @@ static void aim(const Job *job, const float at[2], RayBlock *block, uint32_t ray
     block->spread[ray] = frame->pixel_slope / stretch;
 }
 
-/* As clip_to of frame.glsl. */
+/* Clips a ray to a box as clip_to of frame.glsl does. */
 static void clip(const float low[3], const float high[3], float farthest, RayBlock *block,
                  uint32_t ray)
 {
@@ -161,7 +161,7 @@ uint32_t lane_rays_slot(const WorkBlock *work, const uint32_t pixel[2])
            pixel[0] % TILE;
 }
 
-/* As pack_ray of frame.glsl. */
+/* Stores the rays of a block as pack_ray of frame.glsl packs them. */
 static void store_block(Slice *slice, size_t part, Corner corner, const RayBlock *block)
 {
     float(*hits)[4]    = slice->job->rendering->band.hits.bytes;
@@ -236,7 +236,7 @@ static void begin_secondary(const Slice *slice, const float (*rows)[4], uint32_t
 
 static BlockRule block_rule_of(const Job *job)
 {
-    /* As in secondary.glsl. */
+    /* These numbers are those of secondary.glsl. */
     const float         growth = 1.008f, growth_of_sky = 1.08f, far_reaches = 60;
     const ControlBlock *control    = job->rendering->control.bytes;
     const bool          hemisphere = control->phase == RAYS_OVER_HEMISPHERE;

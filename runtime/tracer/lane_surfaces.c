@@ -88,7 +88,8 @@ static void pixel_of(const WorkBlock *work, uint32_t slot, uint32_t pixel[2])
     pixel[1] = tile / across * TILE + slot / TILE % TILE;
 }
 
-/* As hit_point_of_slot of hit_lists.glsl: where the ray of a pixel hits, and how wide the pixel is there. */
+/* Finds where the ray of a pixel hits, and how wide the pixel is there, as hit_point_of_slot of
+   hit_lists.glsl does. */
 static float find_hit(const Slice *slice, const uint32_t pixel[2], float t, float position[3],
                       float direction[3])
 {
@@ -184,7 +185,7 @@ bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *wo
 
 /* ---- occluders ---- */
 
-/* As in samples.glsl. */
+/* Spreads bits as samples.glsl does. */
 static uint32_t spread_bits(uint32_t bits)
 {
     bits = (bits | bits << 8) & 0x00ff00ffu;
@@ -218,7 +219,7 @@ static uint32_t hash_bits(uint32_t bits)
     return bits >> 22 ^ bits;
 }
 
-/* As sample_square, for use 0. */
+/* Samples a square as sample_square does for use 0. */
 static void sample_square(const uint32_t pixel[2], uint32_t ray, uint32_t seed, float square[2])
 {
     static const float step[2] = {0.6287067f, 0.5385973f};
@@ -238,7 +239,7 @@ static void sample_square(const uint32_t pixel[2], uint32_t ray, uint32_t seed, 
     }
 }
 
-/* As find_hemisphere_ray of hemisphere.glsl, of a point of the square. */
+/* Finds the direction of a point of the square as find_hemisphere_ray of hemisphere.glsl does. */
 static void aim_over_hemisphere(const float normal[3], const float square[2], float direction[3])
 {
     const float side = normal[2] < 0 ? -1.0f : 1.0f, a = -1 / (side + normal[2]);
@@ -252,7 +253,7 @@ static void aim_over_hemisphere(const float normal[3], const float square[2], fl
         direction[k] = x * right[k] + y * up[k] + sqrtf(1 - x * x - y * y) * normal[k];
 }
 
-/* Where the number of a pixel is in the room of a list (occluders.glsl). */
+/* Returns where the number of a pixel is in the room of a list (occluders.glsl). */
 static uint32_t *occluder_of(const Slice *slice, const uint32_t pixel[2])
 {
     const uint32_t *extent = slice->work->extent;

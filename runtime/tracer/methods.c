@@ -98,7 +98,8 @@ bool rendering_gathers_noises(const KrsRendering *rendering)
            rendering->program->noises >= KRS_MIN_FUSED_NOISES;
 }
 
-/* By default only on devices of type CPU: others skip far components by branches. */
+/* Tells whether components are marched one by one: by default only on devices of type CPU, since
+   others skip far components by branches. */
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components)
 {
     bool by_default = rendering->program->per_component && gpu_is_cpu(&rendering->renderer->gpu) &&

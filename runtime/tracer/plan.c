@@ -77,7 +77,7 @@ static uint32_t counter_of(ListId list)
     }
 }
 
-/* Where a list begins in the buffer of lists, in words. */
+/* Returns where a list begins in the buffer of lists, in words. */
 static uint32_t list_at(const WorkBlock *work, ListId list)
 {
     const uint32_t pixels = work->extent[0] * work->extent[1];

@@ -16,7 +16,7 @@ enum { MAX_PREWARMED = PIXEL_SHADERS };
 void prewarm_start(KrsRenderer *renderer, const ShaderRequest *requests, size_t count);
 /* No further shader is begun. */
 void prewarm_stop(KrsRenderer *renderer);
-/* After prewarm_stop, and before prewarm_end: whether a shader is made, or at hand. */
+/* Tells, after prewarm_stop and before prewarm_end, whether a shader is made, or at hand. */
 bool prewarm_begun(const KrsRenderer *renderer, const Shader *shader);
 /* Waits for the shader at hand, and takes over what was made so far.  What was not, or failed, is
    made when it is needed, as if nothing had been begun.  Until then no other thread may use the

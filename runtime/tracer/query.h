@@ -20,8 +20,9 @@ typedef struct SurfacePoint {
     float name KRS_NUMBERS_##type;
 #include "krs/surface.def"
 } SurfacePoint;
-/* As krs_device_distance, and what is at the points; either may be NULL.  Where the distance is constant around a point
-   the normal by differences is 0, and what is there is that of some part. */
+/* Finds distances as krs_device_distance does, and what is at the points; either may be NULL.
+   Where the distance is constant around a point the normal by differences is 0, and what is there
+   is that of some part. */
 KrsStatus point_query_sample(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                              size_t count, float *distances, SurfacePoint *surfaces);
 /* Tells how large what is asked about is: the longest side of the box around all but planes; 1 where that has

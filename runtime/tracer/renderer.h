@@ -6,7 +6,7 @@
 
 #include "runtime/tracer/handles.h"
 
-/* As krs_renderer_new, with bits of emulation (gpu.h). */
+/* Makes a renderer as krs_renderer_new does, with bits of emulation (gpu.h). */
 KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emulation,
                                  KrsRenderer **out);
 

@@ -33,7 +33,7 @@ void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t bindi
                     const Buffer *buffer);
 /* Points the bindings of the frame and of the control block at those of the rendering. */
 void rendering_bind_frame(KrsRendering *rendering, VkDescriptorSet set);
-/* As gpu_begin and gpu_finish.  They also copy the control block to the shaders, and the counters
+/* Do what gpu_begin and gpu_finish do, and copy the control block to the shaders, and the counters
    back. */
 bool rendering_begin(KrsRendering *rendering);
 bool rendering_finish(KrsRendering *rendering, double *ms);

@@ -42,7 +42,8 @@ static double luminance(const float color[3])
     return 0.2126 * (double)color[0] + 0.7152 * (double)color[1] + 0.0722 * (double)color[2];
 }
 
-/* Between line - 1 and `line` of the texels, and between column - 1 and `column`. */
+/* Returns the mean between line - 1 and `line` of the texels, and between column - 1 and
+   `column`. */
 static double mean_of_cell(const Directions *sky, uint32_t column, uint32_t line)
 {
     const uint32_t left  = column > 0 ? column - 1 : sky->width - 1;

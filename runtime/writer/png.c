@@ -80,7 +80,7 @@ static void begin_file(PngWriter *writer, const Picture *picture, int color_type
     png_set_compression_level(writer->png, 2);
 }
 
-/* Behind all that comes before pixels. */
+/* Writes the texts, and the pixels behind all that comes before them. */
 static void write_rows(PngWriter *writer, const Picture *picture, const uint8_t *pixels,
                        size_t bytes)
 {

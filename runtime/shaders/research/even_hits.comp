@@ -16,7 +16,7 @@
 
 void begin_group() { krs_prepare(); }
 
-// Where the iterations lead from a hit.
+// Finds where the iterations lead from a hit.
 float find_even_hit(RayEnd ray, vec3 origin, vec3 direction)
 {
     float t = ray.t, nearest = ray.t, least = INFINITE;
