@@ -136,7 +136,7 @@ static void print_bash(FILE *out)
 
 /* ---- zsh ---- */
 
-/* In descriptions of _arguments and _describe. */
+/* Prints a text for descriptions of _arguments and _describe. */
 static void print_zsh_text(FILE *out, const char *text)
 {
     print_inside(out, text, "\\[]:", "'\\''");

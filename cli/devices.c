@@ -19,7 +19,7 @@ typedef struct Version {
     unsigned major, minor, patch;
 } Version;
 
-/* As VK_API_VERSION_MAJOR and its kin take it apart. */
+/* Takes a version apart as VK_API_VERSION_MAJOR and its kin do. */
 static Version unpack(uint32_t packed)
 {
     return (Version){packed >> 22 & 0x7f, packed >> 12 & 0x3ff, packed & 0xfff};

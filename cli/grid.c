@@ -176,7 +176,7 @@ static KrsStatus take_options(Gridding *gridding)
 
 /* ---- how large it is ---- */
 
-/* Before anything is computed. */
+/* Refuses a grid that is too large for its format before anything is computed. */
 static KrsStatus check_size(const Gridding *gridding, const KrsGridShape *shape,
                             const GridOutput *output)
 {

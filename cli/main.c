@@ -65,7 +65,7 @@ static int print_completion(const char *shell)
     return KRS_BAD_ARGUMENT;
 }
 
-/* For `make install`: pages of the manual, and completion.  False: neither is asked. */
+/* Prints pages of the manual or completions, for `make install`.  False: neither is asked for. */
 static bool print_installed(int argc, char **argv, int *status)
 {
     CommandId command = COMMAND_COUNT;

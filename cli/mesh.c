@@ -113,8 +113,9 @@ static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies, d
 /* The parts of the work that are done with a coarse mesh, and with what is assembled where all is merged as well. */
 static const double COARSE_DONE = 0.1, ASSEMBLED_DONE = 0.5;
 
-/* With --size: a coarse mesh tells how long the scene is, and so how much smaller the error is there.
-   The final mesh is at most by the coarse one's error shorter.  Parts have one error. */
+/* Finds the error.  With --size a coarse mesh tells how long the scene is, and so how much smaller
+   the error is there.  The final mesh is at most by the coarse one's error shorter.  Parts have one
+   error. */
 static KrsStatus find_error(Meshing *meshing, MakeBody *make)
 {
     const Options *options = meshing->options;
@@ -156,7 +157,8 @@ static double count_instances(const Meshing *meshing)
     return count;
 }
 
-/* Before a mesh of all is made that would have too many triangles: those of the kernels, copied, tell. */
+/* Refuses a mesh of all that would have too many triangles before it is made: those of the
+   generators, copied, tell. */
 static KrsStatus check_merged(Meshing *meshing)
 {
     const double few    = 1000;
@@ -176,7 +178,8 @@ static KrsStatus check_merged(Meshing *meshing)
                      triangles <= UINT32_MAX ? "--copies flat writes all, and " : "and ");
 }
 
-/* Without copies what is assembled is what would be merged; as well where nothing has been assembled. */
+/* Tells whether what is assembled has copies, or nothing has been assembled.  Without copies it is
+   what would be merged. */
 static bool has_copies(const Bodies *assembled)
 {
     bool found = assembled->count == 0;

@@ -32,7 +32,7 @@ static KrsStatus check_number(const Options *options, OptionId id)
     return KRS_OK;
 }
 
-/* By the row's own means; `choice` is the number of the value among its choices. */
+/* Takes a value by the row's own means; `choice` is the number of the value among its choices. */
 static bool take_value(Options *options, OptionId id, const char *value, int choice)
 {
     bool taken = false;
@@ -68,8 +68,8 @@ static bool is_wanted(const Options *options, OptionId id)
            (options->others && option_belongs(id, options->command));
 }
 
-/* From this row on, the one of the option that "name" or "name=value" begins with, or OPTION_COUNT.  Where one name has
-   two meanings, that of meshes comes first. */
+/* Finds from this row on the one of the option that "name" or "name=value" begins with, or
+   OPTION_COUNT.  Where one name has two meanings, that of meshes comes first. */
 static OptionId option_find(const Options *options, OptionId id, const char *name, size_t length)
 {
     while (id < OPTION_COUNT &&

@@ -252,7 +252,7 @@ static KrsStatus answer_input(Query *query, char *input)
     }
 }
 
-/* With --on device. */
+/* Opens the device for `--on device`. */
 static KrsStatus open_device(Query *query, const KrsScene *scene)
 {
     KrsStatus status = open_renderer(query->options, &query->renderer);

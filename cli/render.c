@@ -81,7 +81,7 @@ static uint32_t first_of(uint32_t asked, uint32_t scene, uint32_t otherwise)
     return asked ? asked : scene ? scene : otherwise;
 }
 
-/* As asked for, or as the scene says, or preview. */
+/* Returns the integrator that is asked for, or the one that the scene says, or the preview. */
 static KrsIntegrator find_integrator(KrsIntegrator asked, const char *scene)
 {
     if (asked != KRS_INTEGRATOR_DEFAULT)

@@ -261,7 +261,7 @@ static KrsStatus refuse_error(const Slicing *slicing)
                      slicing->options->files.items[0]);
 }
 
-/* Without an option, once the box is known. */
+/* Finds the error where no option says it, once the box is known. */
 static KrsStatus find_error(Slicing *slicing, const double low[3], const double high[3])
 {
     const double usual = 1.0 / 2000, of_pixel = 1.0 / 16;

@@ -267,7 +267,8 @@ static void put_float(unsigned char *header, size_t at, double number)
     memcpy(header + at, &single, sizeof single);
 }
 
-/* In millimetres.  Its volumes are the values, and behind them red, green, blue and the material. */
+/* Begins a file in millimetres.  Its volumes are the values, and behind them red, green, blue and
+   the material. */
 static bool begin_nii(GridFile *file)
 {
     enum { HEADER = 352, FLOAT32 = 16, MILLIMETRES = 2, SCANNER = 1 };

@@ -19,7 +19,7 @@ enum { MARGIN = 2 };
 enum { ROTATIONS = 16, MAX_TRIES = 400 };
 /* The cosine of the angle between a triangle of a chart and its first one. */
 static const double MIN_COSINE = 0.7;
-/* In pixels: heights that differ by more are of two sheets, one above the other. */
+/* Heights that differ by more pixels are of two layers, one above the other. */
 static const double ONE_SHEET = 8;
 /* The picture is about full at first; then pixels grow until it suffices. */
 static const double MAX_FILLED = 0.9, GROWTH = 1.04;
@@ -277,7 +277,8 @@ static size_t pixel_at(const Layout *l, long row, long column)
     return (size_t)(((row % side + side) % side) * side + (column % side + side) % side);
 }
 
-/* Where a triangle is seen another sheet must not be; `keep`: the chart has the triangle, and there are its heights. */
+/* Tells whether no other layer of the chart is where a triangle is seen.  `keep`: the chart has the
+   triangle, and its heights are noted. */
 static bool is_free(Layout *l, const Seen *seen, uint32_t stamp, bool keep)
 {
     const double(*c)[2] = (const double(*)[2])seen->corners;
@@ -427,7 +428,7 @@ static int compare_charts(const void *a, const void *b)
     return x->first < y->first ? -1 : 1;
 }
 
-/* From the highest on, in rows; false: they do not fit. */
+/* Puts the charts into rows, from the highest on; false: they do not fit. */
 static bool shelve(Layout *l)
 {
     uint32_t x = 0, y = 0, shelf = 0;

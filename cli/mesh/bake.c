@@ -72,7 +72,7 @@ typedef struct Baking {
 
 /* ---- points ---- */
 
-/* Where a pixel is on its triangle, in the scene. */
+/* Finds where a pixel is on its triangle, in the scene. */
 static void point_of(const Baking *b, size_t pixel, double point[3])
 {
     const uint32_t triangle = b->atlas.owner[pixel], *corners = b->parts->triangles[triangle];
@@ -247,7 +247,7 @@ static void find_pieces(Baking *b)
     }
 }
 
-/* Over all pixels, by which piece a triangle is of. */
+/* Finds the spread of each piece over all pixels; `of`: the piece that a triangle is of. */
 static void find_spreads(Baking *b, Pieces *pieces, const uint32_t *of)
 {
     for (size_t i = 0; i < pieces->count; i++)

@@ -54,7 +54,7 @@ typedef struct MeshFrame {
     float normal[3], tangent[3];
 } MeshFrame;
 
-/* Where a copy is at some time, in seconds from 0, and in lengths of the scene. */
+/* The pose of a copy at some time, in seconds from 0, and in lengths of the scene. */
 typedef struct MeshKey {
     double   time;
     MeshPose pose;
@@ -89,8 +89,8 @@ typedef struct MeshParts {
     const double (*in_scene)[3];      /* where vertices are there: in one of the copies */
     /* Colors of the corners of triangles; NULL: they are those of the vertices. */
     const unsigned char (*corner_colors)[3][3];
-    /* Where corners of triangles are in a texture, v upwards, and their frames; NULL: there is none.  After
-       split_corners that is told of vertices, as are colors. */
+    /* The places of corners of triangles in a texture, v upwards, and their frames; NULL: there is
+       none.  After split_corners that is told of vertices, as are colors. */
     const double (*corner_places)[3][2];
     const MeshFrame (*corner_frames)[3];
     const double (*vertex_places)[2];

@@ -25,10 +25,10 @@ void mesh_copy_triangle(const MeshParts *parts, const MeshCopy *copy, size_t num
 /* The colors of its corners, in the same order; there are such. */
 void mesh_copy_colors(const MeshParts *parts, const MeshCopy *copy, size_t number,
                       unsigned char colors[3][3]);
-/* Where they are in a texture, in the same order; there is one. */
+/* Finds their places in a texture, in the same order; there is one. */
 void mesh_copy_places(const MeshParts *parts, const MeshCopy *copy, size_t number,
                       double places[3][2]);
-/* Their frames, likewise. */
+/* Finds their frames, likewise. */
 void mesh_copy_frames(const MeshParts *parts, const MeshCopy *copy, size_t number,
                       MeshFrame frames[3]);
 

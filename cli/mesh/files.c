@@ -69,7 +69,7 @@ static bool visit_copies(MeshFile *file, VisitMeshCopy *visit)
     return true;
 }
 
-/* In the lengths of the file. */
+/* Finds a vertex in the lengths of the file. */
 static void vertex_of(const MeshFile *file, const MeshCopy *copy, size_t number, double at[3])
 {
     mesh_copy_vertex(file->parts, copy, number, at);

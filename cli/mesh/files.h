@@ -7,7 +7,7 @@
 #include "cli/mesh/copies.h"
 #include "cli/shell/supervise.h"
 
-/* Where a vertex was in a texture last, and the number of that line; 0: not yet. */
+/* The last place of a vertex in a texture, and the number of its line; 0: it had none yet. */
 typedef struct ObjPlace {
     double   at[2];
     uint32_t number;

@@ -194,7 +194,7 @@ void put_frames(tinygltf::Model &model, const MeshParts *parts, const MeshPart &
     primitive.attributes["TANGENT"] = frames[1];
 }
 
-// With pictures, if one shows something of the part.
+// Tells whether a part needs places in a texture: with pictures, if one shows something of it.
 bool needs_places(const MeshParts *parts, const MeshPart &part)
 {
     bool needs = parts->vertex_places && !parts->pictures;

@@ -103,7 +103,7 @@ void find_materials(const Meshing *meshing, const MeshFormat *format, const char
 #define PLAIN_COLOR "colour"
 /* Gives each vertex a number that is the same for all of a connected surface. */
 const uint32_t *mesh_shells(Arena *arena, const MeshParts *parts);
-/* Where the middle of a triangle is in the scene. */
+/* Finds where the middle of a triangle is in the scene. */
 void mesh_middle(const MeshParts *parts, size_t triangle, double middle[3]);
 /* uvs.c: where triangles are in textures, if there are any. */
 KrsStatus find_uvs(const Meshing *meshing, MeshParts *parts);

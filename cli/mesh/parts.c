@@ -302,10 +302,10 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
 
 /* ---- units ---- */
 
-/* In the order of unit_choices. */
+/* The lengths of units in metres, in the order of unit_choices. */
 const double metres_of_units[] = {1e-3, 1e-6, 1e-2, 1, 0.0254, 0.3048};
 
-/* Without an option, what the format is usually in. */
+/* Sets the units of the file; without an option, those that its format usually has. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts)
 {
     int unit = meshing->options->mesh_units;

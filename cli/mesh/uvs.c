@@ -39,7 +39,7 @@ static double without_jump(double step, double expected)
     return fabs(excess - whole) < 0.5 * JUMP ? step - whole : expected;
 }
 
-/* From the middle to a corner in small steps. */
+/* Walks from the middle to a corner in small steps. */
 static bool walk(const Meshing *meshing, const Triangle *triangle, int corner,
                  const double first[2], double place[2])
 {

@@ -20,7 +20,8 @@ bool read_whole(const char *word, uint64_t low, uint64_t high, uint64_t *value)
     return errno == 0 && *end == '\0' && number >= low && number <= high;
 }
 
-/* As in a scene, so no "inf", "nan" or hexadecimal; *end is what stands behind the number. */
+/* Reads a number as a scene has it, so no "inf", "nan" or hexadecimal; *end is what stands behind
+   the number. */
 static bool read_number_prefix(const char *word, const char **end, double *value)
 {
     size_t length = strspn(word, "+-0123456789.eE");

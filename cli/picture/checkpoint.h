@@ -23,11 +23,12 @@ typedef struct CheckpointFrame {
     uint32_t                samples, number;
 } CheckpointFrame;
 
-/* For a command whose first output has this name, or that has none: NULL.  KRS_OK, or wrong usage and
-   words: there is no place for a checkpoint, or what is asked for has none. */
+/* Begins the checkpoint of a command whose first output has this name, or that has none: NULL.
+   KRS_OK, or wrong usage, which is said: there is no place for a checkpoint, or what is asked for
+   has none. */
 KrsStatus checkpoint_begin(Checkpoint *checkpoint, const Options *options, const char *output);
-/* Looks for the checkpoint of this command line, scene and device.  The number of the frame from which
-   on it goes on; that of the first one where there is none. */
+/* Looks for the checkpoint of this command line, scene and device.  Returns the number of the frame
+   from which on it goes on; that of the first one where there is none. */
 uint32_t checkpoint_find(Checkpoint *checkpoint, const KrsScene *scene,
                          const KrsRenderer *renderer);
 /* Does what krs_render does, from where the checkpoint has the frame, and writes new ones. */

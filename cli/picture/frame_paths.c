@@ -8,7 +8,7 @@
 
 #include "runtime/writer/atomic.h"
 
-/* Where the frame's number goes in the name of an output: "%d", "%04d".  NULL without one. */
+/* Finds where the frame's number goes in the name of an output: "%d", "%04d".  NULL without one. */
 static const char *find_pattern(const char *path, int *width, size_t *length)
 {
     for (const char *percent = path; (percent = strchr(percent, '%')); percent++) {

@@ -9,7 +9,7 @@
 
 typedef enum FileForm { FORM_UNKNOWN, FORM_EXR, FORM_PNG } FileForm;
 
-/* By the ending of the name, in any case. */
+/* Tells the form of a file by the ending of its name, in any case. */
 FileForm file_form(const char *path);
 
 /* The AOVs (bits of KrsAov) that writing these forms takes. */

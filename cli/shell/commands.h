@@ -35,16 +35,16 @@ typedef struct DiagnosticSink {
     size_t         errors, warnings; /* printed so far */
 } DiagnosticSink;
 
-/* For compiling that scene; `sink` must outlive the call. */
+/* Returns the options for compiling that scene; `sink` must outlive the call. */
 KrsOptions scene_options(DiagnosticSink *sink, const char *path);
-/* The text of a scene that is standard input; NULL: it is the file. */
+/* Returns the text of a scene that is standard input; NULL: it is the file. */
 const char *scene_input(const Options *options, const char *path);
 /* Compiles the one or the other. */
 KrsStatus scene_compile(const Options *options, const char *path, const KrsOptions *with,
                         KrsScene **scene);
 /* The folder that the scene may read from; NULL: any. */
 const char *scene_root(const Options *options, const char *path);
-/* From here on the scene of that file is compiled. */
+/* Notes that the scene of that file is compiled from here on. */
 void scene_enter_compile(const char *path);
 /* "2 errors, 1 warning", unless there were none. */
 void scene_print_counts(const DiagnosticSink *sink);
@@ -65,9 +65,9 @@ KrsScene *specialize_edited(const Options *options, const KrsScene *literals, do
 
 /* devices.c */
 
-/* Where compiled shaders are kept; NULL: nowhere. */
+/* Returns the folder in which compiled shaders are kept; NULL: there is none. */
 const char *cache_folder(const Options *options);
-/* For krs_renderer_new, as the options ask for it. */
+/* Returns what krs_renderer_new is given, as the options ask for it. */
 KrsRendererOptions renderer_options(const Options *options);
 /* Opens the device that --device asks for.  On KRS_OK the caller owns *renderer,
    else it is NULL and the user knows why. */

@@ -10,16 +10,16 @@
 
 /* "krs: " and the words, on a line of their own. */
 void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* As say, and then where to look it up; returns KRS_BAD_ARGUMENT. */
+/* Prints as say does, and then where to look it up; returns KRS_BAD_ARGUMENT. */
 KrsStatus say_usage(const Options *options, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* That there is no such command, and which one may be meant; returns KRS_BAD_ARGUMENT. */
+/* Says that there is no such command, and which one may be meant; returns KRS_BAD_ARGUMENT. */
 KrsStatus say_no_command(const char *word);
 
 /* Empties the line of a terminal that shows what is being done. */
 void console_clear(void);
-/* On a terminal: what is being done, until a line is printed, or this is called with NULL. */
+/* Shows on a terminal what is being done, until a line is printed, or this is called with NULL. */
 void console_doing(const Options *options, const char *what);
 /* Tells whether colours are wanted on standard error. */
 bool console_color(const Options *options);

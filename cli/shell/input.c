@@ -10,7 +10,7 @@
 #include "cli/shell/console.h"
 #include "compiler/base/text.h"
 
-/* In diagnostics. */
+/* The name that standard input has in diagnostics. */
 static const char input_name[] = "<stdin>";
 
 /* A little more than a scene may have: then the compiler refuses it. */

@@ -57,12 +57,13 @@ void stage_resumable(bool resumable);
 /* Tells how large what is compiled is, should it take too long: "`a.krs` has 12 bytes". */
 void stage_size(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* For STAGE_WAIT: a process that is late before it is ended, which is said, and another one takes its place.
-   stage_read notes a file that is read, for that; stage_forget forgets all of them, as a reading begins. */
+/* A process of `krs watch` that is late is ended, which is said, and another one takes its place
+   and waits (STAGE_WAIT).  stage_read notes a file that is read, for that; stage_forget forgets all
+   of them, as a reading begins. */
 void stage_read(const char *path);
 void stage_forget(void);
-/* Whether this process is such another one; then `visit` is called for the files that the one before read, and
-   `changed` says whether one was written since its reading began. */
+/* Tells whether this process is such another one; then `visit` is called for the files that the one
+   before read, and `changed` says whether one was written since its reading began. */
 typedef bool VisitRead(void *user, const char *path);
 bool         stage_again(VisitRead *visit, void *user, bool *changed);
 

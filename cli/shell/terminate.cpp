@@ -28,7 +28,7 @@ namespace
     std::abort();
 }
 
-/* Before objects of libraries are made that need memory, which is before main. */
+/* Runs before objects of libraries are made that need memory, which is before main. */
 __attribute__((constructor(101))) void set_end_of_process() { std::set_terminate(end_process); }
 
 } // namespace
