@@ -217,7 +217,7 @@ static bool is_written(Viewing *viewing, KrsStatus status)
     return status == KRS_OK;
 }
 
-/* From then on the camera follows the text again. */
+/* Writes the camera into the text, which it follows again from then on. */
 static void act_write_camera(Viewing *viewing)
 {
     const KrsScene *scene  = version_scene(viewing->view.version);

@@ -369,7 +369,8 @@ static void draw_found(Viewing *viewing)
     snprintf(line, sizeof line, "%.4g, %.4g, %.4g", found.position[0], found.position[1],
              found.position[2]);
     gui_text(GUI_FAINT, line);
-    /* In a line of its own: the panel is to fit below that of the controls, beside the picture. */
+    /* This is a line of its own: the panel is to fit below that of the controls, beside the
+       picture. */
     snprintf(line, sizeof line, "distance %.4g   level %u   instance %u", found.depth, found.level,
              found.instance);
     gui_text(GUI_FAINT, line);

@@ -81,9 +81,10 @@ void viewing_notice(Viewing *viewing, const char *format, ...)
 void viewing_wake(Viewing *viewing);
 /* What is under the mouse; in the middle, if there is none over the picture. */
 Found viewing_find(Viewing *viewing);
-/* Where the text has the component of this number, from 1; NULL: nowhere.  "a.krs:3" */
+/* Finds where the text has the component of this number, from 1; NULL: nowhere.  "a.krs:3" */
 const char *viewing_place(const Viewing *viewing, uint32_t component, char place[300]);
-/* What the component of this number is, without what moves or paints it: "torus", "union"; or "". */
+/* Tells what the component of this number is, without what moves or paints it: "torus", "union"; or
+   "". */
 const char *viewing_shape(const Viewing *viewing, uint32_t component);
 /* Opens $KRS_EDITOR at a place. */
 void viewing_open_editor(Viewing *viewing, const char *place);

@@ -103,7 +103,7 @@ static unsigned lens_of(const KrsCamera *camera)
     return camera->aperture > 0 ? 2 : camera->projection == KRS_PANORAMA ? 1 : 0;
 }
 
-/* As many as shaders have room for (krs/vulkan.h). */
+/* Returns the number of zones, these or more, that shaders have room for (krs/vulkan.h). */
 static unsigned room_for(size_t zones)
 {
     unsigned room = zones > 0;
@@ -352,10 +352,10 @@ KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t aovs, KrsPicture *
     return krs_film_read(canvas->films[kind].film, aovs, picture);
 }
 
-/* Where slopes are measured, before and behind the surface, in parts of the depth. */
+/* Slopes are measured so far before and behind the surface, in parts of the depth. */
 #define SLOPE_STEP 5e-4
 
-/* Two points for each pixel that hits something. */
+/* Places two points for each pixel that hits something. */
 static size_t place_points(const KrsPicture *picture, float (*points)[3], float *steps)
 {
     const size_t count = (size_t)picture->width * picture->height;

@@ -15,9 +15,9 @@ typedef struct Resolution {
     double divisor;            /* of the sides of coarse pictures; 0: none was made yet */
 } Resolution;
 
-/* After a coarse picture of so many pixels took `ms`. */
+/* Learns that a coarse picture of so many pixels took `ms`. */
 void resolution_learn_coarse(Resolution *resolution, double ms, double pixels);
-/* After a sample of a whole picture took `ms`, behind a coarse one of the same view. */
+/* Learns that a sample of a whole picture took `ms`, behind a coarse one of the same view. */
 void resolution_learn_whole(Resolution *resolution, double ms, double pixels);
 /* Tells how many times fewer pixels each side of a coarse picture has, for it to take `budget` ms; `pixels`
    are those of a whole one.  1: whole ones are in time. */

@@ -111,7 +111,7 @@ char *camera_text(const KrsCamera *camera)
 
 /* ---- where they stand in a block ---- */
 
-/* Behind blanks and comments. */
+/* Skips blanks and comments. */
 static const char *skip_blanks(const char *at)
 {
     for (;;) {
@@ -135,7 +135,7 @@ static const char *skip_word(const char *at)
     return at;
 }
 
-/* Behind a text between quotes. */
+/* Skips a text between quotes. */
 static const char *skip_string(const char *at)
 {
     for (at++; *at && *at != '"'; at++)
@@ -144,7 +144,8 @@ static const char *skip_string(const char *at)
     return *at ? at + 1 : at;
 }
 
-/* Where a value ends: before the comma or brace that ends it, and blanks and comments before that. */
+/* Finds where a value ends: before the comma or brace that ends it, and blanks and comments before
+   that. */
 static const char *end_of_value(const char *at)
 {
     const char *end   = at;
@@ -234,7 +235,7 @@ static size_t comma_before(const char *block, const Place *place)
     return comma;
 }
 
-/* With the comma behind it, or before it. */
+/* Removes a property with the comma behind it, or before it. */
 static char *remove_property(char *block, const Place *place)
 {
     const char  *behind = skip_blanks(block + place->end);

@@ -12,11 +12,11 @@ typedef struct Version Version;
 Version  *version_hold(Version *version);
 void      version_release(Version *version); /* NULL is ignored */
 KrsScene *version_scene(const Version *version);
-/* From 1 on, greater for each later version. */
+/* Returns the number of a version, from 1 on, greater for each later one. */
 unsigned version_number(const Version *version);
-/* The same for versions that the same shaders show. */
+/* Returns a number that versions share if the same shaders show them. */
 unsigned version_structure(const Version *version);
-/* Against the version before; of the first, everything is new. */
+/* Tells what differs from the version before; of the first, everything is new. */
 KrsChanges version_changes(const Version *version);
 
 /* "a.krs:3" */

@@ -57,7 +57,8 @@ static bool parse_value(const char *line, PresetValue *value)
     return value->count > 0;
 }
 
-/* By the rules for what a scene may read, if there is a folder that it may read from. */
+/* Reads a file by the rules for what a scene may read, if there is a folder that it may read
+   from. */
 static bool read_file(const char *scene_path, const char *root, Bytes *bytes)
 {
     char   path[4096];

@@ -122,7 +122,7 @@ static bool find_last(const KrsScene *scene, uint64_t before, size_t *last)
     return any;
 }
 
-/* From the end of the files on, so that places before stay what they are. */
+/* Writes from the end of the files on, so that places before stay what they are. */
 KrsStatus write_defaults(const KrsScene *scene, const double (*values)[4], size_t *written)
 {
     uint64_t  before = UINT64_MAX;

@@ -79,7 +79,7 @@ ImFont *add_font(const char *path, float size)
     return font ? font : atlas->AddFontDefault();
 }
 
-// Where a panel stands: the point, and which point of the panel is there.
+// Sets where the next panel stands: the point, and which point of the panel is there.
 void place(GuiCorner corner, float below)
 {
     const ImVec2 size  = ImGui::GetIO().DisplaySize;

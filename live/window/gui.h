@@ -13,8 +13,8 @@ extern "C" {
 
 typedef struct GLFWwindow GLFWwindow;
 
-/* For the window whose context is current.  Fonts are paths, or NULL for the built-in one; `size` is
-   in pixels. */
+/* Begins to draw panels in the window whose context is current.  Fonts are paths, or NULL for the
+   built-in one; `size` is in pixels. */
 void gui_start(GLFWwindow *window, const char *sans, const char *mono, float size);
 void gui_stop(void);
 void gui_begin(void); /* of a frame */
@@ -41,7 +41,7 @@ typedef enum GuiCorner {
 
 typedef enum GuiTone { GUI_PLAIN, GUI_FAINT, GUI_STRONG, GUI_WARNING, GUI_ERROR } GuiTone;
 
-/* Where a panel stands.  It grows with what it has, until it scrolls. */
+/* The place of a panel, which grows with what it has, until it scrolls. */
 typedef struct GuiPlace {
     GuiCorner corner;
     float     below; /* pixels between the corner and the panel */
@@ -70,7 +70,7 @@ void gui_beside(void); /* the next item stands beside the last one */
 bool gui_button(const char *label, bool on);
 bool gui_line(const char *id, const char *text, GuiTone tone); /* lines that can be clicked */
 bool gui_slider(const char *label, double *value, double low, double high, const char *format);
-/* Without limits, by dragging; `speed` is for a pixel. */
+/* Changes numbers without limits, by dragging; `speed` is for a pixel. */
 bool gui_drag(const char *label, double *values, size_t count, double speed, double low,
               double high, const char *format);
 bool gui_check(const char *label, bool *on);

@@ -18,10 +18,10 @@ void terminal_close(Terminal *terminal);
 
 /* Waits for a key, for terminal_wake, for a signal, or so many seconds. */
 void terminal_wait(Terminal *terminal, double seconds);
-/* For any thread. */
+/* Ends terminal_wait; any thread may call it. */
 void terminal_wake(Terminal *terminal);
-/* The next key that was pressed, as a key and modifiers of GLFW; false: there is none, and *closed
-   when nobody can press one any more. */
+/* Takes the next key that was pressed, as a key and modifiers of GLFW; false: there is none, and
+   *closed when nobody can press one any more. */
 bool terminal_key(Terminal *terminal, int *key, int *modifiers, bool *closed);
 
 /* The pixels that it shows at once. */

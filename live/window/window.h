@@ -47,7 +47,7 @@ bool window_has_room_beside(const Window *window);
 void window_set_picture(Window *window, const uint8_t *pixels, uint32_t width, uint32_t height);
 /* The size of the picture in the window, in pixels of the screen; 0 when it is minimised. */
 void window_size(const Window *window, uint32_t *width, uint32_t *height);
-/* Where the mouse is, in parts of the picture's width and height from its top left. */
+/* Finds where the mouse is, in parts of the picture's width and height from its top left. */
 void window_mouse(const Window *window, double *x, double *y);
 bool window_key_is_held(const Window *window, int key);
 /* Keys go to the panel from now on, until F2 or Esc. */
