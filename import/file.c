@@ -124,7 +124,7 @@ KrsStatus import_file(Import *import)
         import->as_field = true;
         status           = translate(import, &first);
     }
-    /* Without what does not compile, one part after the other. */
+    /* Leaves out what does not compile, one part after the other. */
     for (int i = 0; i < MAX_LEFT_OUT && status == KRS_BAD_SCENE && first.found; i++) {
         if (import_was_left_out(import, first.line) || !import_leaves_out(import, first.line))
             break;

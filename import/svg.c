@@ -32,7 +32,7 @@ static void add_file_name(const Import *import, Text *name)
     }
 }
 
-/* As a string of the language. */
+/* Adds a text as a string of the language. */
 static void add_string(Text *text, const char *string)
 {
     text_add(text, "\"");

@@ -125,7 +125,7 @@ static const Operation *find_operation(Word word)
     return NULL;
 }
 
-/* For words about it, of which a few are enough. */
+/* Returns a word for diagnostics, of which some letters are enough. */
 static const char *word_text(const ImportedTape *tape, Word word)
 {
     return arena_copy_text(tape->import->arena, word.start, word.length < 60 ? word.length : 60);

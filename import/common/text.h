@@ -9,7 +9,7 @@
 #include "compiler/base/text.h"
 #include "krs/krs.h"
 
-/* From here on, the text of the scene comes from this line of the file. */
+/* From this offset on, the text of the scene comes from this line of the file. */
 typedef struct ImportMark {
     size_t   offset;
     unsigned line;
@@ -85,7 +85,7 @@ void import_mark(Import *import, unsigned line);
 /* The line of the file that a line of the scene comes from, from 1. */
 unsigned import_origin(const Import *import, unsigned scene_line);
 
-/* As an import has computed it: without the noise behind twelve digits. */
+/* Rounds a number that an import has computed: drops the noise behind twelve digits. */
 double import_rounded(double number);
 /* A number as the language writes it; NaN and infinities have no such form. */
 void import_add_number(Text *text, double number);

@@ -36,7 +36,7 @@ static double in_space_of_file(const PovReader *reader, double shown)
     return gamma == 0 ? shown : pow(linear(fmax(shown, 0)), 1 / gamma);
 }
 
-/* Where the numbers behind a word for colours go: of rgbt the fourth is
+/* Puts the numbers behind a word for colours where they belong: of rgbt the fourth is
  * `transmit`. */
 static void take_channels(const PovReader *reader, const char *word, const PovValue *found,
                           PovValue *color)

@@ -70,7 +70,7 @@ typedef enum PovKind {
     POV_REFUSED /* of an included file; `string` says why, to who uses it */
 } PovKind;
 
-/* Where the text of a macro or of a function is. */
+/* The text of a macro or of a function. */
 typedef struct PovMacro {
     struct {
         const char **items;
@@ -101,7 +101,7 @@ typedef struct PovName {
     PovCell    *cell;
 } PovName;
 
-/* Where words come from: the file, one that it includes, or a macro. */
+/* A source of words: the file, one that it includes, or a macro. */
 typedef struct PovSource {
     const char *at; /* where it goes on, while another one is read */
     unsigned    line;
@@ -173,7 +173,7 @@ PovCell *pov_find(PovReader *reader, const char *name);
 bool pov_release(PovReader *reader);
 /* `default { ... }`, up to its `}`. */
 bool pov_default(PovReader *reader);
-/* Where reading is, to go back there after a refusal. */
+/* The state of reading, to go back to after a refusal. */
 typedef struct PovState {
     ImportWord  word;
     const char *at;
@@ -241,15 +241,15 @@ double pov_light_of(const PovReader *reader, double channel);
 /* ---- words: words.c ---- */
 
 bool pov_deeper(PovReader *reader);
-/* From `{` to the `}` that belongs to it. */
+/* Skips from `{` to the `}` that belongs to it. */
 bool pov_skip_block(PovReader *reader);
-/* A word that is left out with a note (`what` NULL: without one), and the
- * values or the block behind it. */
+/* Leaves out a word with a note (`what` NULL: without one), and the values or the block behind
+ * it. */
 bool pov_leave_out(PovReader *reader, const char *what);
 /* `translate`, `rotate`, `scale`, `matrix`: adds to a transform in POV-Ray's space.
    *taken: it was one of them. */
 bool pov_transform(PovReader *reader, Transform *transform, bool *taken);
-/* In the space of scenes. */
+/* Finds where a point is in the space of scenes. */
 void pov_point(const double q[3], double p[3]);
 
 /* ---- looks: looks.c ---- */

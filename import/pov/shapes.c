@@ -83,7 +83,8 @@ bool pov_box(PovReader *reader, unsigned line, Part **part)
     return true;
 }
 
-/* From the bottom, of this radius, to the top; scenes have it about y. */
+/* Makes a column from the bottom, of this radius, to the top, of radius `end`; scenes have it about
+   y. */
 static bool column(PovReader *reader, unsigned line, const double bottom[3], const double top[3],
                    double radius, double end, Part **part)
 {

@@ -65,7 +65,7 @@ static bool read_points(PovReader *reader, Points *points)
     return true;
 }
 
-/* Between b and c: Catmull and Rom's cubic, through a parabola's three points
+/* Interpolates between b and c: by Catmull and Rom's cubic, or by the parabola through a, b and c
  * where `square`. */
 static double between(double a, double b, double c, double d, double t, bool square)
 {
@@ -467,7 +467,7 @@ bool pov_superellipsoid(PovReader *reader, unsigned line, Part **part)
     return true;
 }
 
-/* In the space in which the fourth coordinate is 0. */
+/* Makes a Julia set in the space in which the fourth coordinate is 0. */
 bool pov_julia(PovReader *reader, unsigned line, Part **part)
 {
     WordReader *words = &reader->words;

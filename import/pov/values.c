@@ -101,7 +101,7 @@ enum { FUNCTIONS = sizeof functions / sizeof *functions };
 static const char *const vector_functions[] = {"vlength", "vnormalize", "vdot", "vcross"};
 enum { VECTOR_FUNCTIONS = 4 };
 
-/* From a name to its place in a table, or -1. */
+/* Returns the index of a name in its table, or -1. */
 static int find_constant(const char *name)
 {
     for (int i = 0; i < CONSTANTS; i++)

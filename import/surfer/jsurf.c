@@ -99,7 +99,7 @@ static Space inverse_rotation(const Space *space)
     return inverse;
 }
 
-/* From the camera's space to that of the ball. */
+/* Reads the map from the camera's space to that of the ball, and the scale of the surface. */
 static bool read_spaces(JsurfSurface *surface, Space *camera)
 {
     Space  whole, turn, own, surfaces;
