@@ -50,7 +50,7 @@ typedef enum KrsComponents {
 } KrsComponents;
 extern const char *const krs_components_names[KRS_MAX_CHOICES];
 
-/* Where the distance is looked at around a hit for its normal: KRS_NORMALS_FORWARD and so on.
+/* Says where the distance is looked at around a hit for its normal: KRS_NORMALS_FORWARD and so on.
    KRS_NORMALS_ANALYTIC wants a scene that was compiled with `gradients`; where points are relative
    to the camera it is the octahedron.  Neither this nor KRS_NORMALS_FORWARD tells what is finer
    than a pixel: as with no_filter. */

@@ -19,8 +19,8 @@ extern "C" {
  */
 typedef struct KrsGridOptions {
     double cell; /* side of the cells, above 0 */
-    /* In cells: distances are told as far as that, and where the surface is farther they are that, with their sign.
-       0: they are told everywhere. */
+    /* Distances are told up to so many cells; where the surface is farther they are that, with
+       their sign.  0: they are told everywhere. */
     double band;
     bool   fog;
     /* Distances are at most `error` below the true ones, as far as the mesh that they come from is proven

@@ -107,9 +107,10 @@ typedef void KrsDiagnosticCallback(void *user, const KrsDiagnostic *diagnostic);
    library.  False: stop, with KRS_INTERRUPTED. */
 typedef bool KrsProgressCallback(void *user, double done);
 
-/* Where memory comes from; a zeroed struct means malloc and free.  It is called in the thread that
-   calls the library.  It must outlive all objects that were made with it.  glslang and the Vulkan
-   driver do not use it, nor do grids, sections and figures of parts, which several threads make. */
+/* Says where memory comes from; a zeroed struct means malloc and free.  It is called in the thread
+   that calls the library.  It must outlive all objects that were made with it.  glslang and the
+   Vulkan driver do not use it, nor do grids, sections and figures of parts, which several threads
+   make. */
 typedef struct KrsAllocator {
     void *(*allocate)(void *user, size_t size); /* NULL: out of memory; aligned as by malloc */
     void (*release)(void *user, void *block);
@@ -126,7 +127,7 @@ typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length
    that diagnostics show; it lives until the callback returns. */
 typedef void KrsOpenedCallback(void *user, const char *path);
 
-/* Where numbers of the scene's text are in its shaders. */
+/* Says where numbers of the scene's text are in its shaders. */
 typedef enum KrsSpecialize {
     KRS_SPECIALIZE_NUMBERS,   /* in their text, as literals: fast frames */
     KRS_SPECIALIZE_STRUCTURE, /* in the parameter block: a scene that differs in numbers alone has
@@ -169,8 +170,9 @@ typedef struct KrsOptions {
     size_t text_length KRS_DEPRECATED("krs_compile_text");
     KrsLoadCallback   *load;      /* supplies the files that are used; NULL: they are read */
     void              *load_user; /* handed to `load` */
-    /* To know whether a scene must be compiled again, as after an edit.  The text of the scene and
-       files of the standard library are not told of where they are not read from disk. */
+    /* Called with each file that the scene is read from, so that the caller knows whether it must
+       be compiled again, as after an edit.  The text of the scene and files of the standard library
+       are not told of where they are not read from disk. */
     KrsOpenedCallback *opened;      /* may be NULL */
     void              *opened_user; /* handed to `opened` */
     bool research; /* compile steps for KRS_TRACE_TAYLOR and all methods behind it, too */
@@ -251,7 +253,7 @@ typedef struct KrsParameter {
     bool        color;           /* the text gives its default as a colour */
     bool        whole; /* the text gives its range as that of the numbers 0 and 1: `0..2` */
     const char *doc;   /* its comment of `///` lines, or NULL */
-    /* Where the text has the default: bytes [start, end) of the file or text of this name. */
+    /* The default stands in bytes [start, end) of the file or text of this name. */
     const char *source;
     uint32_t    start, end;
     uint32_t    line, column; /* of the name, from 1 */
@@ -408,8 +410,9 @@ typedef struct KrsCamera {
    is the default.  The name is NULL if the camera has none, and lives as long as the scene. */
 size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);
-/* Where the text has its block: bytes [start, end) of the file or text of this name, from `camera`
-   to behind the `}`.  KRS_BAD_ARGUMENT: there is no such camera, or the compiler places it. */
+/* The place of a camera's block in the text: bytes [start, end) of the file or text of this name,
+   from `camera` to behind the `}`.  KRS_BAD_ARGUMENT: there is no such camera, or the compiler
+   places it. */
 typedef struct KrsLocation {
     const char *source;
     uint32_t    start, end;

@@ -40,7 +40,7 @@ typedef struct KrsOrientation {
         stands; /* its center is above the inside of the convex hull of the base, which is no speck */
 } KrsOrientation;
 
-/* Where the solid begins and ends along its inward normal. */
+/* Says where the solid begins and ends along its inward normal. */
 typedef struct KrsWall {
     double thickness;
     double from[3], to[3];
@@ -60,8 +60,9 @@ typedef struct KrsMeasures {
     KrsWall wall; /* the thinnest; its thickness is infinite if there is none */
     double  spacing;
     double  thin_area; /* of places whose wall is thinner than the nozzle */
-    /* As it is, and with each direction upwards that is along an axis or opposite to a flat face on which the part can lie:
-       first those that stand, and of these those with the least overhang. */
+    /* The part as it is, and with each direction upwards that is along an axis or opposite to a
+       flat face on which it can lie: first those that stand, and of these those with the least
+       overhang. */
     KrsOrientation  as_is;
     KrsOrientation *orientations;
     size_t          orientation_count;

@@ -110,12 +110,13 @@ typedef struct KrsAssembly {
 } KrsAssembly;
 
 /*
- * As krs_mesh, with a mesh for each generator of sequences and the transforms of its copies, and one for all else.
- * The error is that of copies; 0: a 200th of the longest side of each generator's box.  Where generators overlap,
- * so do meshes.  *assembly may be NULL on KRS_OK: there is no sequence that can be taken apart.  None can with
- * zones or `within`; one whose mirrors cut anything, or may, or that inverts, cannot.  The scene must have been
- * compiled with KrsOptions.assembly.  With KrsOptions.motion what the time moves is taken apart as well.  Then KRS_BAD_SCENE:
- * something that moves cannot be taken apart.
+ * Makes meshes as krs_mesh does: one for each generator of sequences, with the transforms of its
+ * copies, and one for all else.  The error is that of copies; 0: a 200th of the longest side of
+ * each generator's box.  Where generators overlap, so do meshes.  *assembly may be NULL on KRS_OK:
+ * there is no sequence that can be taken apart.  None can with zones or `within`; one whose mirrors
+ * cut anything, or may, or that inverts, cannot.  The scene must have been compiled with
+ * KrsOptions.assembly.  With KrsOptions.motion what the time moves is taken apart as well.  Then
+ * KRS_BAD_SCENE: something that moves cannot be taken apart.
  */
 KRS_SIZED KrsStatus krs_assemble(KrsState *state, const KrsMeshOptions *options,
                                  KrsAssembly **assembly);
@@ -148,10 +149,10 @@ typedef struct KrsBeam {
 size_t krs_component_beams(KrsState *state, size_t index, KrsBeam *beams);
 
 /*
- * Where the material of the surface reads its texture, the first if there are several, at some points: 0, 0 is
- * the lower left corner of the picture and 1, 1 the upper right one.  Not a number: it reads none.  These are
- * coordinates as meshes have them; they jump where those of the surface do.  The scene must have been compiled with
- * KrsOptions.assembly.
+ * Finds where the material of the surface reads its texture, the first if there are several, at
+ * some points: 0, 0 is the lower left corner of the picture and 1, 1 the upper right one.  Not a
+ * number: it reads none.  These are coordinates as meshes have them; they jump where those of the
+ * surface do.  The scene must have been compiled with KrsOptions.assembly.
  */
 KrsStatus krs_texture_uvs(KrsState *state, const double (*points)[3], size_t count,
                           double (*uvs)[2]);

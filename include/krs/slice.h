@@ -47,8 +47,8 @@ typedef struct KrsContour {
 
 typedef struct KrsSection {
     double (*points)[2]; /* products of points in the scene with the plane's axes */
-    /* With `arcs`, of the piece behind each point: the tangent of a quarter of the angle by which it turns, above 0 to
-       the left; 0 is a line.  Else NULL. */
+    /* The bulge of the piece behind each point, with `arcs`: the tangent of a quarter of the angle
+       by which it turns, above 0 to the left; 0 is a line.  Else NULL. */
     double     *bulges;
     size_t      point_count;
     KrsContour *contours;
@@ -57,7 +57,8 @@ typedef struct KrsSection {
        of them is a point of the scene. */
     size_t lost;
     double lost_at[3], thinnest;
-    /* With `arcs` and `lines`: the section without arcs, which is freed with this one.  Else NULL. */
+    /* The section without arcs, which is freed with this one, if `arcs` and `lines` are set; else
+       NULL. */
     struct KrsSection *lines;
 } KrsSection;
 

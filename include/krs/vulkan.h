@@ -295,17 +295,18 @@ typedef enum KrsMatteKind {
 typedef struct KrsPicture {
     uint32_t  width, height; /* of the whole picture */
     KrsWindow window;        /* the part of it that was rendered */
-    /* With KrsRenderOptions.mattes, KRS_MATTE_RANKS for each pixel, the most covered first; else
-       NULL.  The share of a pixel that one covers is its rays / samples, or / pixel_samples where they differ. */
+    /* KRS_MATTE_RANKS mattes for each pixel, the most covered first, with KrsRenderOptions.mattes;
+       else NULL.  The share of a pixel that one covers is its rays / samples, or / pixel_samples
+       where they differ. */
     KrsMatte *mattes[KRS_MATTE_COUNT];
     float (*lights)
         [3]; /* with light_groups: of each light, pixel by pixel; the rest is sky, fog, emission */
     uint32_t light_count, samples; /* of lights; of rays of each pixel, at most */
-    /* Where a plate catches shadows: its light with the scene, relative to that without, by which
+    /* The light of a plate that catches shadows, with the scene, relative to that without, by which
        the plate is multiplied; 1 where it has no depth.  Else NULL. */
     float (*caught)[3];
-    /* Where it is glossy: what its surface mirrors of the scene, less what that hides from it, which is
-       added to the plate.  It may be negative.  Else NULL. */
+    /* What the surface of a glossy plate mirrors of the scene, less what that hides from it, which
+       is added to the plate.  It may be negative.  Else NULL. */
     float (*mirrored)[3];
     /* Without a camera these change nothing.  For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
        has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
