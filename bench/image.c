@@ -32,7 +32,7 @@ double image_coverage(const Image *image)
     return sum / (double)pixels;
 }
 
-/* In widths of a pixel at depth b. */
+/* Returns how far two depths differ, in widths of a pixel at depth b. */
 static double apart(float a, float b, double pixel) { return fabs((double)a - b) / (pixel * b); }
 
 typedef enum Difference { SAME, OTHER_FATE, OTHER_DEPTH } Difference;

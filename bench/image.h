@@ -20,8 +20,8 @@ void image_destroy(Image *image);
 double image_coverage(const Image *image);
 
 /*
- * Where a picture differs from the reference, as shares of all pixels: in whether there is a hit,
- * or by more than DEPTH_STEP widths of a pixel in depth.  A pixel is inside where, in the
+ * Tells where a picture differs from the reference, as shares of all pixels: in whether there is a
+ * hit, or by more than DEPTH_STEP widths of a pixel in depth.  A pixel is inside where, in the
  * reference, neither its own eight neighbours nor those of another tracer could see past an edge:
  * all of the nine are hit, or all missed, with no such step in depth between them.
  */

@@ -6,7 +6,8 @@
 
 #include "bench/bench.h"
 
-/* From starting the command to its end, when the EXR is written, for a small scene at 640x360. */
+/* The time from the start of the command to its end, when the EXR is written, for a small scene at
+   640x360. */
 typedef struct Latency {
     double cold_ms; /* nothing was ever compiled */
     double warm_ms; /* for the second time, with what the first one left in the caches */

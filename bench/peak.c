@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* As in peak.comp. */
+/* These equal the numbers of peak.comp. */
 enum { TURNS = 1024, STEPS_A_TURN = 8, LANES = 64, VECTOR = 4 };
 
 /* A dispatch lasts this long at least. */

@@ -270,7 +270,7 @@ static void tell_paper(const Bench *bench, const Results *results, Text *text)
     }
 }
 
-/* By how much beams shorten the time of two ways to trace the tree. */
+/* Tells by how much beams shorten the time of two ways to trace the tree. */
 static void tell_beams(const Sequences *s, Text *text)
 {
     static const Column columns[] = {{"without", "%.0f", 7},

@@ -145,7 +145,7 @@ static void fixture_close(Fixture *fixture)
     krs_scene_free(fixture->scene);
 }
 
-/* Without occlusion, which the other programs do not have either. */
+/* Renders without occlusion, which the other programs do not have either. */
 static KrsPicture *shoot(const Fixture *fixture, const struct Variant *variant)
 {
     KrsPicture      *picture;

@@ -153,7 +153,7 @@ static void write_vector(FILE *file, const char *name, const double v[3], double
     fprintf(file, "%s <%.17g, %.17g, %.17g> ", name, times * v[0], times * v[1], times * v[2]);
 }
 
-/* Where the last base before `end` begins: a letter or a parenthesis. */
+/* Finds where the last base before `end` begins: a letter or a parenthesis. */
 static const char *find_base(const char *end)
 {
     int open = 0;
@@ -270,7 +270,7 @@ static bool run_pov_isosurface(const Program *program, const char *folder, const
 
 /* ---- surf ---- */
 
-/* With u, v, w in the place of x, y, z, which are those of the picture. */
+/* Writes a text with u, v, w in the place of x, y, z, which are those of the picture. */
 static void write_turned(FILE *file, const char *text)
 {
     for (; *text; text++)

@@ -66,7 +66,7 @@ static void mirror_point(const Fork *fork, const double p[3], double image[3])
         image[k] = p[k] - 2 * above * normal[k];
 }
 
-/* From the twigs down: a mirror at each fork, and the branch below it. */
+/* Makes the branches from the twigs down: a mirror at each fork, and the branch below it. */
 static size_t grow(Limb limbs[MAX_BRANCHES])
 {
     Fork   forks[WRITTEN_LEVELS] = {{.ahead   = {-sin(5 * DEGREE), cos(5 * DEGREE), 0},

@@ -15,8 +15,8 @@ enum { RAYS = 1000, MAX_STEPS = 1000 };
 
 /* Within a ball of this radius are all solids below. */
 static const double radius = 1.2;
-/* Where a ray ends may be as far from the surface, a quarter of a pixel of a solid 300 pixels wide;
-   and as much of a ray may stay unverified (trace.comp). */
+/* The end of a ray may be as far from the surface as a quarter of a pixel of a solid 300 pixels
+   wide; and a twentieth of that of a ray may stay unverified (trace.comp). */
 static const double permitted = 0.25 * 2.0 / 300, tolerance = 0.05 * 0.25 * 2.0 / 300;
 
 typedef struct Solid {
@@ -72,7 +72,7 @@ static void random_direction(double v[3])
         v[i] /= sqrt(square);
 }
 
-/* Where a ray leaves the ball around all. */
+/* Returns where a ray leaves the ball around all. */
 static double exit_of_ball(const Ray *ray)
 {
     double along = 0, square = -radius * radius;

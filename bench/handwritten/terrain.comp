@@ -5,7 +5,7 @@
  */
 #include "view.glsl"
 
-// As far as it is seen.
+// The box up to which the terrain is seen.
 #define LOW      vec3(-200.0, -60.0, -200.0)
 #define HIGH     vec3(200.0, 60.0, 200.0)
 #define METALLIC 0.0

@@ -34,7 +34,7 @@ vec3 normal_at(vec3 p, float spacing)
     return normalize(sum);
 }
 
-// Where the ray is inside of the box.
+// Finds where the ray is inside of the box.
 vec2 clip_to_box(vec3 eye, vec3 direction)
 {
     vec3 a = (LOW - eye) / direction, b = (HIGH - eye) / direction;

@@ -54,7 +54,8 @@ static KrsPicture *shoot(const Fixture *fixture, KrsTrace trace, bool beams, dou
                                                        .aovs = KRS_AOV_DEPTH | KRS_AOV_IDS});
 }
 
-/* Where only one of two pictures shows something, or its depth is off by a hundredth. */
+/* Returns the share of pixels where only one of two pictures shows something, or where its depth is
+   off by a hundredth. */
 static double differing(const KrsPicture *a, const KrsPicture *b)
 {
     size_t count = 0;

@@ -24,7 +24,8 @@ using Traits        = Triangulation::Geom_traits;
 using Point         = Traits::Point_3;
 using Function      = double (*)(Point);
 
-/* By -20 degrees around (1, 2, 3), so that no axis is that of a grid (Rodrigues). */
+/* Rotates a point by -20 degrees around (1, 2, 3), so that no axis is that of a grid
+   (Rodrigues). */
 static Point turned(Point p)
 {
     const double angle = -20 * M_PI / 180, c = std::cos(angle), s = std::sin(angle);
@@ -90,7 +91,8 @@ static void mesh(const Shape &shape, double error)
     Complex                                    complex(triangulation);
     CGAL::Implicit_surface_3<Traits, Function> surface(
         shape.function, Traits::Sphere_3(CGAL::ORIGIN, shape.radius * shape.radius), 1e-6);
-    /* At least 30 degrees, as its manual has; no triangle is too large where the error permits it. */
+    /* Angles are at least 30 degrees, as in CGAL's manual; no triangle is too large where the error
+       permits it. */
     CGAL::Surface_mesh_default_criteria_3<Triangulation> criteria(30, shape.radius, error);
     CGAL::make_surface_mesh(complex, surface, criteria, CGAL::Manifold_tag());
     double most = 0;

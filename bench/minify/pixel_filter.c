@@ -25,7 +25,7 @@ typedef struct Filtered {
     double (*pixels)[4];
 } Filtered;
 
-/* As renderers have it: less what it is at the radius, so that it ends at 0. */
+/* Returns the weight as renderers have it: less what it is at the radius, so that it ends at 0. */
 static double weight(Filter filter, double distance)
 {
     if (fabs(distance) >= filter.radius)
@@ -70,7 +70,7 @@ static void filter_pixel(const KrsPicture *fine, const double weights[SPAN], int
         pixel[k] /= sum;
 }
 
-/* By the middles of squares of `step` samples. */
+/* Filters a picture by the middles of squares of `step` samples. */
 static Filtered filter_picture(const KrsPicture *fine, Filter filter, int step)
 {
     Filtered picture = {.width = fine->width / FINE, .height = fine->height / FINE};

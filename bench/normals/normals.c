@@ -119,7 +119,7 @@ static size_t choose_sights(const Fixture *fixture, const struct Surface *surfac
     return count;
 }
 
-/* As the kernel does it: all in single precision. */
+/* Finds normals as the shader does: all in single precision. */
 static void find_normals(const Fixture *fixture, KrsNormals normals, float reach,
                          const Sight *sights, size_t count, double (*found)[3])
 {
