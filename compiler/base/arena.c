@@ -33,7 +33,7 @@ static void use_large_pages(void *block, size_t size)
     const uintptr_t first = ((uintptr_t)block + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
     const uintptr_t end   = ((uintptr_t)block + size) / LARGE_PAGE * LARGE_PAGE;
     if (end > first)
-        madvise((void *)first, end - first, MADV_HUGEPAGE); /* a wish: nothing depends on it */
+        madvise((void *)first, end - first, MADV_HUGEPAGE); /* a hint: nothing depends on it */
 #else
     (void)block, (void)size;
 #endif

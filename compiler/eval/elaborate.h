@@ -239,7 +239,7 @@ bool         statement_iterations_made(Elaboration *e, const Environment *env, c
 
 /* ---- fold.c ---- */
 /* A number that the author of the scene may change without another program: it gets an identity, by
-   the order of evaluation, if shaders are to be apart from such numbers. */
+   the order of evaluation, if such numbers are kept out of shaders. */
 Value value_authored(Elaboration *e, Value value);
 /* A number that an operation on others gives: the author may change it if one of them.  The same
    operation on the same numbers gives the same number. */

@@ -10,8 +10,9 @@
 
 #include "compiler/eval/elaborate.h"
 
-/* Fewer iterations of a `show` in a loop stay apart, and fewer shapes of one form: each is then marched for
-   itself, and left out where it is far.  Forms become one only where an instance group may come of it. */
+/* Fewer iterations of a `show` in a loop stay separate, and fewer shapes of one form: each is then
+   marched for itself, and left out where it is far.  Forms become one only where an instance group
+   may come of it. */
 enum { MIN_ITERATIONS = 32, MIN_OF_A_FORM = 64 };
 /* The form of a tree of shapes is told by no more of it than that. */
 enum { MAX_FORM_SHAPES = 64 };

@@ -110,7 +110,7 @@ static const Shape *bend_upright(ShapeBuilder *builder, const Shape *shape,
     return bent;
 }
 
-/* The turn that brings the axis to x, and to y what stands upright: y, or x where that is the
+/* The rotation that brings the axis to x, and to y what stands upright: y, or x where that is the
    axis. */
 static const Map *bend_rotation(ShapeBuilder *builder, Node axis)
 {

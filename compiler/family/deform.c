@@ -2,7 +2,7 @@
  * deform.c: what the deformations share: their boxes, and how they are undone.
  *
  * Each has a position of its own: a twist and a taper go along y, a bend curves what stands along
- * y in the plane of y and z, about x.  Other axes are turned there and back.  A deformation is
+ * y in the plane of y and z, about x.  Other axes are rotated there and back.  A deformation is
  * undone only where the deformed solid may be, so that must be a bounded region, which follows
  * from the shape's box.
  *
@@ -106,17 +106,17 @@ double box_radius(Box box)
     return hypot_upward(range_largest(box.axis[0]), range_largest(box.axis[2]));
 }
 
-const Shape *deform_rotated(ShapeBuilder *builder, const Shape *shape, const Map *turn,
+const Shape *deform_rotated(ShapeBuilder *builder, const Shape *shape, const Map *rotation,
                             MakeDeformed *deform, const DeformArguments *asked)
 {
     if (box_is_empty(shape->box))
         return shape;
-    if (turn)
-        shape = make_transform(builder, shape, turn, asked->span);
+    if (rotation)
+        shape = make_transform(builder, shape, rotation, asked->span);
     const Shape *deformed = deform(builder, shape, asked);
-    if (!deformed || !turn)
+    if (!deformed || !rotation)
         return deformed;
-    return make_transform(builder, deformed, map_inverse(builder, turn), asked->span);
+    return make_transform(builder, deformed, map_inverse(builder, rotation), asked->span);
 }
 
 /* ---- how they are lowered ---- */

@@ -19,7 +19,7 @@ enum { DEFORM_CELLS = 64 };
 bool check_solid(ShapeBuilder *builder, const Shape *shape, const DeformArguments *asked);
 /* A solid with an end in every direction. */
 bool check_deformable(ShapeBuilder *builder, const Shape *shape, const DeformArguments *asked);
-/* The turn that brings an axis to y; NULL: it is y. */
+/* The rotation that brings an axis to y; NULL: it is y. */
 const Map *raise_axis(ShapeBuilder *builder, Node axis);
 Shape *deformed_shape(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *shape,
                       const DeformArguments *asked);
@@ -36,8 +36,8 @@ double shear_slope(double b);
 Range range_cell(Range range, int i);
 /* The largest distance from the y axis in a box. */
 double box_radius(Box box);
-/* Deformed in the position to which a turn brings it, and turned back; NULL: reported. */
-const Shape *deform_rotated(ShapeBuilder *builder, const Shape *shape, const Map *turn,
+/* Deformed in the position to which a rotation brings it, and rotated back; NULL: reported. */
+const Shape *deform_rotated(ShapeBuilder *builder, const Shape *shape, const Map *rotation,
                             MakeDeformed *deform, const DeformArguments *asked);
 
 /* ---- how they are lowered ---- */

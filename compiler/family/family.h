@@ -77,9 +77,9 @@ bool check_invertible(ShapeBuilder *builder, const Shape *shape, Span span);
 /* NULL: something endless is inverted, which is reported. */
 const Shape *make_krs(ShapeBuilder *builder, const SequenceStage *stages, uint32_t stage_count,
                       const Shape *const *kernels, uint32_t kernel_count, Span span);
-/* Unit normal and offset of a shape that is a plane, also a moved, turned or scaled one. */
+/* Unit normal and offset of a shape that is a plane, also a moved, rotated or scaled one. */
 bool shape_plane(ShapeBuilder *builder, const Shape *shape, Node *normal, Node *offset);
-/* Centre and radius of a shape that is a ball, also a moved, turned or scaled one. */
+/* Centre and radius of a shape that is a ball, also a moved, rotated or scaled one. */
 bool shape_ball(ShapeBuilder *builder, const Shape *shape, Node *centre, Node *radius);
 
 /* The sum of shapes that fade by a falloff with this reach is at least the level inside. */

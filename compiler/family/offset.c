@@ -80,7 +80,8 @@ Lowered lower_offset(Lowering *l, const Shape *shape, LowerContext context)
     return result;
 }
 
-/* What is nowhere negative.  A gradient is that of the solid: it does not turn at the open surface. */
+/* What is nowhere negative.  A gradient is that of the solid: it does not reverse at the open
+   surface. */
 static Lowered thin_open_surface(Lowering *l, Lowered solid)
 {
     Graph *g    = l->graph;

@@ -1,5 +1,5 @@
 /*
- * place.c: shapes that are moved, turned, scaled, stretched, mirrored or elongated: the point
+ * place.c: shapes that are moved, rotated, scaled, stretched, mirrored or elongated: the point
  * is taken back to where it was before.
  */
 #include "compiler/family/family.h"

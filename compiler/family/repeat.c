@@ -82,7 +82,7 @@ static Lowered outside_of_box(Lowering *l, const Shape *shape, LowerContext cont
 }
 
 /* Tells whether the content looks the same mirrored in the middle of its cell on an axis; `mapped`
-   is OP_POINT seen by the content, which may stand turned in its cell. */
+   is OP_POINT seen by the content, which may stand rotated in its cell. */
 static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_t axis)
 {
     Lowering alone = {.graph = l->graph, .scratch = l->scratch, .most = l->most};
@@ -355,8 +355,8 @@ static Node rotate_about_y(Graph *g, Node point, double angle)
     return angle == 0 ? point : graph_op4(g, OP_rotate, point, r0, r1, r2);
 }
 
-/* Tells how far the content, turned by -angle, stays from the walls of the sector around +x.  What has no
-   end across the axis is taken to cross them. */
+/* Tells how far the content, rotated by -angle, stays from the walls of the sector around +x.  What
+   has no end across the axis is taken to cross them. */
 static double sector_margin(Box content, double angle, double half_sector)
 {
     double least = INFINITY, c = cos(angle), s = sin(angle);
@@ -371,8 +371,8 @@ static double sector_margin(Box content, double angle, double half_sector)
     return least;
 }
 
-/* A copy that stands turned about y. */
-static Lowered lower_turned(Lowering *l, const Shape *content, LowerContext context, Node point)
+/* Lowers a copy that stands rotated about y. */
+static Lowered lower_rotated(Lowering *l, const Shape *content, LowerContext context, Node point)
 {
     NormalPath path = normal_path(l, context, 1);
     normal_rotate_about_y(l, &path, context.point, point);
@@ -384,7 +384,7 @@ static Lowered all_around(Lowering *l, const Shape *shape, LowerContext context,
 {
     if (count == 1) {
         Node point = rotate_about_y(l->graph, context.point, 2 * M_PI * first / shape->cells[0]);
-        return lower_turned(l, shape->children[0], context, point);
+        return lower_rotated(l, shape->children[0], context, point);
     }
     Lowered a = all_around(l, shape, context, first, count / 2);
     Lowered b = all_around(l, shape, context, first + count / 2, count - count / 2);
@@ -403,7 +403,7 @@ static Node in_next_sector(Graph *g, const Shape *shape, Node local)
     return graph_op3(g, OP_select, right, plus, minus);
 }
 
-/* A sector around +x and its content, which stands turned by `angle` and keeps a margin from both
+/* A sector around +x and its content, which stands rotated by `angle` and keeps a margin from both
    walls. */
 typedef struct Sector {
     double half, angle, margin;
@@ -435,7 +435,7 @@ static Lowered lower_in_sector(Lowering *l, const Shape *shape, LowerContext con
 {
     Graph  *g      = l->graph;
     Node    point  = rotate_about_y(g, local, -sector->angle);
-    Lowered result = lower_turned(l, shape->children[0], context, point);
+    Lowered result = lower_rotated(l, shape->children[0], context, point);
     if (result.distance == NODE_NONE || !needs_limit(shape->children[0], context))
         return result;
     Node wall       = across_sector(g, sector, local, -1);
@@ -444,7 +444,7 @@ static Lowered lower_in_sector(Lowering *l, const Shape *shape, LowerContext con
     return result;
 }
 
-/* Copies around y: the point is turned into the sector of the content, and the sectors join as
+/* Copies around y: the point is rotated into the sector of the content, and the sectors join as
    cells do.  Content that crosses the walls is written out, copy by copy. */
 Lowered lower_repeat_polar(Lowering *l, const Shape *shape, LowerContext context)
 {

@@ -1,5 +1,5 @@
 /*
- * twist.c: turned about an axis, by an angle that grows along it.  C is a cylinder about y.
+ * twist.c: rotated about an axis, by an angle that grows along it.  C is a cylinder about y.
  */
 #include "compiler/family/deform.h"
 
@@ -9,7 +9,7 @@
 
 /* ---- how it is made ---- */
 
-/* Each slice of the box turns by angles of its own, in any case within a cylinder. */
+/* Each slice of the box is rotated by angles of its own, in any case within a cylinder. */
 static Box twist_box(Box box, Range rate)
 {
     double radius = box_radius(box);
@@ -48,8 +48,8 @@ const Shape *make_twist(ShapeBuilder *builder, const Shape *shape, const DeformA
 
 /* ---- how it is lowered ---- */
 
-/* Turned about y by minus the angle: of the map (x, y, z) -> (c x - s z, y, s x + c z), and, for
-   normals, of its derivative, which has rate * (-z, 0, x) along y besides. */
+/* Undoes the twist by a rotation about y by minus the angle: by the map (x, y, z) -> (c x - s z, y,
+   s x + c z), and, for normals, of its derivative, which has rate * (-z, 0, x) along y besides. */
 static void undo_twist(Lowering *l, Node point, Node rate, InverseDeformation *inverse)
 {
     Graph *g     = l->graph;

@@ -392,12 +392,12 @@ static bool add_conditions(Finding *f, const LaneStep *step, double sign)
 /* A number that is below 0 where a condition holds and above 0 where it does not. */
 static bool add_condition(Finding *f, uint32_t operand, double sign)
 {
-    const LaneStep *step  = lane_step_of(f->tape, operand);
-    Sum             apart = {.count = 0};
+    const LaneStep *step       = lane_step_of(f->tape, operand);
+    Sum             difference = {.count = 0};
     if (step && (step->op == OP_less || step->op == OP_less_equal))
-        return add_term(f->tape, &apart, step->operands[0], sign) &&
-               add_term(f->tape, &apart, step->operands[1], -sign) && apart.count > 0 &&
-               find_pieces(f, &apart);
+        return add_term(f->tape, &difference, step->operands[0], sign) &&
+               add_term(f->tape, &difference, step->operands[1], -sign) && difference.count > 0 &&
+               find_pieces(f, &difference);
     if (step && step->op == OP_not)
         return add_condition(f, step->operands[0], -sign);
     return step && (step->op == OP_and || step->op == OP_or) && add_conditions(f, step, sign);
@@ -451,8 +451,8 @@ static bool add_alone(Finding *f, const LaneStep *step, double factor, double of
     return same != NODE_NONE && find_signs(f, same, factor);
 }
 
-/* A sum whose term has no second derivatives. */
-static bool add_apart(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
+/* Adds a sum whose term has no second derivatives. */
+static bool add_split(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
 {
     static const double both[2] = {1, 1};
     if (field_is_lesser(step) || field_is_greater(step))
@@ -475,7 +475,7 @@ static bool find_pieces(Finding *f, const Sum *sum)
     if (!found) {
         f->pieces->step_count = steps;
         f->pieces->count      = count;
-        found                 = add_apart(f, sum, k, step);
+        found                 = add_split(f, sum, k, step);
     }
     f->depth--;
     return found;
@@ -483,7 +483,7 @@ static bool find_pieces(Finding *f, const Sum *sum)
 
 /* ---- how many there are at least ---- */
 
-/* Tells whether it is never taken apart: it is a piece, or there are none. */
+/* Tells whether a step is never taken apart: it is a piece, or there are none. */
 static bool is_whole(const LaneStep *step)
 {
     return !field_is_greater(step) && !field_is_lesser(step) && step->op != OP_abs &&

@@ -20,7 +20,7 @@
  * poles; nothing like the above is proven.  1/2 |w| ln(|w| / R) / |w'| is an estimate, where |w'|
  * is how much lengths are stretched after all steps.  By e alone, as it is often seen, it is up to
  * 50 times too long near the poles' axis; by the most, e max(1, |s|), it is half of what it can be,
- * since what one step stretches most is turned away before the next.  The root of the mean
+ * since what one step stretches most is rotated away before the next.  The root of the mean
  * square over all directions, e^2 (2 + s^2) / 3, it is too long in one place of some thousands;
  * where that counts as 0.85 e^2 at least, so that many steps of small s do not add up, it was
  * never found to be.

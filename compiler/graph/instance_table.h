@@ -45,10 +45,10 @@ typedef struct InstancePlace {
     PlaceKind kind;
 } InstancePlace;
 
-/* An instance of an outline: the curve start + 2 way t + bend t^2, 0 <= t <= 1, in the plane z = 0.  The inside is
-   on its left; it turns only one way, and has no apex between its ends. */
+/* An instance of an outline: the curve start + 2 tangent t + bend t^2, 0 <= t <= 1, in the plane z
+   = 0.  The inside is on its left; it turns only one way, and has no apex between its ends. */
 typedef struct InstanceArc {
-    double start[2], way[2], bend[2];
+    double start[2], tangent[2], bend[2];
 } InstanceArc;
 
 /* A table. */

@@ -163,7 +163,7 @@ void graph_release(Graph *graph, GraphMark mark)
     graph_keep(graph);
 }
 
-/* Nodes since a mark, apart from the graph. */
+/* The nodes since a mark, outside of the graph. */
 typedef struct SavedNodes {
     size_t first, count;
     Expr  *items;

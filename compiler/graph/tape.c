@@ -235,39 +235,39 @@ static const InstanceTable *table_of(const Tape *tape, uint32_t function)
     return &instances->tables.items[instances->functions.items[function].table_number];
 }
 
-static double flops_of(const Tape *tape, bool apart);
+static double flops_of(const Tape *tape, bool separate);
 
 /* Counts the operations of a call for all instances, or for a typical list and one instance
    more. */
-static double call_flops(const Tape *tape, uint32_t function, bool apart)
+static double call_flops(const Tape *tape, uint32_t function, bool separate)
 {
     const InstanceTable *table = table_of(tape, function);
     const Grid          *grid  = &table->cells;
     size_t               cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
     double               mean  = (double)grid->first[cells] / (double)cells;
-    return (apart ? table->rows : mean + 1) * flops_of(&tape->functions[function], apart);
+    return (separate ? table->rows : mean + 1) * flops_of(&tape->functions[function], separate);
 }
 
-static double node_flops(const Tape *tape, Node node, bool apart)
+static double node_flops(const Tape *tape, Node node, bool separate)
 {
     const Expr *expr = &tape->graph->items[node];
     GraphType   types[MAX_OPERANDS];
-    if (expr->operand_count == 0 || (apart && expr->op == OP_row))
+    if (expr->operand_count == 0 || (separate && expr->op == OP_row))
         return 0;
     for (uint32_t k = 0; k < expr->operand_count; k++)
         types[k] = tape->graph->items[expr->operands[k]].type;
     double flops = op_cost((Op)expr->op, expr->type, types);
     if (!is_call((Op)expr->op))
         return flops;
-    double loop = call_flops(tape, called_function(tape->graph, expr), apart);
-    return apart ? loop : flops + loop;
+    double loop = call_flops(tape, called_function(tape->graph, expr), separate);
+    return separate ? loop : flops + loop;
 }
 
-static double flops_of(const Tape *tape, bool apart)
+static double flops_of(const Tape *tape, bool separate)
 {
     double flops = 0;
     for (size_t i = tape->frame_count; i < tape->count; i++)
-        flops += node_flops(tape, tape->nodes[i], apart);
+        flops += node_flops(tape, tape->nodes[i], separate);
     return flops;
 }
 

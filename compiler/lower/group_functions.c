@@ -140,9 +140,9 @@ static uint32_t make_sum(const InstanceGroup *group, const GroupJoin *join)
     Node           sum        = graph_state(g, TYPE_FLOAT, next_function(g), 1);
     InstanceInBody instance   = instance_in_body(group, join, PART_DISTANCE);
     Node           width      = graph_op2(g, OP_max, join->blend.width, graph_number(g, 1e-30));
-    Node           apart      = graph_op2(g, OP_sub, instance.distance, least);
+    Node           difference = graph_op2(g, OP_sub, instance.distance, least);
     Node           nearer     = graph_op2(g, OP_less, instance.distance, least);
-    Node           away       = graph_op1(g, OP_neg, graph_op1(g, OP_abs, apart));
+    Node           away       = graph_op1(g, OP_neg, graph_op1(g, OP_abs, difference));
     Node           power      = graph_op1(g, OP_exp, graph_op2(g, OP_div, away, width));
     Node           others     = graph_op2(g, OP_mul, sum, power);
     others                    = graph_op2(g, OP_add, others, graph_number(g, 1));

@@ -42,20 +42,20 @@ static bool lower_shared(const PartFinder *finder, const Shape *iteration, Node 
     return lowered && graph->instances->functions.count == functions;
 }
 
-typedef struct Turning {
+typedef struct IteratedGroup {
     const Graph *graph;
     const Shape *iteration; /* the first */
     bool        *depends;
-} Turning;
+} IteratedGroup;
 
-static bool iterations(const Turning *t, Node node)
+static bool iterations(const IteratedGroup *t, Node node)
 {
     return node != NODE_NONE && node >= t->iteration->iteration &&
            t->depends[node - t->iteration->iteration];
 }
 
 /* Tells whether slots alone depend on the iteration. */
-static bool only_in_slots(const Turning *t, const Template *template)
+static bool only_in_slots(const IteratedGroup *t, const Template *template)
 {
     bool good = true;
     for (uint32_t i = 0; i < template->root_count; i++)
@@ -105,7 +105,7 @@ static const double *numbers_of_iterations(const PartFinder *finder, const Insta
 
 /* Fills the elements of slots that depend on the iteration, which then hold what the first instance
    has. */
-static bool fill_iterated(const PartFinder *finder, InstanceGroup *group, const Turning *t)
+static bool fill_iterated(const PartFinder *finder, InstanceGroup *group, const IteratedGroup *t)
 {
     Graph *graph       = finder->outer->graph;
     Arena *scratch     = finder->outer->scratch;
@@ -132,7 +132,7 @@ static bool fill_iterated(const PartFinder *finder, InstanceGroup *group, const 
 }
 
 /* What all instances have, and the number of each component. */
-static void fill_others(const PartFinder *finder, InstanceGroup *group, const Turning *t,
+static void fill_others(const PartFinder *finder, InstanceGroup *group, const IteratedGroup *t,
                         const SlotContent *contents)
 {
     const Template *template     = group->template;
@@ -152,7 +152,7 @@ static bool make_group(const PartFinder *finder, InstanceGroup *group, Arena *ar
 {
     Graph              *graph   = finder->outer->graph;
     Arena              *scratch = finder->outer->scratch;
-    Turning             t       = {graph, finder->parts[group->instances.items[0]], NULL};
+    IteratedGroup       t       = {graph, finder->parts[group->instances.items[0]], NULL};
     const InstanceGroup found   = *group;
     Node                roots[PART_ROOTS];
     if (!lower_shared(finder, t.iteration, roots))

@@ -128,7 +128,7 @@ static double largest_slope(const PartFinder *finder, const InstanceGroup *group
 
 static bool is_of_frame(const Graph *g, Node node) { return g->items[node].time == TIME_FRAME; }
 
-static bool is_turned(const Graph *g, const Map *map)
+static bool is_rotated(const Graph *g, const Map *map)
 {
     return is_of_frame(g, map->scale) || is_of_frame(g, map->rows[0]) ||
            is_of_frame(g, map->rows[1]) || is_of_frame(g, map->rows[2]);
@@ -143,10 +143,10 @@ static const Shape *moved_by(const Graph *g, const Shape *part)
     const Map *map = &part->map;
     if (part->kind != SHAPE_TRANSFORM)
         return NULL;
-    return is_turned(g, map) || is_of_frame(g, map->shift) ? part : NULL;
+    return is_rotated(g, map) || is_of_frame(g, map->shift) ? part : NULL;
 }
 
-/* A box that is turned and scaled by known numbers. */
+/* A box that is rotated and scaled by known numbers. */
 static Box rotate_box(const Graph *g, const Map *map, Box box)
 {
     const Node       nodes[]   = {map->scale, map->rows[0], map->rows[1], map->rows[2]};
@@ -168,10 +168,10 @@ static InstancePlace place_of(Graph *g, const Shape *part)
     const Map *map   = &moved->map;
     const Box  box   = moved->children[0]->box;
     const Node all[] = {map->scale, map->rows[0], map->rows[1], map->rows[2], map->shift};
-    for (int i = is_turned(g, map) ? 0 : 4; i < 5; i++)
+    for (int i = is_rotated(g, map) ? 0 : 4; i < 5; i++)
         array_push(groups->arena, &groups->frame_numbers, all[i]);
-    return is_turned(g, map) ? (InstancePlace){box, PLACE_ROTATED}
-                             : (InstancePlace){rotate_box(g, map, box), PLACE_SHIFT};
+    return is_rotated(g, map) ? (InstancePlace){box, PLACE_ROTATED}
+                              : (InstancePlace){rotate_box(g, map, box), PLACE_SHIFT};
 }
 
 /* Finds where the instances of a group are in each frame; nothing if none is known to move. */

@@ -6,7 +6,7 @@
 
 #include "compiler/lower/context.h"
 
-/* Fewer parts that are alike stay apart: a loop over a list costs as much as some. */
+/* Fewer parts that are alike stay separate: a loop over a list costs as much as some. */
 enum { MIN_INSTANCES = 64 };
 /* But large parts cost more.  So few are an instance group if all but one have so many operations.  Blends need a
    loop for each property that is mixed. */

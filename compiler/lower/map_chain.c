@@ -27,16 +27,16 @@ Node before_map(Graph *g, const Map *map, Node point)
 {
     Node rows[3];
     transpose_rows(g, map->rows, rows);
-    Node moved  = graph_op2(g, OP_sub, point, map->shift);
-    Node turned = moved;
+    Node moved   = graph_op2(g, OP_sub, point, map->shift);
+    Node rotated = moved;
     Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
     if (rows[0] != e0 || rows[1] != e1 || rows[2] != e2)
-        turned = graph_op4(g, OP_rotate, moved, rows[0], rows[1], rows[2]);
+        rotated = graph_op4(g, OP_rotate, moved, rows[0], rows[1], rows[2]);
     Node one = graph_number(g, 1);
     if (map->scale == one)
-        return turned;
+        return rotated;
     Node factor = graph_op2(g, OP_div, one, map->scale);
-    return graph_op2(g, OP_scale, turned, factor);
+    return graph_op2(g, OP_scale, rotated, factor);
 }
 
 MapChain map_chain_new(Graph *g, Node point)

@@ -26,13 +26,13 @@ typedef struct Inversion {
 } Inversion;
 
 Inversion inversion_at(Graph *g, const Map *map, Node point);
-/* Turns a direction as the inverse of a map does; the reflection of an inversion is left out. */
+/* Rotates a direction as the inverse of a map does; the reflection of an inversion is left out. */
 Node rotate_behind(Graph *g, const Map *map, Node direction);
 
 MapChain map_chain_new(Graph *g, Node point);
 /* Appends a map without `first`, and its at most two steps to the path of the normal. */
 void map_chain_append(Lowering *l, MapChain *chain, const Map *map, NormalPath *path);
-/* Turns distances behind all maps into distances outside. */
+/* Converts distances behind all maps into distances outside. */
 Lowered map_chain_out(Lowering *l, const MapChain *chain, Lowered result);
 /* enter_scale() for all maps of the chain. */
 Node enter_map_chain(Lowering *l, const MapChain *chain);

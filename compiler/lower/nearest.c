@@ -83,7 +83,8 @@ Node nearest_threshold(Graph *g, Blend blend, Nearest nearest)
     return graph_op3(g, OP_threshold8_quadratic, nearest.near, nearest.more, blend.width);
 }
 
-/* Without a width the nearest ones, which are at the threshold, have all. */
+/* Returns the share of an operand.  Without a width the nearest ones, which are at the threshold,
+   have all. */
 Node share_below(Graph *g, Blend blend, Node threshold, Node distance)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1);

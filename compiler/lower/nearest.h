@@ -25,7 +25,7 @@ Node nearest_end(Graph *g, Blend blend, Nearest nearest);
 /* The threshold below which operands have a share, and the share of one, from 0 to 1: what surfaces are mixed by. */
 Node nearest_threshold(Graph *g, Blend blend, Nearest nearest);
 Node share_below(Graph *g, Blend blend, Node threshold, Node distance);
-/* Operands that are apart, at least one: what they are blended to, and their threshold. */
+/* What separate operands, at least one, are blended to, and their threshold. */
 Node blend_distances(Graph *g, Blend blend, const Node *distances, uint32_t count);
 Node blend_threshold(Graph *g, Blend blend, const Node *distances, uint32_t count);
 

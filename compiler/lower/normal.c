@@ -26,7 +26,7 @@ static Node mirrored(Graph *g, Node normal, Node axis, Node amount)
     return graph_op2(g, OP_sub, normal, correction);
 }
 
-static Node turned(Graph *g, Node vector, const Node rows[3])
+static Node rotated(Graph *g, Node vector, const Node rows[3])
 {
     return graph_op4(g, OP_rotate, vector, rows[0], rows[1], rows[2]);
 }
@@ -92,13 +92,13 @@ void normal_rotate(Lowering *l, NormalPath *path, const Node rows[3], Node stret
     Node back[3];
     transpose_rows(g, rows, back);
     path->innermost        = place_stretched(g, path->innermost, stretch);
-    path->innermost.normal = turned(g, path->innermost.normal, back);
+    path->innermost.normal = rotated(g, path->innermost.normal, back);
     NormalStep *step       = add_step(path, (NormalStep){.kind = NORMAL_ROTATE});
     for (int i = 0; i < 3; i++)
         step->rows[i] = rows[i];
 }
 
-/* The rows of the rotation about y that turns one direction into another, both projected to the
+/* The rows of the rotation about y that takes one direction to another, both projected to the
    plane of x and z. */
 static void rows_about_y(Graph *g, Node from, Node to, Node rows[3])
 {
@@ -213,7 +213,7 @@ Node normal_out(Lowering *l, const NormalPath *path, Node inner)
         if (step->kind == NORMAL_MIRROR)
             normal = mirrored(g, normal, step->axis, step->amount);
         else if (step->kind == NORMAL_ROTATE)
-            normal = turned(g, normal, step->rows);
+            normal = rotated(g, normal, step->rows);
         else if (step->kind == NORMAL_STRETCH) {
             normal = graph_op2(g, OP_div, normal, step->rows[0]);
             normal = graph_op1(g, OP_normalize, normal);

@@ -10,7 +10,7 @@
 typedef struct NormalStep {
     enum { NORMAL_MIRROR, NORMAL_ROTATE, NORMAL_STRETCH, NORMAL_KERNEL } kind;
     Node axis, amount;   /* MIRROR: unit vector; by how much it reflects on the way out */
-    Node rows[3];        /* TURN: the matrix; STRETCH: [0] has the factors */
+    Node rows[3];        /* ROTATE: the matrix; STRETCH: [0] has the factors */
     Node normal, nearer; /* KERNEL: its normal; whether it is nearer than those further out */
 } NormalStep;
 
@@ -25,7 +25,7 @@ typedef struct NormalPath {
 NormalPath normal_path(Lowering *l, LowerContext context, uint32_t most);
 /* Adds the inverse of x -> stretch * rows * x + shift. */
 void normal_rotate(Lowering *l, NormalPath *path, const Node rows[3], Node stretch);
-/* Adds the rotation about y that turns the direction of `outer` into that of `inner`. */
+/* Adds the rotation about y that takes the direction of `outer` to that of `inner`. */
 void normal_rotate_about_y(Lowering *l, NormalPath *path, Node outer, Node inner);
 /* Adds the inverse of x -> factors * x, element by element.  `least` is the smallest factor. */
 void normal_stretch(Lowering *l, NormalPath *path, Node factors, Node least);

@@ -64,13 +64,14 @@ static Node signed_length(const Row *row, Node t, Node away, Node tangent, Node 
 
 static Node line_distance(const Row *row)
 {
-    Graph *g     = row->graph;
-    Node   way   = vector_of(row, COLUMN_WAY);
-    Node   away  = sub(g, row->point, vector_of(row, COLUMN_START));
-    Node   along = graph_op2(g, OP_dot, way, away), square = graph_op2(g, OP_dot, way, way);
-    Node   t = unit_clamp(g, over(g, along, square));
-    away     = sub(g, away, mul(g, way, t));
-    return signed_length(row, t, away, way, graph_number(g, 1));
+    Graph *g       = row->graph;
+    Node   tangent = vector_of(row, COLUMN_TANGENT);
+    Node   away    = sub(g, row->point, vector_of(row, COLUMN_START));
+    Node   along   = graph_op2(g, OP_dot, tangent, away),
+         square    = graph_op2(g, OP_dot, tangent, tangent);
+    Node t         = unit_clamp(g, over(g, along, square));
+    away           = sub(g, away, mul(g, tangent, t));
+    return signed_length(row, t, away, tangent, graph_number(g, 1));
 }
 
 /* Newton's method from t = 1 for f3 t^3 + f2 t^2 + f1 t + f0, which is convex there.  Where it falls,
@@ -93,26 +94,26 @@ static Node largest_root(Graph *g, const Node f[4])
 
 static Node curve_distance(const Row *row)
 {
-    Graph *g    = row->graph;
-    Node   away = sub(g, row->point, vector_of(row, COLUMN_START));
-    Node   way = vector_of(row, COLUMN_WAY), bend = vector_of(row, COLUMN_BEND);
-    Node   way_bend = number_of(row, COLUMN_WAY_BEND), f[4];
-    Node   square   = graph_op2(g, OP_dot, way, way);
-    f[3]            = number_of(row, COLUMN_BEND_BEND);
-    f[2]            = mul(g, way_bend, graph_number(g, 3));
-    f[1]            = sub(g, add(g, square, square), graph_op2(g, OP_dot, away, bend));
-    f[0]            = neg(g, graph_op2(g, OP_dot, away, way));
-    Node t          = largest_root(g, f);
+    Graph *g       = row->graph;
+    Node   away    = sub(g, row->point, vector_of(row, COLUMN_START));
+    Node   tangent = vector_of(row, COLUMN_TANGENT), bend = vector_of(row, COLUMN_BEND);
+    Node   tangent_bend = number_of(row, COLUMN_TANGENT_BEND), f[4];
+    Node   square       = graph_op2(g, OP_dot, tangent, tangent);
+    f[3]                = number_of(row, COLUMN_BEND_BEND);
+    f[2]                = mul(g, tangent_bend, graph_number(g, 3));
+    f[1]                = sub(g, add(g, square, square), graph_op2(g, OP_dot, away, bend));
+    f[0]                = neg(g, graph_op2(g, OP_dot, away, tangent));
+    Node t              = largest_root(g, f);
     /* The nearest point is there or at t = 0. */
-    Node twice   = add(g, way, way);
-    Node there   = sub(g, away, mul(g, add(g, twice, mul(g, bend, t)), t));
-    Node before  = graph_op2(g, OP_dot, away, away);
-    Node behind  = graph_op2(g, OP_dot, there, there);
-    Node begins  = graph_op2(g, OP_less_equal, before, behind);
-    t            = graph_op3(g, OP_select, begins, graph_number(g, 0), t);
-    Node nearest = graph_op3(g, OP_select, begins, away, there);
-    Node tangent = add(g, way, mul(g, bend, t));
-    return signed_length(row, t, nearest, tangent, number_of(row, COLUMN_SIDE));
+    Node twice         = add(g, tangent, tangent);
+    Node there         = sub(g, away, mul(g, add(g, twice, mul(g, bend, t)), t));
+    Node before        = graph_op2(g, OP_dot, away, away);
+    Node behind        = graph_op2(g, OP_dot, there, there);
+    Node begins        = graph_op2(g, OP_less_equal, before, behind);
+    t                  = graph_op3(g, OP_select, begins, graph_number(g, 0), t);
+    Node nearest       = graph_op3(g, OP_select, begins, away, there);
+    Node there_tangent = add(g, tangent, mul(g, bend, t));
+    return signed_length(row, t, nearest, there_tangent, number_of(row, COLUMN_SIDE));
 }
 
 /* What is nearer to 0. */
@@ -168,9 +169,9 @@ static InstanceArc arc_of(const Curve *curve)
     InstanceArc arc;
     for (int k = 0; k < 2; k++) {
         double from = curve->from[k], to = curve->to[k], via = curve->via[k];
-        arc.start[k] = from;
-        arc.way[k]   = curve->straight ? 0.5 * (to - from) : via - from;
-        arc.bend[k]  = curve->straight ? 0 : from - 2 * via + to;
+        arc.start[k]   = from;
+        arc.tangent[k] = curve->straight ? 0.5 * (to - from) : via - from;
+        arc.bend[k]    = curve->straight ? 0 : from - 2 * via + to;
     }
     return arc;
 }

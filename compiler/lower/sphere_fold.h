@@ -18,7 +18,7 @@ typedef struct SphereFold {
 
 /* `ball` contains what is mirrored. */
 SphereFold sphere_fold_at(Graph *g, const SequenceStage *stage, Node point, Ball ball);
-/* Turns a distance at `point` into one outside of the mirror. */
+/* Converts a distance at `point` into one outside of the mirror. */
 Lowered sphere_fold_out(Lowering *l, const SphereFold *fold, Lowered result);
 /* Tells whether a point is inside of the sphere. */
 Node sphere_front(Graph *g, const SequenceStage *stage, Node point);

@@ -30,7 +30,7 @@ typedef struct Cutter {
     uint32_t leaves; /* of the pair at hand */
 } Cutter;
 
-static double apart(const double a[2], const double b[2])
+static double distance_between(const double a[2], const double b[2])
 {
     return hypot(a[0] - b[0], a[1] - b[1]);
 }
@@ -53,7 +53,7 @@ static void cut_at_end(Cutter *cutter, uint32_t edge, uint32_t knot)
     const double *at     = making->knots.items[knot].at;
     double        t      = curve_nearest(curve, at), point[2];
     curve_point(curve, t, point);
-    if (apart(point, at) <= cutter->tolerance)
+    if (distance_between(point, at) <= cutter->tolerance)
         add_cut(cutter, edge, t, knot);
 }
 
@@ -96,25 +96,25 @@ static bool boxes_meet(const Span2 *a, const Span2 *b)
 /* Refines a crossing by Newton's method; false: it does not end where both meet. */
 static bool refine(const Curve *a, const Curve *b, double *t, double *u, double tolerance)
 {
-    double at[2], other[2], way[2], along[2], away[2];
+    double at[2], other[2], tangent[2], along[2], away[2];
     for (int i = 0; i < 12; i++) {
         curve_point(a, *t, at);
         curve_point(b, *u, other);
-        curve_tangent(a, *t, way);
+        curve_tangent(a, *t, tangent);
         curve_tangent(b, *u, along);
         for (int k = 0; k < 2; k++)
             away[k] = 0.5 * (other[k] - at[k]);
-        double turn = cross2(way, along);
-        if (turn == 0)
+        double cross = cross2(tangent, along);
+        if (cross == 0)
             break;
-        *t += cross2(away, along) / turn;
-        *u += cross2(away, way) / turn;
+        *t += cross2(away, along) / cross;
+        *u += cross2(away, tangent) / cross;
         *t = fmin(fmax(*t, 0), 1);
         *u = fmin(fmax(*u, 0), 1);
     }
     curve_point(a, *t, at);
     curve_point(b, *u, other);
-    return apart(at, other) <= 0.5 * tolerance;
+    return distance_between(at, other) <= 0.5 * tolerance;
 }
 
 /* Where the chords cross, both curves do. */
@@ -142,7 +142,7 @@ static double bulge(const Cutter *cutter, const Span2 *span)
 {
     const Curve *curve = &cutter->making->edges.items[span->edge].curve;
     if (curve->radius > 0) {
-        double half = fmin(0.5 * apart(span->ends[0], span->ends[1]), curve->radius);
+        double half = fmin(0.5 * distance_between(span->ends[0], span->ends[1]), curve->radius);
         return half * half / (curve->radius + sqrt(curve->radius * curve->radius - half * half));
     }
     double bend = hypot(curve->from[0] - 2 * curve->via[0] + curve->to[0],
@@ -167,13 +167,13 @@ static bool may_cross(const Span2 *a, const Span2 *b, double slack)
     const Span2 *pair[2] = {a, b};
     for (int i = 0; i < 2; i++) {
         const Span2 *line = pair[i], *other = pair[1 - i];
-        double       way[2], side[2];
+        double       chord[2], side[2];
         for (int k = 0; k < 2; k++)
-            way[k] = line->ends[1][k] - line->ends[0][k];
+            chord[k] = line->ends[1][k] - line->ends[0][k];
         for (int end = 0; end < 2; end++) {
             double to[2] = {other->ends[end][0] - line->ends[0][0],
                             other->ends[end][1] - line->ends[0][1]};
-            side[end]    = cross2(way, to) / fmax(hypot(way[0], way[1]), 1e-300);
+            side[end]    = cross2(chord, to) / fmax(hypot(chord[0], chord[1]), 1e-300);
         }
         if (fmin(side[0], side[1]) > slack || fmax(side[0], side[1]) < -slack)
             return false;
@@ -205,14 +205,14 @@ static void find_crossings(Cutter *cutter, const Span2 *a, const Span2 *b, int d
 static bool is_double(const Edge *a, const Edge *b, double tolerance)
 {
     bool same = (a->from == b->from && a->to == b->to) || (a->from == b->to && a->to == b->from);
-    return same && apart(a->curve.via, b->curve.via) <= 4 * tolerance;
+    return same && distance_between(a->curve.via, b->curve.via) <= 4 * tolerance;
 }
 
 /* Arcs of one circle share more than points, or only ends. */
 static bool is_one_circle(const Curve *a, const Curve *b, double tolerance)
 {
     return a->radius > 0 && b->radius > 0 && fabs(a->radius - b->radius) <= tolerance &&
-           apart(a->centre, b->centre) <= tolerance;
+           distance_between(a->centre, b->centre) <= tolerance;
 }
 
 static bool cut_pair(Cutter *cutter, uint32_t a, uint32_t b)

@@ -17,8 +17,9 @@
 typedef enum FillRule { FILL_EVEN_ODD, FILL_NONZERO, FILL_POSITIVE, FILL_TWICE } FillRule;
 
 /*
- * A piece of an outline.  What is nearest to an end of it lies on the outer side of the corner there:
- * on the side of its bisector, a turned normal.  `corner` is the tangent of the angle between both.
+ * A piece of an outline.  What is nearest to an end of it lies on the outer side of the corner
+ * there: on the side of its bisector, a rotated normal.  `corner` is the tangent of the angle
+ * between both.
  */
 typedef struct Piece {
     Curve  curve;

@@ -17,12 +17,12 @@ typedef struct Pieces {
 /* ---- cutting ---- */
 
 /* A curve from its tangent at t on: half of the derivative there, and the second difference. */
-static void way_and_bend(const Curve *curve, double way[2], double bend[2])
+static void tangent_and_bend(const Curve *curve, double tangent[2], double bend[2])
 {
     for (int k = 0; k < 2; k++) {
-        way[k]  = curve->straight ? 0.5 * (curve->to[k] - curve->from[k])
-                                  : curve->via[k] - curve->from[k];
-        bend[k] = curve->straight ? 0 : curve->from[k] - 2 * curve->via[k] + curve->to[k];
+        tangent[k] = curve->straight ? 0.5 * (curve->to[k] - curve->from[k])
+                                     : curve->via[k] - curve->from[k];
+        bend[k]    = curve->straight ? 0 : curve->from[k] - 2 * curve->via[k] + curve->to[k];
     }
 }
 
@@ -30,15 +30,15 @@ static void way_and_bend(const Curve *curve, double way[2], double bend[2])
    from there to either side, as far as these are between its ends.  Ascending, with 0 and 1. */
 static int find_cuts(const Curve *curve, double cuts[5])
 {
-    double way[2], bend[2];
+    double tangent[2], bend[2];
     int    count = 1;
     cuts[0]      = 0;
-    way_and_bend(curve, way, bend);
+    tangent_and_bend(curve, tangent, bend);
     double square = dot2(bend, bend);
     if (square > 0) {
-        double apex = -dot2(way, bend) / square, turned = fabs(cross2(way, bend)) / square;
+        double apex = -dot2(tangent, bend) / square, beside = fabs(cross2(tangent, bend)) / square;
         for (int i = -1; i <= 1; i++) {
-            double t = apex + i * turned;
+            double t = apex + i * beside;
             if (t > 1e-6 && t < 1 - 1e-6)
                 cuts[count++] = t;
         }
@@ -67,7 +67,7 @@ static void fill_line(const Piece *piece, double *row)
 {
     for (int k = 0; k < 2; k++) {
         row[COLUMN_START + k]        = piece->curve.from[k];
-        row[COLUMN_WAY + k]          = piece->curve.to[k] - piece->curve.from[k];
+        row[COLUMN_TANGENT + k]      = piece->curve.to[k] - piece->curve.from[k];
         row[COLUMN_FIRST_CORNER + k] = piece->corner[k];
     }
     row[COLUMN_LEAN] = piece->lean;
@@ -78,26 +78,26 @@ static void fill_line(const Piece *piece, double *row)
 static void fill_curve(const Piece *piece, double *row)
 {
     Curve  curve = piece->curve;
-    double way[2], bend[2], corner[2] = {piece->corner[0], piece->corner[1]};
-    way_and_bend(&curve, way, bend);
-    bool back = 2 * dot2(way, bend) + dot2(bend, bend) < 0;
+    double tangent[2], bend[2], corner[2] = {piece->corner[0], piece->corner[1]};
+    tangent_and_bend(&curve, tangent, bend);
+    bool back = 2 * dot2(tangent, bend) + dot2(bend, bend) < 0;
     if (back) {
         memcpy(curve.from, piece->curve.to, sizeof curve.from);
         memcpy(curve.to, piece->curve.from, sizeof curve.to);
-        way_and_bend(&curve, way, bend);
+        tangent_and_bend(&curve, tangent, bend);
         corner[0] = -piece->corner[1];
         corner[1] = -piece->corner[0];
     }
     for (int k = 0; k < 2; k++) {
         row[COLUMN_START + k]        = curve.from[k];
-        row[COLUMN_WAY + k]          = way[k];
+        row[COLUMN_TANGENT + k]      = tangent[k];
         row[COLUMN_BEND + k]         = bend[k];
         row[COLUMN_FIRST_CORNER + k] = corner[k];
     }
-    row[COLUMN_LEAN]      = piece->lean;
-    row[COLUMN_SIDE]      = back ? -1 : 1;
-    row[COLUMN_BEND_BEND] = dot2(bend, bend);
-    row[COLUMN_WAY_BEND]  = dot2(way, bend);
+    row[COLUMN_LEAN]         = piece->lean;
+    row[COLUMN_SIDE]         = back ? -1 : 1;
+    row[COLUMN_BEND_BEND]    = dot2(bend, bend);
+    row[COLUMN_TANGENT_BEND] = dot2(tangent, bend);
 }
 
 OutlineInstances outline_instances(const Outline *outline, Arena *arena, Arena *scratch)

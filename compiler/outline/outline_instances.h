@@ -1,10 +1,10 @@
 /*
  * outline_instances.h: the pieces of an outline as the rows of a table.
  *
- * A row is a curve start + 2 way t + bend t^2, 0 <= t <= 1, that turns by 45 degrees at most and is
- * bent less and less.  So the nearest point has the largest root of a cubic that is convex there, and a
- * few steps of Newton's method from t = 1 find it.  Of an outline without curves there are fewer
- * columns: start + way t.
+ * A row is a curve start + 2 tangent t + bend t^2, 0 <= t <= 1, that turns by 45 degrees at most
+ * and is bent less and less.  So the nearest point has the largest root of a cubic that is convex
+ * there, and a few steps of Newton's method from t = 1 find it.  Of an outline without curves there
+ * are fewer columns: start + tangent t.
  */
 #ifndef KRS_OUTLINE_INSTANCES_H
 #define KRS_OUTLINE_INSTANCES_H
@@ -13,7 +13,7 @@
 
 typedef enum OutlineColumn {
     COLUMN_START,
-    COLUMN_WAY          = 2,
+    COLUMN_TANGENT      = 2,
     COLUMN_FIRST_CORNER = 4,
     COLUMN_LAST_CORNER,
     COLUMN_LEAN,
@@ -21,7 +21,7 @@ typedef enum OutlineColumn {
     LINE_COLUMNS,
     COLUMN_BEND      = LINE_COLUMNS,
     COLUMN_BEND_BEND = COLUMN_BEND + 2, /* products that rows know in double precision */
-    COLUMN_WAY_BEND,
+    COLUMN_TANGENT_BEND,
     CURVE_COLUMNS
 } OutlineColumn;
 

@@ -29,7 +29,7 @@ void add_edge(Making *making, const Curve *curve, int weight)
 
 /* Finds where an arc is farthest along an axis; at most two of these are in a quarter of a
    circle. */
-static int arc_turns(const Curve *curve, double turns[2])
+static int arc_extremes(const Curve *curve, double extremes[2])
 {
     static const double axes[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     int                 count      = 0;
@@ -37,32 +37,32 @@ static int arc_turns(const Curve *curve, double turns[2])
         double t = curve_nearest(curve, (double[]){curve->centre[0] + curve->radius * axes[i][0],
                                                    curve->centre[1] + curve->radius * axes[i][1]});
         if (t > 1e-9 && t < 1 - 1e-9)
-            turns[count++] = t;
+            extremes[count++] = t;
     }
     return count;
 }
 
-/* Cut where a coordinate turns back. */
+/* Cuts a curve where a coordinate turns back. */
 static void add_monotone(Making *making, const Curve *curve)
 {
-    double turns[4] = {0, 1, 1, 1};
-    int    count    = 1;
+    double extremes[4] = {0, 1, 1, 1};
+    int    count       = 1;
     for (int k = 0; k < 2 && !curve->straight && !(curve->radius > 0); k++) {
         double way = curve->via[k] - curve->from[k], next = curve->to[k] - curve->via[k];
         double t = way != next ? way / (way - next) : 0;
         if (t > 0 && t < 1)
-            turns[count++] = t;
+            extremes[count++] = t;
     }
     if (curve->radius > 0)
-        count += arc_turns(curve, turns + 1);
-    if (count == 3 && turns[1] > turns[2]) {
-        double t = turns[1];
-        turns[1] = turns[2];
-        turns[2] = t;
+        count += arc_extremes(curve, extremes + 1);
+    if (count == 3 && extremes[1] > extremes[2]) {
+        double t    = extremes[1];
+        extremes[1] = extremes[2];
+        extremes[2] = t;
     }
-    turns[count] = 1;
+    extremes[count] = 1;
     for (int i = 0; i < count; i++) {
-        Curve part = count > 1 ? curve_part(curve, turns[i], turns[i + 1]) : *curve;
+        Curve part = count > 1 ? curve_part(curve, extremes[i], extremes[i + 1]) : *curve;
         add_edge(making, &part, 1);
     }
 }

@@ -191,14 +191,14 @@ void pen_close(SvgPen *pen)
 
 /* ---- arcs ---- */
 
-/* An arc of an ellipse: center, radii, how it is turned; from one angle on, by another. */
+/* An arc of an ellipse: center, radii, its rotation; from one angle on, by another. */
 typedef struct Arc {
-    double center[2], radii[2], turn, from, by;
+    double center[2], radii[2], rotation_angle, from, by;
 } Arc;
 
 static void arc_place(const Arc *arc, double x, double y, double p[2])
 {
-    double c = cos(arc->turn), s = sin(arc->turn);
+    double c = cos(arc->rotation_angle), s = sin(arc->rotation_angle);
     p[0] = arc->center[0] + c * arc->radii[0] * x - s * arc->radii[1] * y;
     p[1] = arc->center[1] + s * arc->radii[0] * x + c * arc->radii[1] * y;
 }
@@ -220,7 +220,8 @@ static void draw_arc(SvgPen *pen, const Arc *arc, const double *end)
 /* SVG 1.1, F.6.5 and F.6.6: the arc from one point to another. */
 static void draw_arc_between(SvgPen *pen, const double from[2], const double n[7])
 {
-    double rx = fabs(n[0]), ry = fabs(n[1]), turn = n[2] * M_PI / 180, c = cos(turn), s = sin(turn);
+    double rx = fabs(n[0]), ry = fabs(n[1]), rotation_angle = n[2] * M_PI / 180,
+           c = cos(rotation_angle), s = sin(rotation_angle);
     double dx = 0.5 * (from[0] - n[5]), dy = 0.5 * (from[1] - n[6]);
     double x = c * dx + s * dy, y = c * dy - s * dx;
     if (!(rx > 0 && ry > 0)) {
@@ -233,7 +234,7 @@ static void draw_arc_between(SvgPen *pen, const double from[2], const double n[7
     rx *= grown, ry *= grown;
     double side = sqrt(fmax(grown * grown / apart - 1, 0)) * (n[3] == n[4] ? -1 : 1);
     double u = side * rx * y / ry, v = -side * ry * x / rx;
-    Arc    arc    = {.radii = {rx, ry}, .turn = turn};
+    Arc    arc    = {.radii = {rx, ry}, .rotation_angle = rotation_angle};
     arc.center[0] = c * u - s * v + 0.5 * (from[0] + n[5]);
     arc.center[1] = s * u + c * v + 0.5 * (from[1] + n[6]);
     arc.from      = atan2((y - v) / ry, (x - u) / rx);

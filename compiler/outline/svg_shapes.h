@@ -36,7 +36,8 @@ void pen_cubic(SvgPen *pen, const double first[2], const double second[2], const
 /* Ends a contour where it began. */
 void pen_close(SvgPen *pen);
 
-/* The next number of a list, whose elements are apart by blanks or a comma; false: there is none. */
+/* The next number of a list, whose elements are separated by blanks or a comma; false: there is
+   none. */
 bool svg_number(const char **text, double *number);
 /* Reads as many numbers as there are, at most `most`. */
 int svg_numbers(const char *text, double *numbers, int most);

@@ -31,10 +31,10 @@ typedef struct Stroker {
     double           radius, angle; /* half of the width; by which pieces turn at most */
 } Stroker;
 
-/* Where a path goes at a point, and which way. */
-typedef struct Way {
+/* A point of a path, and the direction there. */
+typedef struct Tangent {
     double at[2], along[2]; /* unit */
-} Way;
+} Tangent;
 
 /* ---- contours ---- */
 
@@ -75,7 +75,7 @@ static void draw_to(SvgPen *pen, const Contour *contour, int curve, const double
         pen_line(pen, to);
 }
 
-/* Draws it, turned about where it goes the other way. */
+/* Draws a contour so that its area is above 0: backwards where it is not. */
 static void draw_contour(SvgPen *pen, const Contour *contour)
 {
     int last = contour->count - 1;
@@ -91,11 +91,11 @@ static void draw_contour(SvgPen *pen, const Contour *contour)
 
 /* ---- pieces ---- */
 
-/* The point at a distance to the left of the way, which is to the right where that is negative. */
-static void beside(const Way *way, double distance, double point[2])
+/* Finds the point at a distance to the left of a tangent; to the right where that is negative. */
+static void beside(const Tangent *tangent, double distance, double point[2])
 {
-    point[0] = way->at[0] - distance * way->along[1];
-    point[1] = way->at[1] + distance * way->along[0];
+    point[0] = tangent->at[0] - distance * tangent->along[1];
+    point[1] = tangent->at[1] + distance * tangent->along[0];
 }
 
 static bool unit2(double v[2])
@@ -108,27 +108,27 @@ static bool unit2(double v[2])
     return true;
 }
 
-static Way way_at(const Curve *curve, double t)
+static Tangent tangent_at(const Curve *curve, double t)
 {
-    Way way;
-    curve_point(curve, t, way.at);
-    curve_tangent(curve, t, way.along);
-    if (!unit2(way.along)) {
+    Tangent tangent;
+    curve_point(curve, t, tangent.at);
+    curve_tangent(curve, t, tangent.along);
+    if (!unit2(tangent.along)) {
         for (int k = 0; k < 2; k++)
-            way.along[k] = curve->to[k] - curve->from[k];
-        unit2(way.along);
+            tangent.along[k] = curve->to[k] - curve->from[k];
+        unit2(tangent.along);
     }
-    return way;
+    return tangent;
 }
 
 /* The angle from one direction to another, in (-pi, pi]. */
-static double turn_between(const double a[2], const double b[2])
+static double angle_between(const double a[2], const double b[2])
 {
     return atan2(cross2(a, b), dot2(a, b));
 }
 
 /* Finds where the tangents of what is parallel to a piece meet. */
-static void control_beside(const Way *a, const Way *b, const double via[2], double distance,
+static void control_beside(const Tangent *a, const Tangent *b, const double via[2], double distance,
                            double point[2])
 {
     double share = distance / (1 + dot2(a->along, b->along));
@@ -137,7 +137,7 @@ static void control_beside(const Way *a, const Way *b, const double via[2], doub
 }
 
 /* Adds the side of a piece to a contour that ends at its first point. */
-static void add_side(Contour *contour, const Curve *piece, const Way *a, const Way *b,
+static void add_side(Contour *contour, const Curve *piece, const Tangent *a, const Tangent *b,
                      double distance)
 {
     double via[2], to[2];
@@ -151,15 +151,15 @@ static void add_side(Contour *contour, const Curve *piece, const Way *a, const W
 }
 
 /* Finds where the lines across both ends of a piece meet: the middle of its circle. */
-static void middle_of(const Way *a, const Way *b, double point[2])
+static void middle_of(const Tangent *a, const Tangent *b, double point[2])
 {
     double between[2] = {b->at[0] - a->at[0], b->at[1] - a->at[1]};
-    double turn       = cross2(a->along, b->along);
-    beside(a, dot2(between, b->along) / turn, point);
+    double cross      = cross2(a->along, b->along);
+    beside(a, dot2(between, b->along) / cross, point);
 }
 
 /* Draws a piece that is bent more than the stroke is wide: two sectors, of which one goes back. */
-static void draw_bent(Stroker *stroker, const Curve *piece, const Way *a, const Way *b)
+static void draw_bent(Stroker *stroker, const Curve *piece, const Tangent *a, const Tangent *b)
 {
     double middle[2];
     middle_of(a, b, middle);
@@ -175,14 +175,14 @@ static void draw_bent(Stroker *stroker, const Curve *piece, const Way *a, const 
 }
 
 /* Tells whether the sides of a piece end where they should, not behind where they began. */
-static bool goes_on(const Stroker *stroker, const Way *a, const Way *b)
+static bool goes_on(const Stroker *stroker, const Tangent *a, const Tangent *b)
 {
     for (int side = -1; side <= 1; side += 2) {
         double from[2], to[2];
         beside(a, side * stroker->radius, from);
         beside(b, side * stroker->radius, to);
-        double way[2] = {to[0] - from[0], to[1] - from[1]};
-        if (dot2(way, a->along) < 0)
+        double chord[2] = {to[0] - from[0], to[1] - from[1]};
+        if (dot2(chord, a->along) < 0)
             return false;
     }
     return true;
@@ -190,8 +190,8 @@ static bool goes_on(const Stroker *stroker, const Way *a, const Way *b)
 
 static void draw_piece(Stroker *stroker, const Curve *piece)
 {
-    Way    a = way_at(piece, 0), b = way_at(piece, 1);
-    double left[2], right[2];
+    Tangent a = tangent_at(piece, 0), b = tangent_at(piece, 1);
+    double  left[2], right[2];
     if (!piece->straight && !goes_on(stroker, &a, &b)) {
         draw_bent(stroker, piece, &a, &b);
         return;
@@ -211,28 +211,28 @@ static void draw_piece(Stroker *stroker, const Curve *piece)
 }
 
 /* Tells how far a parabola turns up to t, from its first tangent. */
-static double turn_up_to(const Curve *curve, double t)
+static double angle_up_to(const Curve *curve, double t)
 {
-    Way a = way_at(curve, 0), b = way_at(curve, t);
-    return fabs(turn_between(a.along, b.along));
+    Tangent a = tangent_at(curve, 0), b = tangent_at(curve, t);
+    return fabs(angle_between(a.along, b.along));
 }
 
-static double where_turned(const Curve *curve, double turn)
+static double where_at_angle(const Curve *curve, double angle)
 {
     double low = 0, high = 1;
     for (int i = 0; i < 50; i++) {
-        double middle                                      = 0.5 * (low + high);
-        *(turn_up_to(curve, middle) < turn ? &low : &high) = middle;
+        double middle                                        = 0.5 * (low + high);
+        *(angle_up_to(curve, middle) < angle ? &low : &high) = middle;
     }
     return 0.5 * (low + high);
 }
 
 static void draw_curve(Stroker *stroker, const Curve *curve)
 {
-    double turn = curve->straight ? 0 : turn_up_to(curve, 1), before = 0;
-    int    count = (int)ceil(turn / stroker->angle);
+    double angle = curve->straight ? 0 : angle_up_to(curve, 1), before = 0;
+    int    count = (int)ceil(angle / stroker->angle);
     for (int i = 1; i <= count || i == 1; i++) {
-        double t     = i >= count ? 1 : where_turned(curve, turn * i / count);
+        double t     = i >= count ? 1 : where_at_angle(curve, angle * i / count);
         Curve  piece = count > 1 ? curve_part(curve, before, t) : *curve;
         draw_piece(stroker, &piece);
         before = t;
@@ -258,13 +258,13 @@ static void add_arc(const Stroker *stroker, Contour *contour, const double at[2]
 }
 
 /* Draws what is between the end of one curve and the beginning of the next. */
-static void draw_join(Stroker *stroker, const Way *a, const Way *b)
+static void draw_join(Stroker *stroker, const Tangent *a, const Tangent *b)
 {
     const double SMALL = 1e-6;
-    double       turn  = turn_between(a->along, b->along), from[2], to[2];
-    double       side  = turn >= 0 ? -stroker->radius : stroker->radius; /* the outer one */
+    double       angle = angle_between(a->along, b->along), from[2], to[2];
+    double       side  = angle >= 0 ? -stroker->radius : stroker->radius; /* the outer one */
     double       share = 1 + dot2(a->along, b->along);
-    if (fabs(turn) < SMALL)
+    if (fabs(angle) < SMALL)
         return;
     Contour contour = {.count = 0};
     beside(a, side, from);
@@ -273,7 +273,7 @@ static void draw_join(Stroker *stroker, const Way *a, const Way *b)
     corner(&contour, a->at);
     corner(&contour, from);
     if (stroker->stroke->join == JOIN_ROUND) {
-        add_arc(stroker, &contour, a->at, radius, turn);
+        add_arc(stroker, &contour, a->at, radius, angle);
     } else {
         double limit = stroker->stroke->miter_limit, tip[2];
         control_beside(a, b, a->at, side, tip);
@@ -284,22 +284,22 @@ static void draw_join(Stroker *stroker, const Way *a, const Way *b)
     draw_contour(stroker->pen, &contour);
 }
 
-/* `way` goes out of the path. */
-static void draw_cap(Stroker *stroker, const Way *way)
+/* Draws the cap of an end; the tangent goes out of the path. */
+static void draw_cap(Stroker *stroker, const Tangent *tangent)
 {
     Contour contour = {.count = 0};
     double  left[2], right[2];
-    beside(way, stroker->radius, left);
-    beside(way, -stroker->radius, right);
-    double radius[2] = {right[0] - way->at[0], right[1] - way->at[1]};
-    corner(&contour, way->at);
+    beside(tangent, stroker->radius, left);
+    beside(tangent, -stroker->radius, right);
+    double radius[2] = {right[0] - tangent->at[0], right[1] - tangent->at[1]};
+    corner(&contour, tangent->at);
     corner(&contour, right);
     if (stroker->stroke->cap == CAP_ROUND) {
-        add_arc(stroker, &contour, way->at, radius, M_PI);
+        add_arc(stroker, &contour, tangent->at, radius, M_PI);
     } else {
-        Way end = *way;
+        Tangent end = *tangent;
         for (int k = 0; k < 2; k++)
-            end.at[k] += stroker->radius * way->along[k];
+            end.at[k] += stroker->radius * tangent->along[k];
         double far[2];
         beside(&end, -stroker->radius, far);
         corner(&contour, far);
@@ -311,24 +311,24 @@ static void draw_cap(Stroker *stroker, const Way *way)
         draw_contour(stroker->pen, &contour);
 }
 
-static Way turned_back(Way way)
+static Tangent reversed(Tangent tangent)
 {
-    way.along[0] = -way.along[0];
-    way.along[1] = -way.along[1];
-    return way;
+    tangent.along[0] = -tangent.along[0];
+    tangent.along[1] = -tangent.along[1];
+    return tangent;
 }
 
 static void draw_run(Stroker *stroker, const Curve *curves, size_t count, bool closed)
 {
     for (size_t i = 0; i < count; i++) {
         draw_curve(stroker, &curves[i]);
-        Way end = way_at(&curves[i], 1), next = way_at(&curves[(i + 1) % count], 0);
+        Tangent end = tangent_at(&curves[i], 1), next = tangent_at(&curves[(i + 1) % count], 0);
         if (i + 1 < count || closed)
             draw_join(stroker, &end, &next);
     }
     if (closed || count == 0)
         return;
-    Way first = turned_back(way_at(&curves[0], 0)), last = way_at(&curves[count - 1], 1);
+    Tangent first = reversed(tangent_at(&curves[0], 0)), last = tangent_at(&curves[count - 1], 1);
     draw_cap(stroker, &first);
     draw_cap(stroker, &last);
 }
@@ -431,7 +431,7 @@ static bool is_dashed(const SvgStroke *stroke, const Curves *curves)
 /* A path that goes nowhere is a dot where its ends are round or square. */
 static void draw_dot(Stroker *stroker, const double at[2])
 {
-    Way right = {{at[0], at[1]}, {1, 0}}, left = turned_back(right);
+    Tangent right = {{at[0], at[1]}, {1, 0}}, left = reversed(right);
     draw_cap(stroker, &right);
     draw_cap(stroker, &left);
 }

@@ -52,9 +52,9 @@ typedef struct Additions {
 } Additions;
 
 /* There are three lifetimes of memory.  scene->arena lives as long as the scene.  `work` has the
-   sources, diagnostics and the elaborated scene until the end of the run.  `syntax` is apart, for
-   trees and tokens, and `values` for what these are evaluated to: both are needed until there is a
-   scene, and by whoever inspects that.  `scratch` is freed after each pass. */
+   sources, diagnostics and the elaborated scene until the end of the run.  `syntax` is separate,
+   for trees and tokens, and `values` for what these are evaluated to: both are needed until there
+   is a scene, and by whoever inspects that.  `scratch` is freed after each pass. */
 struct Compilation {
     KrsScene         *scene;
     Arena             work, syntax, values, scratch;
@@ -66,7 +66,7 @@ struct Compilation {
     Sources           sources;
     Names             names;
     Diags             diags;
-    BoxNodes          box_nodes; /* where numbers are apart from the shaders */
+    BoxNodes          box_nodes; /* where numbers are kept out of the shaders */
     MirrorNodes      *mirror_nodes;
     Files             files;
     Scene             elaborated; /* its graph is extended by the pass `lower` */

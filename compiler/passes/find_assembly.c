@@ -4,8 +4,8 @@
  * Transforms, sharp unions and sequences are taken apart.  What else has copies in it is a part with
  * all of them.  Whether mirrors cut anything is asked for each state (mesh/assemble.c).
  *
- * With KrsOptions.motion so is what the time moves: transforms that depend on it, and the unions and turns of
- * loops around them.  What stands still in a union is one part.
+ * With KrsOptions.motion so is what the time moves: transforms that depend on it, and the unions
+ * and iterations of loops around them.  What stands still in a union is one part.
  */
 #include <string.h>
 
@@ -308,7 +308,7 @@ static void keep_beams(Finder *f, const Compilation *c)
     }
 }
 
-/* The part in its turn. */
+/* Returns the part in its iteration. */
 static const Shape *part_shape(Finder *f, const Known *part)
 {
     if (!part->iteration)

@@ -274,11 +274,11 @@ static void search_beyond(KrsState *state, Box box, int most, double margin, Cel
         Box known = box_grow(rays->box, margin);
         begin_round(state, rays);
         find_cells(state, box, rays, &known, (size_t)most * CELLS_A_RAY, cells);
-        int wished = cells->count < (size_t)most ? (int)cells->count : most, count = 0;
+        int wanted = cells->count < (size_t)most ? (int)cells->count : most, count = 0;
         /* If there are more cells than rays, to some. */
-        for (; count < wished && state->ran < rays->limits.ran; count++) {
-            size_t cell = (size_t)spread(count, wished) * cells->count / (size_t)wished;
-            make_ray_to_cell(state, &outer, count, wished, cells->middles[cell], rays);
+        for (; count < wanted && state->ran < rays->limits.ran; count++) {
+            size_t cell = (size_t)spread(count, wanted) * cells->count / (size_t)wanted;
+            make_ray_to_cell(state, &outer, count, wanted, cells->middles[cell], rays);
         }
         more = cast_rays(state, rays, count, outer.radius) && !is_inside(&rays->box, &known);
     }

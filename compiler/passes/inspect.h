@@ -28,8 +28,9 @@ KrsStatus inspect_text(const char *text, size_t length, const char *name, const 
 KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,
                              Inspect *inspect, void *user);
 
-/* Compiles a text as krs_compile_text does, but parts that are alike are an instance group from this number of
-   instances on; UINT32_MAX: they stay apart.  So tests hold instance groups against parts apart. */
+/* Compiles a text as krs_compile_text does, but parts that are alike are an instance group from
+   this number of instances on; UINT32_MAX: they stay separate.  So tests hold instance groups
+   against separate parts. */
 KrsStatus compile_with_instances(const char *text, size_t length, uint32_t least,
                                  const KrsOptions *options, KrsScene **scene);
 

@@ -8,10 +8,10 @@
 /* Least flops of a component that counts as expensive, and of a scene where such are marched by
    themselves.  Scenes whose boxes overlap need more, since they gain less.  Measured by bench/krs.c. */
 static const double EXPENSIVE_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 2000;
-/* A group has shaders of its own, which take longer to compile than they save in a small picture.  So
-   where groups are marched by themselves, components below APART_FLOPS share one, as long as that
-   stays below SHARED_FLOPS. */
-static const double APART_FLOPS = 300, SHARED_FLOPS = 1000;
+/* A group has shaders of its own, which take longer to compile than they save in a small picture.
+   So where groups are marched by themselves, components below SEPARATE_FLOPS share one, as long as
+   that stays below SHARED_FLOPS. */
+static const double SEPARATE_FLOPS = 300, SHARED_FLOPS = 1000;
 /* A component whose box a group's box contains, but for a little, shares that group: rays of nearly all
    tiles meet the group anyway.  In scenes below MIXED_FLOPS such a group would have most of the scene,
    and 05-rock takes 3 % longer. */
@@ -66,7 +66,7 @@ static size_t find_nested(const KrsProgram *program, double flops, Box box)
 static size_t choose_march_group(const KrsProgram *program, double flops, double rest_flops,
                                  Box box)
 {
-    const bool shares = flops < APART_FLOPS && program->flops >= SCATTERED_FLOPS &&
+    const bool shares = flops < SEPARATE_FLOPS && program->flops >= SCATTERED_FLOPS &&
                         rest_flops + flops <= SHARED_FLOPS;
     bool own = flops >= EXPENSIVE_FLOPS && !shares && box_is_finite(box) && !box_is_empty(box);
     if (!own)

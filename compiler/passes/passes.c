@@ -175,7 +175,7 @@ static bool prune_component(Compilation *c, size_t component)
     return new != old;
 }
 
-/* What is needed depends on numbers, so it stays where these are to be apart from the shaders. */
+/* What is needed depends on numbers, so it stays where these are kept out of the shaders. */
 KrsStatus pass_prune(Compilation *c)
 {
     Roots *roots  = &c->scene->roots;
@@ -192,14 +192,14 @@ void print_prune(Compilation *c, Text *out) { print_graph(c, c->scene->graph, ou
 
 void validate_pruned(const Compilation *c) { graph_validate(c->scene->graph, "prune"); }
 
-/* Only where numbers of the text are to be apart from the shaders. */
+/* Replaces numbers of the text by slots, only where they are kept out of the shaders. */
 KrsStatus pass_parameterise(Compilation *c)
 {
     Roots *roots = &c->scene->roots;
     Arena *arena = &c->scene->arena;
     if (!parameterises(c))
         return KRS_OK;
-    /* Apart from what is counted in the text, and then in the graph. */
+    /* These begin beyond what is counted in the text, and then in the graph. */
     const uint32_t of_graph = 1u << 30, of_boxes = 1u << 31;
     Graph         *graph = graph_parameterise(c->scene->graph, roots->all, roots->first[ROOT_KINDS],
                                               of_graph, arena);

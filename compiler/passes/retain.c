@@ -193,9 +193,9 @@ static void retain_tapes(Compilation *c)
     if (c->additions.open_surfaces) {
         RootRange gradients = roots_of(roots, ROOTS_GRADIENT);
         gradients.count     = scene->component_count * NODES_OF(GradientRoots);
-        scene->ahead  = tape_with_zones(scene, roots_of(roots, ROOTS_ALONG).items, false, arena,
-                                        &c->scratch);
-        scene->turned = tape_of(scene, gradients, arena);
+        scene->ahead     = tape_with_zones(scene, roots_of(roots, ROOTS_ALONG).items, false, arena,
+                                           &c->scratch);
+        scene->gradients = tape_of(scene, gradients, arena);
     }
     scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);
     if (scene->assembly.items.count > 0)
@@ -215,9 +215,9 @@ static void retain_frame(Compilation *c)
 {
     KrsScene         *scene   = c->scene;
     const Graph      *graph   = scene->graph;
-    const Tape *const tapes[] = {&scene->distance, &scene->guarded, &scene->ahead,
-                                 &scene->turned,   &scene->surface, &scene->places,
-                                 &scene->view,     &scene->rows,    &scene->assembly.tape};
+    const Tape *const tapes[] = {&scene->distance,  &scene->guarded, &scene->ahead,
+                                 &scene->gradients, &scene->surface, &scene->places,
+                                 &scene->view,      &scene->rows,    &scene->assembly.tape};
     bool             *needed  = arena_new_array(&c->scratch, bool, graph->count);
     size_t            count   = 0;
     for (size_t t = 0; t < sizeof tapes / sizeof *tapes; t++)
@@ -268,7 +268,7 @@ void print_retain(Compilation *c, Text *out)
     print_tape("distance", &scene->distance, out);
     print_tape("guarded", &scene->guarded, out);
     print_tape("ahead", &scene->ahead, out);
-    print_tape("turned", &scene->turned, out);
+    print_tape("gradients", &scene->gradients, out);
     print_tape("surface", &scene->surface, out);
     print_tape("view", &scene->view, out);
 }

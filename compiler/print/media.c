@@ -109,7 +109,7 @@ void emit_media_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, u
     text_format(e->out, "    return %s;\n", emit_has_media(e) ? variable : emit_cut(e, variable));
 }
 
-/* From inside, the gradient and the distance are turned. */
+/* From inside, the gradient and the distance are negated. */
 void emit_media_gradient(Emitter *e, uint32_t component)
 {
     if (!emit_is_medium(e, component))

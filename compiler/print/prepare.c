@@ -54,9 +54,9 @@ static const char *found_text(Emitter *e, const StateValue *value)
 {
     GraphType type     = (GraphType)e->graph->items[value->node].type;
     uint32_t  last     = value->width - 1;
-    bool      together = true;
+    bool      adjacent = true;
     for (uint32_t k = 0; k <= last; k++)
-        together = together && value->at[k] != NO_PLACE && value->at[k] == value->at[0] + k;
+        adjacent = adjacent && value->at[k] != NO_PLACE && value->at[k] == value->at[0] + k;
     Text text = {.arena = e->scratch};
     if (type == TYPE_BOOL)
         text_format(&text, "(%s != 0.0)", number_text(e, value, 0));
@@ -64,7 +64,7 @@ static const char *found_text(Emitter *e, const StateValue *value)
         text_format(&text, "%.0fu", value->constant[0]);
     else if (type == TYPE_UINT)
         return template_text(e, TEMPLATE_BITS, (Operands){number_text(e, value, 0)});
-    else if (together && value->at[0] / 4 == value->at[last] / 4)
+    else if (adjacent && value->at[0] / 4 == value->at[last] / 4)
         return component_text(e, value->at[0] / 4, value->at[0] % 4, value->width);
     else if (type == TYPE_FLOAT)
         return number_text(e, value, 0);

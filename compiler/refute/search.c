@@ -24,7 +24,7 @@ static const double RELATIVE = 1e-6;
 
 /* ---- climbing ---- */
 
-/* A pair near another one: both points moved, turned about p, or nearer and farther. */
+/* A pair near another one: both points moved, rotated about p, or nearer and farther. */
 static PointPair changed(Search *s, const PointPair *pair)
 {
     PointPair next = *pair;

@@ -38,7 +38,7 @@ static void add(double v[3], double factor, const double w[3])
         v[i] += factor * w[i];
 }
 
-/* Turns a vector around a unit axis (Rodrigues). */
+/* Rotates a vector around a unit axis (Rodrigues). */
 static void turn(double v[3], const double axis[3], double angle)
 {
     double       side[3];
@@ -81,8 +81,8 @@ static double limit_up(const double forward[3], const double upright[3], double 
     return fmin(fmax(angle, above - (M_PI - most)), above - most);
 }
 
-/* Turns a line of sight to the right, around the upright direction, and upwards. */
-static void turn_sight(const KrsCamera *camera, double sight[3], double right, double up)
+/* Rotates a line of sight to the right, around the upright direction, and upwards. */
+static void rotate_sight(const KrsCamera *camera, double sight[3], double right, double up)
 {
     double upright[3], forward[3], side[3], top[3];
     memcpy(upright, camera->up, sizeof upright);
@@ -97,7 +97,7 @@ void krs_camera_orbit(KrsCamera *camera, double right, double up)
     double sight[3];
     for (int i = 0; i < 3; i++)
         sight[i] = camera->target[i] - camera->eye[i];
-    turn_sight(camera, sight, right, up);
+    rotate_sight(camera, sight, right, up);
     for (int i = 0; i < 3; i++)
         camera->eye[i] = camera->target[i] - sight[i];
 }
@@ -107,7 +107,7 @@ void krs_camera_look(KrsCamera *camera, double right, double up)
     double sight[3];
     for (int i = 0; i < 3; i++)
         sight[i] = camera->target[i] - camera->eye[i];
-    turn_sight(camera, sight, right, up);
+    rotate_sight(camera, sight, right, up);
     for (int i = 0; i < 3; i++)
         camera->target[i] = camera->eye[i] + sight[i];
 }

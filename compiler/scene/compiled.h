@@ -23,8 +23,8 @@ typedef struct KrsEmissive {
 } KrsEmissive;
 enum { KRS_MAX_EMISSIVE = 32 };
 
-/* Components that are marched together, apart from other groups.  A text may have one group only,
-   chosen by its number from 1. */
+/* Components that are marched as one, separately from other groups.  A text may have one group
+   only, chosen by its number from 1. */
 typedef struct KrsMarchGroup {
     double flops;           /* of the distances of its components */
     double low[3], high[3]; /* box around them */

@@ -173,18 +173,18 @@ struct KrsScene {
     Tape             distance; /* distances of all components, and zones */
     Tape             guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
     zones */
-    Tape ahead;   /* if there are open surfaces: ROOTS_ALONG of all components, and zones */
-    Tape turned;  /* if there are open surfaces: gradients of all components */
-    Tape surface; /* all roots of all components, and zones */
-    Tape places;  /* ROOTS_PLACE; empty if nobody asks for meshes */
-    Tape view;    /* cameras, lights and sky */
-    Tape rows;    /* numbers of tables that depend on the state */
-    Tape frame;   /* of all these, what does not depend on points */
+    Tape ahead;     /* if there are open surfaces: ROOTS_ALONG of all components, and zones */
+    Tape gradients; /* if there are open surfaces: gradients of all components */
+    Tape surface;   /* all roots of all components, and zones */
+    Tape places;    /* ROOTS_PLACE; empty if nobody asks for meshes */
+    Tape view;      /* cameras, lights and sky */
+    Tape rows;      /* numbers of tables that depend on the state */
+    Tape frame;     /* of all these, what does not depend on points */
 };
 
 /* Those tapes of the scene that read tables, over the tables of a state where these are its own. */
 typedef struct StateTapes {
-    Tape distance, guarded, ahead, turned, surface, places;
+    Tape distance, guarded, ahead, gradients, surface, places;
 } StateTapes;
 
 /* A state: values of the parameters, and memory for the values of all nodes. */

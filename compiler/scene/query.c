@@ -150,7 +150,7 @@ static bool derived_normal(KrsState *state, const double point[3], double normal
     Node gradient = gradient_roots(&scene->roots, nearest - 1)->gradient;
     if (scene->graph->items[gradient].type != TYPE_VEC3)
         return false;
-    tape_run_point(&state->tapes.turned, point, state->values);
+    tape_run_point(&state->tapes.gradients, point, state->values);
     state_copy(state, gradient, normal);
     bool known = largest3(normal) > 0 && largest3(normal) < INFINITY;
     if (known)
@@ -223,11 +223,11 @@ static KrsHit hit_at(const double point[3])
     return hit;
 }
 
-/* Turns a normal against the direction of a ray. */
+/* Flips a normal that does not face against the direction of a ray. */
 static void face(const double view[3], double normal[3])
 {
-    bool turned = dot3(view, normal) > 0;
-    for (int k = 0; k < 3 && turned; k++)
+    bool flipped = dot3(view, normal) > 0;
+    for (int k = 0; k < 3 && flipped; k++)
         normal[k] = -normal[k];
 }
 
@@ -536,12 +536,12 @@ static void march_alone(RayMarch *ray, RayLimits limits)
 }
 
 /* Up to LANES rays. */
-static KrsStatus raycast(KrsState *state, RayMarch *rays, size_t count, bool together,
+static KrsStatus raycast(KrsState *state, RayMarch *rays, size_t count, bool fused,
                          RayLimits limits, KrsHit *hits)
 {
-    KrsStatus status = together ? march_fused(state, rays, count, limits) : KRS_OK;
+    KrsStatus status = fused ? march_fused(state, rays, count, limits) : KRS_OK;
     for (size_t i = 0; i < count && status == KRS_OK; i++) {
-        if (!together)
+        if (!fused)
             march_alone(&rays[i], limits);
         end_march(&rays[i], limits, &hits[i]);
     }

@@ -39,16 +39,16 @@ void state_count_operations(KrsState *state)
 {
     StateTapes *tapes   = &state->tapes;
     tapes->distance.ran = tapes->guarded.ran = tapes->ahead.ran = &state->ran;
-    tapes->turned.ran = tapes->surface.ran = tapes->places.ran = &state->ran;
+    tapes->gradients.ran = tapes->surface.ran = tapes->places.ran = &state->ran;
 }
 
 static void make_tables(KrsState *state, struct StateTables *tables)
 {
     const KrsScene *scene    = state->scene;
-    Tape           *copies[] = {&state->tapes.distance, &state->tapes.guarded, &state->tapes.ahead,
-                                &state->tapes.turned,   &state->tapes.surface, &state->tapes.places};
-    const Tape     *tapes[]  = {&scene->distance, &scene->guarded, &scene->ahead,
-                                &scene->turned,   &scene->surface, &scene->places};
+    Tape           *copies[] = {&state->tapes.distance,  &state->tapes.guarded, &state->tapes.ahead,
+                                &state->tapes.gradients, &state->tapes.surface, &state->tapes.places};
+    const Tape     *tapes[]  = {&scene->distance,  &scene->guarded, &scene->ahead,
+                                &scene->gradients, &scene->surface, &scene->places};
     tables->graph            = *scene->graph;
     tables->instances        = instances_for_frames(scene->graph->instances, &tables->arena);
     tables->graph.instances  = tables->instances;
@@ -72,8 +72,8 @@ static void release(const Memory *memory, void *block)
 bool state_tables_new(KrsState *state)
 {
     const KrsScene *scene = state->scene;
-    state->tapes          = (StateTapes){scene->distance, scene->guarded, scene->ahead,
-                                         scene->turned,   scene->surface, scene->places};
+    state->tapes          = (StateTapes){scene->distance,  scene->guarded, scene->ahead,
+                                         scene->gradients, scene->surface, scene->places};
     state_count_operations(state);
     if (!instances_move(scene->graph->instances))
         return true;

@@ -67,13 +67,13 @@ Box box_rotate(Box box, Range rows[3][3])
 {
     if (box_is_empty(box))
         return box;
-    Box turned;
+    Box rotated;
     for (int i = 0; i < 3; i++) {
-        turned.axis[i] = range_mul(rows[i][0], box.axis[0]);
+        rotated.axis[i] = range_mul(rows[i][0], box.axis[0]);
         for (int j = 1; j < 3; j++)
-            turned.axis[i] = range_add(turned.axis[i], range_mul(rows[i][j], box.axis[j]));
+            rotated.axis[i] = range_add(rotated.axis[i], range_mul(rows[i][j], box.axis[j]));
     }
-    return turned;
+    return rotated;
 }
 
 void box_centre(Box box, double centre[3])

@@ -106,7 +106,7 @@ static CoverCell invert(CoverCell cell, Range s)
 
 static CoverCell map_cell(CoverCell cell, const MapRange *map)
 {
-    Range  c[3], turned[3];
+    Range  c[3], rotated[3];
     Range  scale  = map->scale;
     double radius = cell.ball.radius;
     for (int i = 0; i < 3; i++)
@@ -124,14 +124,14 @@ static CoverCell map_cell(CoverCell cell, const MapRange *map)
             c[i] = range_of(cell.ball.centre[i]);
     }
     for (int i = 0; i < 3; i++) {
-        turned[i] = range_mul(map->rows[i][0], c[0]);
+        rotated[i] = range_mul(map->rows[i][0], c[0]);
         for (int j = 1; j < 3; j++)
-            turned[i] = range_add(turned[i], range_mul(map->rows[i][j], c[j]));
-        turned[i] = range_add(range_mul(scale, turned[i]), map->shift[i]);
+            rotated[i] = range_add(rotated[i], range_mul(map->rows[i][j], c[j]));
+        rotated[i] = range_add(range_mul(scale, rotated[i]), map->shift[i]);
     }
     if (cell.outside && radius == 0)
         return everything;
-    return cell_about(turned, radius * (cell.outside ? scale.low : scale.high), cell.outside);
+    return cell_about(rotated, radius * (cell.outside ? scale.low : scale.high), cell.outside);
 }
 
 void cover_map(Cover *cover, const MapRange *map)

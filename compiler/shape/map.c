@@ -2,7 +2,7 @@
  * map.c: maps of space: those that keep shapes, x -> scale * R * x + shift, and what all have in
  * common; moebius.c has those that invert.
  *
- * Scale, rows of R and shift are frame-time nodes, so a parameter can turn or move a shape; for
+ * Scale, rows of R and shift are frame-time nodes, so a parameter can rotate or move a shape; for
  * constants the graph folds everything away.  R is orthonormal by construction, which is why
  * distances need no bound: they are multiplied by the scale.
  */
@@ -127,7 +127,7 @@ const Map *map_reflection(ShapeBuilder *builder, Node normal, Node offset)
 }
 
 /*
- * The turn that takes one direction to another, by two reflections: first in the plane between
+ * The rotation that takes one direction to another, by two reflections: first in the plane between
  * from and from+to, which maps from to -to, then in the plane perpendicular to `to`.  Opposite
  * directions leave the first plane undefined: then any perpendicular axis serves.
  */
@@ -152,8 +152,8 @@ const Map *map_alignment(ShapeBuilder *builder, Node from, Node to)
     Node       zero    = graph_number(g, 0);
     const Map *first   = map_reflection(builder, bisector, zero);
     /* The first takes a to -b; when they are opposite it leaves a, which is -b, where it is. */
-    Node turned          = map_rotate(builder, first, a);
-    Node difference      = graph_op2(g, OP_sub, turned, b);
+    Node rotated         = map_rotate(builder, first, a);
+    Node difference      = graph_op2(g, OP_sub, rotated, b);
     Node difference_size = graph_op1(g, OP_length, difference);
     Node coincide        = graph_op2(g, OP_less, difference_size, tiny);
     Node mirror          = graph_op3(g, OP_select, coincide, bisector, difference);
@@ -176,9 +176,9 @@ Node map_apply(ShapeBuilder *builder, const Map *f, Node point)
         Node square = graph_op2(g, OP_dot, point, point);
         scale       = graph_op2(g, OP_div, scale, square);
     }
-    Node turned = map_rotate(builder, f, point);
-    turned      = graph_op2(g, OP_scale, turned, scale);
-    return graph_op2(g, OP_add, turned, f->shift);
+    Node rotated = map_rotate(builder, f, point);
+    rotated      = graph_op2(g, OP_scale, rotated, scale);
+    return graph_op2(g, OP_add, rotated, f->shift);
 }
 
 /* ---- products and inverses ---- */

@@ -38,7 +38,7 @@ const Map *map_of_matrix(ShapeBuilder *builder, const double entries[4][4], cons
 const Map *moebius_product(ShapeBuilder *builder, const Map *f, const Map *g);
 const Map *inversion_inverse(ShapeBuilder *builder, const Map *f);
 
-/* The rows of the inverse of a turn. */
+/* Finds the rows of the inverse of a rotation. */
 void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3]);
 
 #endif

@@ -14,7 +14,7 @@
 static const double POLES_MEET = 1e-12, POLES_TOO_NEAR = 1.0 / 64;
 
 /* R^T. */
-static Map *turned_back(ShapeBuilder *builder, const Map *f)
+static Map *rotated_back(ShapeBuilder *builder, const Map *f)
 {
     Map *map = map_new(builder);
     transpose_rows(builder->graph, f->rows, map->rows);
@@ -32,7 +32,7 @@ const Map *map_inversion(ShapeBuilder *builder, Node center, Node radius)
 /* x = pole + scale R^T (y - shift) / |y - shift|^2: of the same form. */
 const Map *inversion_inverse(ShapeBuilder *builder, const Map *f)
 {
-    Map *map   = turned_back(builder, f);
+    Map *map   = rotated_back(builder, f);
     map->scale = f->scale;
     map->pole  = f->shift;
     map->shift = f->pole;

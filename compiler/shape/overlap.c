@@ -17,9 +17,9 @@ enum { DEEPER = 4, DEEPEST = 40, TESTS_PER_BOX = 256, SPARE_TESTS = 1 << 16 };
 
 typedef struct OverlapSearch {
     Arena   *scratch;
-    double   tests; /* of boxes that are left */
-    uint32_t most;  /* so far */
-    bool     rough; /* a part that counts could be halved further */
+    double   tests;  /* of boxes that are left */
+    uint32_t most;   /* so far */
+    bool     coarse; /* a part that counts could be halved further */
 } OverlapSearch;
 
 static bool boxes_meet(const Box *a, const Box *b)
@@ -47,8 +47,8 @@ static void search(OverlapSearch *s, const Box *boxes, uint32_t count, Box regio
     for (uint32_t i = 0; i < count; i++)
         holding += box_holds(&boxes[i], &region);
     if (holding == count || depth == 0) {
-        s->rough = s->rough || holding < count;
-        s->most  = count;
+        s->coarse = s->coarse || holding < count;
+        s->most   = count;
         return;
     }
     ArenaMark mark            = arena_mark(s->scratch);
@@ -97,11 +97,11 @@ uint32_t max_overlap(const Box *boxes, uint32_t count, double grown, Arena *scra
         if (whole.axis[k].low > whole.axis[k].high)
             whole.axis[k] = range_of(0); /* all are endless */
     OverlapSearch s = {
-        .scratch = scratch, .tests = (double)TESTS_PER_BOX * present + SPARE_TESTS, .rough = true};
+        .scratch = scratch, .tests = (double)TESTS_PER_BOX * present + SPARE_TESTS, .coarse = true};
     least = present;
-    for (int depth = DEEPER; depth <= DEEPEST && s.rough && least > 1; depth += DEEPER) {
-        s.most  = 0;
-        s.rough = false;
+    for (int depth = DEEPER; depth <= DEEPEST && s.coarse && least > 1; depth += DEEPER) {
+        s.most   = 0;
+        s.coarse = false;
         search(&s, larger, present, whole, depth);
         if (s.tests < 0)
             break;

@@ -72,7 +72,7 @@ static void grow(const BoxInput *in, const SequenceStage *stage, Box *box, Ball 
 }
 
 /* Boxes and balls grow along the sequence side by side; each is tight where the other is not
-   (turned mirrors blow boxes up), so each is cut to the other's size at every level.  While all
+   (rotated mirrors blow boxes up), so each is cut to the other's size at every level.  While all
    numbers are known, a search then finds how far the set really reaches. */
 Box sequence_box(const BoxInput *in, ReachStage *reach, LevelBound *bounds)
 {

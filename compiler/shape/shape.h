@@ -56,7 +56,7 @@ enum { SEVERAL = -1 };
  * A conformal map of space: the similarity x -> scale * rows * x + shift or, with a pole,
  * x -> scale * rows * (x - pole) / |x - pole|^2 + shift; rows orthonormal, scale > 0.  Products
  * are one map again, except of inversions whose poles may come too near to each other: those
- * stay apart, and `first` is what is applied before.
+ * stay separate, and `first` is what is applied before.
  */
 struct Map {
     Node       scale, rows[3], shift;

@@ -4,7 +4,7 @@
  * A bound that holds for all values of the parameters and of the time is a constant.  Where there
  * is none because they have no limits, as in sin(time * x), the slope is a number of the state:
  * the host finds it by the same rules, at the values of the state, and puts it into a slot of the
- * parameter block.  That is promised only if the slope has a bound at first, at time 0 and the
+ * parameter block.  That is guaranteed only if the slope has a bound at first, at time 0 and the
  * defaults, and at other values tried here; a state that has none is refused when it comes.
  *
  * The slope is a number of the state, too, where that of all states is many times as large: a value
@@ -194,7 +194,7 @@ static Node slope_slot(ShapeBuilder *builder, Node formula, Box region, Span spa
 }
 
 /* Tells whether the expression depends on the state by nothing but the time and the author's parameters.
-   Cells and turns have slots as well, but no single value in a state. */
+   Cells and iterations have slots as well, but no single value in a state. */
 static bool needs_the_frame_alone(const Parameters *parameters, const Graph *plain, Node root,
                                   Arena *scratch)
 {

@@ -23,8 +23,8 @@ namespace glslang
 __attribute__((weak)) void ReleaseGlobalLock();
 }
 
-/* Whether the lock is lost: whoever calls glslang would wait for ever.  The caller of bridge_start has a lock
-   of its own. */
+/* Tells whether the lock is lost: whoever calls glslang would wait for ever.  The caller of
+   bridge_start has a lock of its own. */
 static bool lock_is_lost;
 
 static void release_lock()

@@ -64,7 +64,7 @@ static double chords_needed(const InstanceArc *arc, double off)
 static void point_on(const InstanceArc *arc, double t, double point[2])
 {
     for (int k = 0; k < 2; k++)
-        point[k] = arc->start[k] + t * (2 * arc->way[k] + t * arc->bend[k]);
+        point[k] = arc->start[k] + t * (2 * arc->tangent[k] + t * arc->bend[k]);
 }
 
 static Chord find_chord(const InstanceArc *arc, double i, double count)
@@ -72,7 +72,7 @@ static Chord find_chord(const InstanceArc *arc, double i, double count)
     Chord chord;
     point_on(arc, i / count, chord.from);
     point_on(arc, (i + 1) / count, chord.to);
-    chord.bulge = copysign(bend_of(arc) / (4 * count * count), cross2(arc->way, arc->bend));
+    chord.bulge = copysign(bend_of(arc) / (4 * count * count), cross2(arc->tangent, arc->bend));
     return chord;
 }
 

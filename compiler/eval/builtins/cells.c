@@ -124,7 +124,7 @@ static Value union_of_cells(Elaboration *e, Cells *cells)
 
 /* ---- a function in each sector ---- */
 
-/* One copy, turned to its sector; false: reported. */
+/* One copy, rotated to its sector; false: reported. */
 static bool add_sector(Elaboration *e, Cells *cells, Node axis, uint32_t index, uint32_t count)
 {
     Value shape;

@@ -89,7 +89,7 @@ static bool turns_left_once(const Elaboration *e, const Corners *corners)
     return around < 3 * acos(-1);
 }
 
-static void turn_around(Corners *corners)
+static void reverse_corners(Corners *corners)
 {
     for (size_t i = 0, k = corners->count; i + 1 < k--; i++) {
         Node swap      = corners->at[i];
@@ -107,7 +107,7 @@ static bool is_convex(const Elaboration *e, const Shape *shape, Corners *corners
             return true;
     if (turns_left_once(e, corners))
         return true;
-    turn_around(corners);
+    reverse_corners(corners);
     return turns_left_once(e, corners);
 }
 

@@ -28,10 +28,10 @@ typedef struct ShapeClaims {
    by it; none of any other shape. */
 ShapeClaims claims_of(Graph *graph, const Shape *shape, Arena *scratch);
 
-/* That a core is all that is deeper in a shape than `rounding`. */
+/* Claims that a core is all that is deeper in a shape than `rounding`. */
 ShapeClaims core_claims(Graph *graph, const Shape *shape, const Shape *core, Node rounding,
                         Arena *scratch);
-/* That nothing of a shape is outside of its hull. */
+/* Claims that nothing of a shape is outside of its hull. */
 ShapeClaims hull_claims(Graph *graph, const Shape *shape, const Shape *hull, Arena *scratch);
 
 #endif

@@ -11,7 +11,7 @@
 bool check_claims(Elaboration *e, const Shape *shape, double slope);
 /* The same of the `core` of a declared shape, for this `rounding`. */
 bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node rounding);
-/* That nothing of a declared shape is outside of this hull. */
+/* Samples whether nothing of a declared shape is outside of this hull. */
 bool check_hull(Elaboration *e, const Shape *shape, const Shape *hull);
 
 #endif

@@ -337,9 +337,9 @@ static void add_extruded(const Gathering *g, const Shape *shape, const Placing *
     }
     add_faces(g, placing, false);
     for (size_t i = 0; i < flat.faces.count; i++) {
-        Node turned = place_direction(graph, placing, flat.faces.items[i]);
+        Node rotated = place_direction(graph, placing, flat.faces.items[i]);
         if (placing->scale != NODE_NONE)
-            add_face(g, graph_op1(graph, OP_normalize, turned));
+            add_face(g, graph_op1(graph, OP_normalize, rotated));
     }
     add_axes(g, first);
 }

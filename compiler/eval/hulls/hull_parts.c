@@ -50,10 +50,10 @@ static bool refuse_unknown(const Gathering *g)
 
 /* ---- places ---- */
 
-static void place_rotate(const Place *place, const double v[3], double turned[3])
+static void place_rotate(const Place *place, const double v[3], double rotated[3])
 {
     for (int i = 0; i < 3; i++)
-        turned[i] = dot3(place->matrix[i], v);
+        rotated[i] = dot3(place->matrix[i], v);
 }
 
 /* place(inner(x)) */

@@ -17,11 +17,11 @@ static const double SLACK = 1e-11;
 /* Shorter arcs leave nothing out that single precision can tell, nor do nearer normals. */
 static const double SHORTEST_ARC = 1e-7, NEAR_NORMALS = 1e-9;
 
-/* An arc of angles, and how many more begin than end in order of angles. */
-typedef struct Turn {
+/* An angle at which an arc begins or ends, and by how much the number of arcs changes there. */
+typedef struct ArcEnd {
     double angle;
     int    change;
-} Turn;
+} ArcEnd;
 
 typedef struct Work {
     Arena          *arena;
@@ -30,7 +30,7 @@ typedef struct Work {
     double          slack;
     HullSupports    hull;
     bool           *joined; /* pairs with an edge, or a face in the plane */
-    Turn           *turns;
+    ArcEnd         *arc_ends;
 } Work;
 
 /* Two balls, and directions sine * axis + cosine * (cos(angle) * e1 + sin(angle) * e2). */
@@ -117,9 +117,9 @@ static void add_edge(Work *w, const Pair *pair, double from, double to)
     mark_joined(w, pair);
 }
 
-/* The directions of a pair beyond which another ball reaches: `turns` gets where they begin and end,
-   from -PI to PI.  False: all of them. */
-static bool hide_behind(Work *w, const Pair *pair, size_t other, size_t *turn_count)
+/* The directions of a pair beyond which another ball reaches: `arc_ends` gets where they begin and
+   end, from -PI to PI.  False: all of them. */
+static bool hide_behind(Work *w, const Pair *pair, size_t other, size_t *end_count)
 {
     const HullBall *a = &w->balls[pair->first], *c = &w->balls[other];
     double          towards[3];
@@ -137,37 +137,37 @@ static bool hide_behind(Work *w, const Pair *pair, size_t other, size_t *turn_co
         double low = fmax(from + 2 * PI * lap, -PI), high = fmin(to + 2 * PI * lap, PI);
         if (low >= high)
             continue;
-        w->turns[(*turn_count)++] = (Turn){low, 1};
-        w->turns[(*turn_count)++] = (Turn){high, -1};
+        w->arc_ends[(*end_count)++] = (ArcEnd){low, 1};
+        w->arc_ends[(*end_count)++] = (ArcEnd){high, -1};
     }
     return true;
 }
 
-static int compare_turns(const void *left, const void *right)
+static int compare_arc_ends(const void *left, const void *right)
 {
-    const Turn *a = left, *b = right;
+    const ArcEnd *a = left, *b = right;
     if (a->angle != b->angle)
         return a->angle < b->angle ? -1 : 1;
     return b->change - a->change; /* what begins where another ends leaves no gap */
 }
 
 /* What is left of the circle: an edge for each arc.  The first and the last may be one. */
-static void add_edges(Work *w, const Pair *pair, size_t turn_count)
+static void add_edges(Work *w, const Pair *pair, size_t end_count)
 {
     double from = -PI, first_end = -PI;
     int    hidden = 0;
-    qsort(w->turns, turn_count, sizeof *w->turns, compare_turns);
-    for (size_t i = 0; i < turn_count; i++) {
-        double angle = w->turns[i].angle;
+    qsort(w->arc_ends, end_count, sizeof *w->arc_ends, compare_arc_ends);
+    for (size_t i = 0; i < end_count; i++) {
+        double angle = w->arc_ends[i].angle;
         if (hidden == 0 && from == -PI)
             first_end = angle;
         else if (hidden == 0 && angle - from > SHORTEST_ARC)
             add_edge(w, pair, from, angle);
-        hidden += w->turns[i].change;
+        hidden += w->arc_ends[i].change;
         if (hidden == 0)
             from = angle;
     }
-    if (turn_count == 0)
+    if (end_count == 0)
         add_edge(w, pair, -PI, PI);
     else if (PI - from + first_end + PI > SHORTEST_ARC)
         add_edge(w, pair, from, first_end + 2 * PI);
@@ -175,11 +175,11 @@ static void add_edges(Work *w, const Pair *pair, size_t turn_count)
 
 static void join_in_space(Work *w, const Pair *pair)
 {
-    size_t turn_count = 0;
+    size_t end_count = 0;
     for (size_t k = 0; k < w->count; k++)
-        if (k != pair->first && k != pair->second && !hide_behind(w, pair, k, &turn_count))
+        if (k != pair->first && k != pair->second && !hide_behind(w, pair, k, &end_count))
             return;
-    add_edges(w, pair, turn_count);
+    add_edges(w, pair, end_count);
 }
 
 /* ---- the plane: two lines touch two discs ---- */
@@ -252,7 +252,7 @@ HullSupports hull_supports(Arena *arena, const HullBall *balls, size_t count, bo
     Work      w     = {.arena = arena, .balls = outer, .slack = SLACK * size_of(balls, count)};
     w.count         = outer_balls(balls, count, w.slack, outer);
     w.joined        = arena_new_array(arena, bool, w.count *w.count);
-    w.turns         = arena_new_array(arena, Turn, 6 * w.count);
+    w.arc_ends      = arena_new_array(arena, ArcEnd, 6 * w.count);
     for (size_t i = 0; i < w.count; i++)
         for (size_t k = i + 1; k < w.count; k++) {
             Pair pair;

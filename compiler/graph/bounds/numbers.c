@@ -101,8 +101,8 @@ static unsigned guarded(Range bound, Range least, Range far)
 /* Blends that take nothing off where |a - b| is the width or more. */
 static unsigned blended(Range a, Range b, Range width)
 {
-    double apart = max2(b.low - a.high, a.low - b.high);
-    return width.high <= 0 || apart * (1 - 0x1p-50) > width.high ? lesser(a, b) : 0;
+    double gap = max2(b.low - a.high, a.low - b.high);
+    return width.high <= 0 || gap * (1 - 0x1p-50) > width.high ? lesser(a, b) : 0;
 }
 
 static Range range_select(Range a, Range b, Range c)

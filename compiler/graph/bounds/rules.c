@@ -133,7 +133,7 @@ static void value_ranges(const RuleInput *input, Range *ranges)
         ranges[k] = k < number_rows[input->op].arity ? input->operands[k].value[0] : ZERO;
 }
 
-/* Where it is neither always true nor never, it may jump. */
+/* Where a condition is neither always true nor never, its value may jump. */
 static Fact fact_truth(const RuleInput *input)
 {
     const NumberRow *row = &number_rows[input->op];
@@ -162,7 +162,7 @@ static Fact fact_select(const RuleInput *input)
     return fact;
 }
 
-/* Where it goes from one case to the other, the value jumps. */
+/* Where a guard goes from one case to the other, its value jumps. */
 static Fact fact_guard(const RuleInput *input)
 {
     const NumberRow *row = &number_rows[OP_guard];

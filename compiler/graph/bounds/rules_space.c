@@ -74,7 +74,7 @@ Fact fact_cell(const RuleInput *input)
     return unknown;
 }
 
-/* The turned pair (x, z) has lengths in `radius`; so have its derivatives in x', z'. */
+/* The rotated pair (x, z) has lengths in `radius`; so have its derivatives in x', z'. */
 static void sector_bounds(const Fact *p, Range count, Fact *fact)
 {
     Fact   plane   = {.value = {p->value[0], p->value[2]}};
@@ -92,7 +92,7 @@ static void sector_bounds(const Fact *p, Range count, Fact *fact)
     }
 }
 
-/* Within a sector it is a turn, and a known one when the box lies in one sector. */
+/* Within a sector it is a rotation, and a known one when the box lies in one sector. */
 Fact fact_cell_polar(const RuleInput *input)
 {
     const Fact *p     = &input->operands[0];
@@ -101,10 +101,10 @@ Fact fact_cell_polar(const RuleInput *input)
         return count.high < 1 ? *p : fact_unknown(3);
     Fact fact = *p;
     sector_bounds(p, range_above(count, 1), &fact);
-    Range sector = range_div(range_of(2 * acos(-1)), count);
-    Range turns  = range_round(range_div(range_atan2(p->value[2], p->value[0]), sector));
-    if (range_is_single(count) && range_is_single(turns)) {
-        Range angle = range_mul(turns, sector), c = range_cos(angle), s = range_sin(angle);
+    Range sector  = range_div(range_of(2 * acos(-1)), count);
+    Range sectors = range_round(range_div(range_atan2(p->value[2], p->value[0]), sector));
+    if (range_is_single(count) && range_is_single(sectors)) {
+        Range angle = range_mul(sectors, sector), c = range_cos(angle), s = range_sin(angle);
         Jet   x = jet_add(jet_times(jet_of(p, 0), c), jet_times(jet_of(p, 2), s));
         Jet   z = jet_sub(jet_times(jet_of(p, 2), c), jet_times(jet_of(p, 0), s));
         x.value = range_intersect(fact.value[0], x.value);

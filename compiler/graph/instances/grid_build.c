@@ -107,7 +107,7 @@ static Cover cover_box(const Builder *b, const Box *box, double distance)
     return cover;
 }
 
-/* That of a processor. */
+/* Returns the slab of a processor. */
 static Slab slab_of_part(const Builder *b, size_t part, size_t parts)
 {
     int      axis  = b->flat.distance ? 1 : 2;

@@ -19,7 +19,7 @@ Instances *instances_for_frames(const Instances *instances, Arena *arena);
 void instances_enter_frame(Instances *instances, const NodeValue *values, Arena *arena,
                            Arena *scratch);
 
-/* A box under a similarity: its scale, the rows of its turn, and its shift. */
+/* A box under a similarity: its scale, the rows of its rotation, and its shift. */
 Box box_under_map(const Box *box, const NodeValue *const map[5]);
 
 #endif

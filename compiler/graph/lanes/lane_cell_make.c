@@ -41,7 +41,7 @@ static double steepest_of(const CellStep *steps, uint32_t inputs, uint32_t row)
                                            : 0;
 }
 
-/* That of a call, by how fast the point of the call moves. */
+/* Returns how steep a call is, by how fast the point of the call moves. */
 static double steepest_of_call(const LaneTape *tape, const CellCall *call, const CellStep *steps,
                                uint32_t inputs)
 {
@@ -60,7 +60,8 @@ static double steepest_of_call(const LaneTape *tape, const CellCall *call, const
     return function->slope * (itself ? 1 : sqrt(square));
 }
 
-/* That of what lane tapes know nothing of, since it is made of calls: by derivatives that hold everywhere. */
+/* Returns how steep a step is of which lane tapes know nothing, since it is made of calls: by
+   derivatives that hold everywhere. */
 static double steepest_of_step(const LaneTape *tape, const CellStep *step, const CellStep *steps,
                                uint32_t inputs)
 {

@@ -102,8 +102,8 @@ static void need_all(Pruning *p, const CellStep *step)
         need(p, step->from[k], HUGE_VALF, -HUGE_VALF);
 }
 
-/* Of a minimum, or with sign -1 of a maximum.  Operands that are above the cap in all of the ball are not
-   needed, but for one. */
+/* Notes what a minimum needs, or with sign -1 a maximum.  Operands that are above the cap in all of
+   the ball are not needed, but for one. */
 static void need_of_least(Pruning *p, const CellStep *step, uint32_t row, float sign)
 {
     CellWork      *work = p->work;
@@ -199,7 +199,8 @@ static void need_of_call(Pruning *p, const CellStep *step, uint32_t row)
             need(p, call->from[k][c], HUGE_VALF, -HUGE_VALF);
 }
 
-/* Of opposites, sums with a constant, and products by one above 0. */
+/* Notes what opposites, sums with a constant, and products by one above 0 need; false: it is none
+   of them. */
 static bool need_of_linear(Pruning *p, const CellStep *step, float cap, float floor)
 {
     if (step->op == OP_neg) {

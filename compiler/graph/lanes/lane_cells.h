@@ -43,7 +43,7 @@ typedef struct CellTape {
     float           cap;    /* infinite: it is right all over the ball */
 } CellTape;
 
-/* Of one thread; made by cell_work_new. */
+/* The work of one thread; cell_work_new makes it. */
 typedef struct CellWork CellWork;
 
 /* The cell tape of output 0 for all of space; the lane tape lives as long, and its scalars are known when

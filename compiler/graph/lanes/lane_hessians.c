@@ -216,15 +216,15 @@ static LaneHessian hessian_of_square(const Run *run)
 /* The derivatives of a - b. */
 static LaneSlope slope_of_difference(const Run *run, uint32_t a, uint32_t b)
 {
-    const LaneSlope *slopes[2] = {slope_at(run, a), slope_at(run, b)};
-    LaneSlope        apart     = {{{0, 0}, {0, 0}, {0, 0}}};
+    const LaneSlope *slopes[2]  = {slope_at(run, a), slope_at(run, b)};
+    LaneSlope        difference = {{{0, 0}, {0, 0}, {0, 0}}};
     for (int j = 0; j < 3; j++) {
         if (slopes[0])
-            apart.by[j] = slopes[0]->by[j];
+            difference.by[j] = slopes[0]->by[j];
         if (slopes[1])
-            apart.by[j] = plus(apart.by[j], minus(slopes[1]->by[j]));
+            difference.by[j] = plus(difference.by[j], minus(slopes[1]->by[j]));
     }
-    return apart;
+    return difference;
 }
 
 /* Weights of the operands, which sum to 1, and what their changes add: for each pair no more than where there are
@@ -246,8 +246,8 @@ static LaneHessian hessian_of_mean(const Run *run, Op op, const uint32_t *operan
     }
     for (uint32_t k = 0; k < count; k++)
         for (uint32_t l = k + 1; l < count; l++) {
-            LaneSlope apart = slope_of_difference(run, operands[k], operands[l]);
-            add_square(&sum, bend, &apart);
+            LaneSlope difference = slope_of_difference(run, operands[k], operands[l]);
+            add_square(&sum, bend, &difference);
         }
     return sum;
 }

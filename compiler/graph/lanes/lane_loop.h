@@ -31,9 +31,9 @@ LESSER(float, float)
 #include "compiler/graph/op_values.h"
 
 #ifdef __clang__
-#define LANES_APART _Pragma("clang loop vectorize(assume_safety)")
+#define LANES_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else
-#define LANES_APART _Pragma("GCC ivdep")
+#define LANES_INDEPENDENT _Pragma("GCC ivdep")
 #endif
 
 #define LANE_NAME_(loop, name) loop##_##name
@@ -42,7 +42,7 @@ LESSER(float, float)
 /* Goes through each lane i of the blocks; rows are the same, or do not overlap. */
 #define EACH_LANE(blocks)                             \
     for (size_t block = 0; block < (blocks); block++) \
-    LANES_APART for (size_t i = LANE_BLOCK * block; i < LANE_BLOCK * block + LANE_BLOCK; i++)
+    LANES_INDEPENDENT for (size_t i = LANE_BLOCK * block; i < LANE_BLOCK * block + LANE_BLOCK; i++)
 
 #endif
 
@@ -271,7 +271,7 @@ static void LOCAL(cell_call)(const CellTape *tape, NodeValue *values, const Cell
 #ifdef __clang__
 #define ALL_LANES EACH_LANE(CELL_LANES / LANE_BLOCK)
 #else
-#define ALL_LANES LANES_APART _Pragma("GCC unroll 1") for (size_t i = 0; i < CELL_LANES; i++)
+#define ALL_LANES LANES_INDEPENDENT _Pragma("GCC unroll 1") for (size_t i = 0; i < CELL_LANES; i++)
 #endif
 
 /* The row of an operand; its lanes. */

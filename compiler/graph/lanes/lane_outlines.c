@@ -60,7 +60,7 @@ static double min_distance(const InstanceArc *arc, const double point[2])
 {
     double chord[2], from[2], square = 0, along = 0;
     for (int k = 0; k < 2; k++) {
-        chord[k] = 2 * arc->way[k] + arc->bend[k];
+        chord[k] = 2 * arc->tangent[k] + arc->bend[k];
         from[k]  = point[k] - arc->start[k];
         square += chord[k] * chord[k];
         along += chord[k] * from[k];
@@ -104,15 +104,15 @@ bool lane_outline_instances(const LaneTape *tape, const LaneRanges *ranges, size
 static void point_at(const InstanceArc *arc, double t, double point[2])
 {
     for (int k = 0; k < 2; k++)
-        point[k] = arc->start[k] + t * (2 * arc->way[k] + t * arc->bend[k]);
+        point[k] = arc->start[k] + t * (2 * arc->tangent[k] + t * arc->bend[k]);
 }
 
 /* The distance to the line of a straight curve, below 0 on its left. */
 static bool find_line(const InstanceArc *arc, double line[3])
 {
-    double length = hypot(arc->way[0], arc->way[1]);
-    line[0]       = arc->way[1] / length;
-    line[1]       = -arc->way[0] / length;
+    double length = hypot(arc->tangent[0], arc->tangent[1]);
+    line[0]       = arc->tangent[1] / length;
+    line[1]       = -arc->tangent[0] / length;
     line[2]       = -(line[0] * arc->start[0] + line[1] * arc->start[1]);
     return arc->bend[0] == 0 && arc->bend[1] == 0 && length > 0;
 }
@@ -154,8 +154,9 @@ bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t s
     if (lines->count == 0 || (lines->count == 2 && !put_in_order(arcs, ends, view.radius)))
         return false;
     point_at(arcs[lines->count - 1], 1, ends[0]);
-    lines->convex = lines->count == 1 ||
-                    arcs[0]->way[0] * arcs[1]->way[1] - arcs[0]->way[1] * arcs[1]->way[0] >= 0;
+    lines->convex = lines->count == 1 || arcs[0]->tangent[0] * arcs[1]->tangent[1] -
+                                                 arcs[0]->tangent[1] * arcs[1]->tangent[0] >=
+                                             0;
     for (uint32_t i = 0; i < lines->count; i++)
         if (!find_line(arcs[i], lines->lines[i]))
             return false;
@@ -175,7 +176,7 @@ static bool nearest_tangent(const View *view, const InstanceArc *arc, double tan
         double value = 0, slope = 0;
         point_at(arc, t, at);
         for (int k = 0; k < 2; k++) {
-            double half = arc->way[k] + t * arc->bend[k], from = at[k] - view->middle[k];
+            double half = arc->tangent[k] + t * arc->bend[k], from = at[k] - view->middle[k];
             value += from * half;
             slope += 2 * half * half + from * arc->bend[k];
         }
@@ -183,7 +184,7 @@ static bool nearest_tangent(const View *view, const InstanceArc *arc, double tan
         t += change;
     }
     for (int k = 0; k < 2; k++)
-        tangent[k] = arc->way[k] + t * arc->bend[k];
+        tangent[k] = arc->tangent[k] + t * arc->bend[k];
     double length = hypot(tangent[0], tangent[1]);
     tangent[0] /= length;
     tangent[1] /= length;
@@ -203,9 +204,9 @@ static bool is_within_ends(const View *view, const InstanceArc *arc)
 /* The most that it is curved: at an end, since it turns only one way and is not cut at an apex. */
 static double largest_curvature(const InstanceArc *arc)
 {
-    double cross = arc->way[0] * arc->bend[1] - arc->way[1] * arc->bend[0];
-    double speed = min2(hypot(arc->way[0], arc->way[1]),
-                        hypot(arc->way[0] + arc->bend[0], arc->way[1] + arc->bend[1]));
+    double cross = arc->tangent[0] * arc->bend[1] - arc->tangent[1] * arc->bend[0];
+    double speed = min2(hypot(arc->tangent[0], arc->tangent[1]),
+                        hypot(arc->tangent[0] + arc->bend[0], arc->tangent[1] + arc->bend[1]));
     return cross == 0 ? 0 : fabs(cross) / (2 * speed * speed * speed);
 }
 

@@ -87,9 +87,9 @@ static void prune_step(Pruning *p, size_t i)
                                           : added;
 }
 
-/* ---- turns ---- */
+/* ---- rotations ---- */
 
-/* Within one sector cell_polar is a turn by an angle that is known. */
+/* Within one sector cell_polar is a rotation by an angle that is known. */
 static bool is_rotation(const Pruning *p, const LaneCall *call, double *cosine, double *sine)
 {
     const Expr *e = &p->from->tape->graph->items[call->node];
@@ -100,16 +100,16 @@ static bool is_rotation(const Pruning *p, const LaneCall *call, double *cosine, 
     if (!(count >= 1) || isinf(count) || !number_at(p, call->operands[0][0], &x) ||
         !number_at(p, call->operands[0][2], &z))
         return false;
-    double sector = 2 * acos(-1) / count;
-    Range  turns  = range_round(range_div(range_atan2(z, x), range_of(sector)));
-    double angle  = sector * (turns.low + 0.0);
-    *cosine       = cos(angle);
-    *sine         = sin(angle);
-    return range_is_single(turns) && isfinite(angle);
+    double sector  = 2 * acos(-1) / count;
+    Range  sectors = range_round(range_div(range_atan2(z, x), range_of(sector)));
+    double angle   = sector * (sectors.low + 0.0);
+    *cosine        = cos(angle);
+    *sine          = sin(angle);
+    return range_is_single(sectors) && isfinite(angle);
 }
 
 /* a c + b s, or a c - b s */
-static uint32_t add_turned(Pruning *p, uint16_t op, uint32_t a, uint32_t c, uint32_t b, uint32_t s)
+static uint32_t add_rotated(Pruning *p, uint16_t op, uint32_t a, uint32_t c, uint32_t b, uint32_t s)
 {
     LaneStep first  = {.op = OP_mul, .operand_count = 2, .operands = {c, a}};
     LaneStep second = {.op = OP_mul, .operand_count = 2, .operands = {s, b}};
@@ -130,9 +130,9 @@ static bool prune_rotation(Pruning *p, size_t i)
     const LaneCall *call = &p->from->calls[step->operands[0]];
     uint32_t        x = stand_in(p, call->operands[0][0]), z = stand_in(p, call->operands[0][2]);
     uint32_t        c = lane_steps_number(&p->to, cosine), s = lane_steps_number(&p->to, sine);
-    p->same[LANE_INPUTS + i]     = add_turned(p, OP_add, x, c, z, s);
+    p->same[LANE_INPUTS + i]     = add_rotated(p, OP_add, x, c, z, s);
     p->same[LANE_INPUTS + i + 1] = stand_in(p, call->operands[0][1]);
-    p->same[LANE_INPUTS + i + 2] = add_turned(p, OP_sub, z, c, x, s);
+    p->same[LANE_INPUTS + i + 2] = add_rotated(p, OP_sub, z, c, x, s);
     return true;
 }
 

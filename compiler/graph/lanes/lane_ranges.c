@@ -39,7 +39,7 @@ static bool operand_for(const LaneTape *tape, const LaneRanges *ranges, uint32_t
 
 /* ---- steps ---- */
 
-/* That of three numbers is the length of a pair of which one is the length of a pair, or nearly so. */
+/* The length of three numbers is that of a pair, of which one is a length of a pair, or nearly so. */
 static Range range_length(const LaneRanges *ranges, const Range *o, uint32_t size)
 {
     Range sum = range_square(o[0]);

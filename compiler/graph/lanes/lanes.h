@@ -224,8 +224,8 @@ LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena);
 /* Returns that of output 0; it holds where the value is a number.  Normals and footprints may be
    anything. */
 Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box);
-/* The same, but narrower where steps know how fast they change.  Turned boxes grow, so ranges of a chain of turns are
-   wide; balls do not.  It takes twice the time. */
+/* The same, but narrower where steps know how fast they change.  Rotated boxes grow, so ranges of a
+   chain of rotations are wide; balls do not.  It takes twice the time. */
 Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box box);
 /* Returns the range of an output, after a run. */
 Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output);

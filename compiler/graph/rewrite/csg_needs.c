@@ -75,7 +75,8 @@ static double corner_at(const double *sides, uint32_t count)
     return sqrt(square) + fmin(greatest(sides, count), 0);
 }
 
-/* With fewer sides it is no larger.  Those remain that are needed. */
+/* Finds the range of a corner, which is no larger with fewer sides.  The sides that are needed
+   remain. */
 static Range range_of_corner(const Search *s, const CsgPart *part)
 {
     double   low[MAX_SIDES], high[MAX_SIDES];
@@ -99,7 +100,8 @@ static Range range_of_blend(const Search *s, const CsgPart *part)
                    may_be_sharp ? fmin(a.high, b.high) : blend_at(s->tree, part, a.high, b.high)};
 }
 
-/* Without what is not needed it is the least of what some of them make. */
+/* Finds the range of shares, which without what is not needed is the least of what some of them
+   make. */
 static Range range_of_shares(const Search *s, const Cell *cell, const CsgPart *part)
 {
     FindShares *find = sharing_op((Op)s->tree->graph->items[part->node].op).find;

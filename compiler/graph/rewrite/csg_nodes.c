@@ -235,14 +235,14 @@ static void find_signs(CsgTree *tree)
         const CsgPart  part   = tree->parts[i];
         const bool     shares = part.kind == CSG_SHARES;
         const uint32_t two[] = {part.a, part.b}, *of = shares ? part.sharers : two;
-        const bool     turns  = part.kind == CSG_NEGATIVE;
-        const uint32_t others = part.kind == CSG_LEAF || part.kind == CSG_CORNER ? 0
-                                : shares                                         ? part.sharer_count
-                                : has_two(part.kind)                             ? 2
-                                                                                 : 1;
+        const bool     negates = part.kind == CSG_NEGATIVE;
+        const uint32_t others  = part.kind == CSG_LEAF || part.kind == CSG_CORNER ? 0
+                                 : shares             ? part.sharer_count
+                                 : has_two(part.kind) ? 2
+                                                      : 1;
         for (uint32_t k = 0; k < others; k++) {
-            tree->parts[of[k]].upwards |= turns ? part.downwards : part.upwards;
-            tree->parts[of[k]].downwards |= turns ? part.upwards : part.downwards;
+            tree->parts[of[k]].upwards |= negates ? part.downwards : part.upwards;
+            tree->parts[of[k]].downwards |= negates ? part.upwards : part.downwards;
         }
     }
 }

@@ -1,7 +1,7 @@
 /*
  * rebase.c: the graph of points that are relative to an origin near them.
  *
- * Every value that is the point, or made of it by moving, turning, scaling or mirroring, has two
+ * Every value that is the point, or made of it by moving, rotating, scaling or mirroring, has two
  * summands: a base, which is what happens to the origin, and what is relative to it, which happens
  * to the offset from there.  Mirrors cost as much as before: behind one with dot(u, p) <= w the
  * latter, r, is

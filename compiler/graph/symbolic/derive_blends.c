@@ -201,7 +201,7 @@ static const struct {
 #include "compiler/graph/blends.def"
 };
 
-/* Without a width the least one, which is at the threshold, has all. */
+/* Derives shares.  Without a width the least operand, which is at the threshold, has all. */
 Node derive_shares(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     (void)node;

@@ -295,8 +295,8 @@ Node derive_fold(Derivation *d, const Expr *e, Node node, const Node *inner)
     return between_jumps(d, graph_op3(g, OP_select, front, mirrored, inner[0]));
 }
 
-/* A turn about y by an angle that stays the same within its sector; its sine and cosine are told by
-   what it has made of the point. */
+/* A rotation about y by an angle that stays the same within its sector; its sine and cosine are
+   told by what it has made of the point. */
 Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     if (!is_zero(d->graph, inner[1]))

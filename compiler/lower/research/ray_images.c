@@ -6,9 +6,10 @@
  * A = |F'(p)|, w the image's direction at q, and h a vector at q, which is 0 if no map inverts:
  *     F(p + t v) = q + A (t w + t^2 h) / Q,    Q = 1 + 2 t w.h + t^2 h.h.
  * The distance of the image from q is A t / sqrt(Q).  So besides the point only w and h are passed
- * inwards.  Rotations and mirrors turn them.  An inversion at the offset z from its pole turns h
- * into R^T (h reflected along z - A z / |z|^2).  |h| is at most the B of the centred bound, which
- * is the exit below in the worst direction.  No preimage of a ball is computed, so no terms cancel.
+ * inwards.  Rotations and mirrors rotate and mirror them.  An inversion at the offset z from its
+ * pole turns h into R^T (h reflected along z - A z / |z|^2).  |h| is at most the B of the centred
+ * bound, which is the exit below in the worst direction.  No preimage of a ball is computed, so no
+ * terms cancel.
  *
  * Let a ball of radius d around q be empty.  The image of the ray leaves it at the t where
  * A t = d sqrt(Q).  If there is an inversion behind a mirror, this holds only until the image of

@@ -3,7 +3,7 @@
  *
  * Built-in ones are accurate to 1e-4 only on some devices; these are good to a few units in the last
  * place.  Beyond 1/2 the half-angle formula brings the argument of an arc sine back to where the
- * polynomial is good.  Arguments of the arc tangent above tan(pi / 8) are turned back by pi / 4.
+ * polynomial is good.  Arguments of the arc tangent above tan(pi / 8) are rotated back by pi / 4.
  *
  * Operations of ops.def call these, and shaders without a scene include this file.
  */

@@ -1,5 +1,5 @@
 /*
- * cells.glsl: a point moved by whole periods into one cell, or turned into one sector.
+ * cells.glsl: a point moved by whole periods into one cell, or rotated into one sector.
  */
 
 vec3 krs_cell(vec3 p, vec3 period, vec3 low, vec3 high)

@@ -1,10 +1,11 @@
 /*
  * julia.glsl: Julia sets of quaternions; graph/fractal.c says why this is a bound.
  *
- * Loops over the power have constant ends, so that they are unrolled; so are those of a Julia set up
- * to 32 iterations, as an array whose index varies costs more than all the rest, and lavapipe ends the
- * loops of a dispatch silently after 65,535 turns.  What an orbit does after it has left is not
- * looked at, so it need not be kept from going on: a step would have to wait for its mask.
+ * Loops over the power have constant ends, so that they are unrolled; so are those of a Julia set
+ * up to 32 iterations, as an array whose index varies costs more than all the rest, and lavapipe
+ * ends the loops of a dispatch silently after 65,535 iterations.  What an orbit does after it has
+ * left is not looked at, so it need not be kept from going on: a step would have to wait for its
+ * mask.
  */
 
 vec2 krs_times(vec2 a, vec2 b, float square)

@@ -1,8 +1,8 @@
 /*
  * sines.glsl: sine, cosine and tangent in single precision, the same on every device.
  *
- * Vulkan promises 2^-11 of the built-in ones, and only within +-pi.  These are good to 2^-22 up to
- * 51,000 = 2^14 pi.  Beyond, they are those of an argument that is off by its last digit.
+ * Vulkan guarantees 2^-11 of the built-in ones, and only within +-pi.  These are good to 2^-22 up
+ * to 51,000 = 2^14 pi.  Beyond, they are those of an argument that is off by its last digit.
  *
  * An argument is reduced by the nearest multiple of pi (Cody and Waite 1980): n times the first two
  * parts of pi is exact, so the differences must stay as they are written.  sin(a) is then sin(r),
