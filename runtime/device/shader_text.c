@@ -38,7 +38,7 @@ static void append(IncludeExpansion *to, const char *bytes, size_t count)
     to->length += count;
 }
 
-/* Whether surfaces that the host has found are in the place of the scene. */
+/* Tells whether surfaces that the host has found are in the place of the scene. */
 static bool has_surfaces(const ShaderSource *source)
 {
     return !source->scene && source->defines && strstr(source->defines, "#define SURFACES\n");

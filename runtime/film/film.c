@@ -200,7 +200,7 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
     *control = (ControlBlock){
         .projection    = job->rays ? LISTED : (uint32_t)job->view.camera.projection,
         .lights        = (uint32_t)job->view.light_count,
-        .apart         = film->options.light_groups,
+        .separate      = film->options.light_groups,
         .seed          = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
         .no_occlusion  = job->options.no_occlusion,
         .no_background = job->options.plate != NULL,

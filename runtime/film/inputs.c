@@ -35,7 +35,7 @@ static size_t rays_of_limits(const Job *job)
     return (job->rendering->band.pixels + in_ray - 1) / in_ray;
 }
 
-/* Likewise the planes of a plate in the pixels of a band, and its map. */
+/* The planes of a plate in the pixels of a band have such room likewise, and its map. */
 static size_t rays_of_planes(const Job *job)
 {
     return job->rendering->catches ? (job->rendering->band.pixels + 1) / 2 : 0;

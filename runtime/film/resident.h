@@ -14,10 +14,10 @@ struct KrsFilm {
     uint32_t         updates;        /* of its rendering that it has followed */
     KrsPicture      *sums;           /* colours are sums over the samples */
     float (*kept)[4];                /* see resident_kept; NULL: no error is estimated */
-    /* Sums of the light of each light, where they are apart: all pixels of the crop for the first,
-       then for the next.  The sums of `sums` are those of the rest. */
+    /* Sums of the light of each light, where they are separate: all pixels of the crop for the
+       first, then for the next.  The sums of `sums` are those of the rest. */
     float (*lights)[4];
-    uint32_t light_count;      /* 0: they are not apart; the last CAUGHT_ROWS are of the plate */
+    uint32_t light_count;      /* 0: they are not separate; the last CAUGHT_ROWS are of the plate */
     uint32_t samples;          /* of each pixel so far, unless it has ended by noise */
     uint32_t rows;             /* of a band; 0: no band has been made */
     double   rebase_origin[3]; /* positions of the first sample are relative to it */

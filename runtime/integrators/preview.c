@@ -90,18 +90,19 @@ static uint32_t row_of_light(const Preview *p, uint32_t light)
     return p->job->options.light_groups ? ROW_OF_LIGHTS + light : ROW_COLORS;
 }
 
-/* Adds the passes for pixels without a hit.  The first one adds the sky and, unless lights are apart,
-   the first sun, and lists the hits; each further one adds another sun. */
+/* Adds the passes for pixels without a hit.  The first one adds the sky and, unless lights are
+   separate, the first sun, and lists the hits; each further one adds another sun. */
 static void add_background(Preview *p)
 {
-    const KrsView    *view   = &p->job->view;
-    const uint32_t    count  = (uint32_t)view->light_count;
-    uint32_t          sun    = find_sun(view, 0);
-    const bool        apart  = p->job->options.light_groups;
-    const PixelShader shader = renderer_background(p->job->rendering);
+    const KrsView    *view     = &p->job->view;
+    const uint32_t    count    = (uint32_t)view->light_count;
+    uint32_t          sun      = find_sun(view, 0);
+    const bool        separate = p->job->options.light_groups;
+    const PixelShader shader   = renderer_background(p->job->rendering);
     add_pixels(p, KRS_PHASE_RESOLVE, shader, LIST_OF_BAND, NO_LIST,
-               (PassConstants){BACKGROUND_FIRST, .light = apart ? count : sun}, WEIGHT_BACKGROUND);
-    for (sun = apart ? sun : find_sun(view, sun + 1); sun < count; sun = find_sun(view, sun + 1))
+               (PassConstants){BACKGROUND_FIRST, .light = separate ? count : sun},
+               WEIGHT_BACKGROUND);
+    for (sun = separate ? sun : find_sun(view, sun + 1); sun < count; sun = find_sun(view, sun + 1))
         add_pixels(p, KRS_PHASE_RESOLVE, shader, LIST_OF_BAND, NO_LIST,
                    (PassConstants){BACKGROUND_SUN, .light = sun, .color_row = row_of_light(p, sun)},
                    0);
@@ -191,8 +192,8 @@ static void add_visibility(Preview *p, uint32_t light, uint32_t value, float wei
         add_means(p, constants, 0.2f * weight);
 }
 
-/* The lights of a pass of shading: LIGHTS_AT_ONCE, or one where they are apart; then the first of all
-   passes has none. */
+/* The lights of a pass of shading: LIGHTS_AT_ONCE, or one where they are separate; then the first
+   of all passes has none. */
 typedef struct LightPass {
     uint32_t first, count;
     bool     none; /* it adds all other light, and no lights */

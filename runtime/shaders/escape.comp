@@ -42,8 +42,8 @@ float share_of_rays(float by_rays, float by_lights)
     return by_rays > 0.0 ? 1.0 / (1.0 + square(by_lights / by_rays)) : 1.0;
 }
 
-// The light of all sources that a path's ray meets before it ends.  Where the light of each is apart,
-// it is added to their own rows, as far as it is `shown`.
+// The light of all sources that a path's ray meets before it ends.  Where the light of each is
+// separate, it is added to their own rows, as far as it is `shown`.
 vec3 find_sources(Path path, float end, uint index, vec3 shown)
 {
     vec3  sum = vec3(0.0);
@@ -57,9 +57,9 @@ vec3 find_sources(Path path, float end, uint index, vec3 shown)
         float share = share_of_rays(path.density, chance * density);
         bool  shows = !from_camera || (light.kind & LIGHT_POSITIONAL) == 0u;
         vec3  own = shows && density > 0.0 ? share * radiance : vec3(0.0);
-        uint apart = path.caught ? 0u : control.apart;
-        sum += apart != 0u ? vec3(0.0) : own;
-        for (uint once = 0u; once < apart; once++) // as in aovs.glsl
+        uint separate = path.caught ? 0u : control.separate;
+        sum += separate != 0u ? vec3(0.0) : own;
+        for (uint once = 0u; once < separate; once++) // as in aovs.glsl
             add_light_to(ROW_OF_LIGHTS + i, index, finite_or_black(shown * own));
     }
     return sum;

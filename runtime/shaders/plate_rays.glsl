@@ -9,8 +9,8 @@
  * are compared there, at steps of a pixel.  Blocks of pixels that the ray passes before are skipped.
  */
 
-// Whether a path that begins at the plate follows what that mirrors, or else what it scatters as a dull
-// surface does.  Either has rows of results of its own.
+// Tells whether a path that begins at the plate follows what that mirrors, or else what it scatters
+// as a dull surface does.  Either has rows of results of its own.
 const uint  CHOICE_OF_LOBE = 0x40000u;
 const float MIRRORED_LOBE = 0.5; // of all such paths
 bool is_mirrored(uvec2 pixel)

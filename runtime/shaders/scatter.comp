@@ -57,7 +57,8 @@ vec2 choose(uvec2 pixel, uint choice)
                          control.seed);
 }
 
-// The normal on the side of the ray.  Where a material turns it too far, the surface's own is taken.
+// The normal on the side of the ray.  Where a material tilts it too far, the surface's own is
+// taken.
 vec3 find_normal(HitPoint hit, KrsSurface surface, vec3 facing)
 {
     vec3  normal = hit.side * surface.normal;
@@ -134,7 +135,8 @@ bool is_direct() { return false; }
 // Tells whether a path of direct light ends here.
 bool ends_here(Bsdf bsdf) { return is_direct() && come_by != STRAIGHT && bsdf.glass == 0.0; }
 
-// Whether the path began at the plate: densities are negative then.  If it is there now, it begins.
+// These tell whether the path began at the plate: densities are negative then.  If it is there now,
+// it begins.
 bool  caught, begins_at_plate;
 bool  mirrored;      // by the plate, where the path began
 uint  row_of_caught; // of results, where the path began at the plate
@@ -204,7 +206,7 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     if (largest(added) > 0.0 && is_behind_plate(point, hit))
         added = vec3(0.0);
     store_path(PATH_LIGHT, index, vec4(added, point.end));
-    row = control.apart != 0u && !is_sky ? ROW_OF_LIGHTS + number : ROW_COLORS;
+    row = control.separate != 0u && !is_sky ? ROW_OF_LIGHTS + number : ROW_COLORS;
     if (caught)
         row = row_of_caught;
     if (begins_at_plate)
@@ -213,7 +215,7 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
 }
 
 // The direction in which the path goes on, in the frame of the surface; 0: it ends.
-vec3 choose_way(Bsdf bsdf, Axes axes, Cones cones, vec2 square_point, float choice)
+vec3 choose_direction(Bsdf bsdf, Axes axes, Cones cones, vec2 square_point, float choice)
 {
     vec2 at = square_point;
     if (take_part(at, 0.0, cones.part))
@@ -227,7 +229,7 @@ vec3 choose_way(Bsdf bsdf, Axes axes, Cones cones, vec2 square_point, float choi
 float continue_path(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 facing, vec3 weight,
             float roughness, float off, Boundary boundary, Cones cones)
 {
-    vec3  light = choose_way(bsdf, axes, cones, choose(pixel, 0u), choose(pixel, 2u).y);
+    vec3  light = choose_direction(bsdf, axes, cones, choose(pixel, 0u), choose(pixel, 2u).y);
     vec4  scattered = scatter(bsdf, light);
     vec3  direction = out_of(axes, light) / max(length(light), 1e-6);
     float kept = largest(scattered.rgb) / max(scattered.w, 1e-30);

@@ -134,7 +134,7 @@ void leave(inout Walk walk, HitPoint hit, vec3 facing)
 }
 
 // A direction into the solid, as of light that enters a dull surface.
-vec3 choose_way_in(vec3 facing)
+vec3 choose_direction_in(vec3 facing)
 {
     vec3 right, up;
     vec2 point = disc_of_square(vec2(find_chance(), find_chance()));
@@ -175,7 +175,7 @@ Walk walk_below(HitPoint hit, vec3 facing, vec3 color, vec3 radius)
     }
     float densest = max(max(inside.density.x, inside.density.y), inside.density.z);
     float least = min(NEAREST / densest, NEAREST_IN_PIXELS * hit.width) + 4.0 * hit.rounding;
-    vec3  direction = choose_way_in(facing);
+    vec3  direction = choose_direction_in(facing);
     float left = choose_length(inside, walk.weight), gone = 0.0; // to the next event; since the last
     float step = 0.0, before = 0.0; // the last step, and the depth before it
     for (uint i = 0u; i < MAX_DISTANCES; i++) {

@@ -12,7 +12,8 @@
 #include "optics.glsl"
 
 // The middle and the standard deviation of each band, in waves in a micrometre.
-const vec3 WAVES = vec3(1.0 / 0.611, 1.0 / 0.549, 1.0 / 0.465), WAVES_APART = vec3(0.08, 0.11, 0.12);
+const vec3 WAVES = vec3(1.0 / 0.611, 1.0 / 0.549, 1.0 / 0.465);
+const vec3 WAVE_DEVIATION = vec3(0.08, 0.11, 0.12);
 const uint MAX_TERMS = 8u;
 // The reflectance of a metal is at most this, so that an index of refraction has it.
 const float MAX_HEAD_ON = 0.9998;
@@ -25,8 +26,8 @@ vec3 ior_of(vec3 head_on)
 }
 
 // The reflectance of one polarization, by the ratios of amplitudes at both boundaries, the cosine of
-// the phase between two ways, and what is left of waves of a band that are so far apart.
-vec3 sum_ways(float outer, vec3 inner, vec3 cosine, vec3 left)
+// the phase between two paths, and what is left of waves of a band that are so far apart.
+vec3 sum_paths(float outer, vec3 inner, vec3 cosine, vec3 left)
 {
     vec3 both = outer * inner, sum = vec3(1.0), term = vec3(1.0);
     vec3 before = vec3(1.0), now = cosine, fade = left, fading = left * left * left;
@@ -50,17 +51,17 @@ vec3 find_filmed(float cosine, float thickness, float film, vec3 base)
     float sine_squared = 1.0 - cosine * cosine;
     float within_film = sqrt(max(1.0 - sine_squared / (film * film), 0.0));
     vec3  beyond = sqrt(max(1.0 - sine_squared / (base * base), 0.0));
-    float way = 2.0 * film * thickness * within_film;
-    vec3  turns = fract(way * WAVES);
-    vec3  phase = vec3(krs_cos(2.0 * PI * turns.x), krs_cos(2.0 * PI * turns.y),
-                       krs_cos(2.0 * PI * turns.z));
-    vec3  left = exp(-2.0 * square(PI * way) * WAVES_APART * WAVES_APART);
+    float path = 2.0 * film * thickness * within_film;
+    vec3  cycles = fract(path * WAVES);
+    vec3  phase = vec3(krs_cos(2.0 * PI * cycles.x), krs_cos(2.0 * PI * cycles.y),
+                       krs_cos(2.0 * PI * cycles.z));
+    vec3  left = exp(-2.0 * square(PI * path) * WAVE_DEVIATION * WAVE_DEVIATION);
     float across = (cosine - film * within_film) / (cosine + film * within_film);
     float along = (film * cosine - within_film) / (film * cosine + within_film);
     vec3  deep_across = (film * within_film - base * beyond) / (film * within_film + base * beyond);
     vec3  deep_along = (base * within_film - film * beyond) / (base * within_film + film * beyond);
-    return clamp(0.5 * (sum_ways(across, deep_across, phase, left) +
-                        sum_ways(along, deep_along, phase, left)), 0.0, 1.0);
+    return clamp(0.5 * (sum_paths(across, deep_across, phase, left) +
+                        sum_paths(along, deep_along, phase, left)), 0.0, 1.0);
 }
 
 // The same of glass that has so much of a film; `eta` is that beyond relative to here.  A film sends

@@ -186,10 +186,10 @@ vec2 find_width(float side)
     return vec2(half_diagonal * pixel_base, spread / max(stretch - 0.5 * spread, 0.1));
 }
 
-// Whether a ray begins just above a surface and knows its normal.  If rounding puts it behind the surface,
-// that is no hit for a while: for LEAVING roundings, or a part of a pixel.  What may stay unverified, also
-// behind an expected surface (OVERSHOOT), are parts of its length.  So a ray that creeps along a surface
-// gets away from it.
+// Tells whether a ray begins just above a surface and knows its normal.  If rounding puts it behind
+// the surface, that is no hit for a while: for LEAVING roundings, or a part of a pixel.  What may
+// stay unverified, also behind an expected surface (OVERSHOOT), are parts of its length.  So a ray
+// that creeps along a surface gets away from it.
 const float LEAVING = 192.0, LEAVING_IN_PIXELS = 0.03125, UNVERIFIED = 1.0 / 2048.0,
             PERMITTED = 1.0 / 32.0;
 bool leaves_surfaces()

@@ -201,8 +201,8 @@ static_assert(sizeof(PointWorkBlock) == 12, "std430");
     /* sampled_at: where words of quarters begin in `tiles`; 0: all pixels get rays */     \
     /* of_paths: 1: the rays are those of paths that have begun (MIXED_RAYS) */            \
     /* color_row: the row of results to which light is added: ROW_... */                   \
-    /* apart: 1: the light of each light has a row of results of its own */                \
-    UINTS(6, sampled_at, of_paths, color_row, apart)                                       \
+    /* separate: 1: the light of each light has a row of results of its own */             \
+    UINTS(6, sampled_at, of_paths, color_row, separate)                                    \
     /* count: of the lights that a pass of shade.comp adds */                              \
     /* caught: the row of results of light on the plate; 0: it catches none */             \
     /* plate_planes: where planes of the plate begin in the inputs (plate.glsl) */         \
@@ -392,9 +392,10 @@ CONSTANT(ROW_NOISE, 5);     /* estimated error; the samples of a pixel that has 
    the variance of the mean.  Of another: sums of its colour and alpha. */
 CONSTANT(ROW_EARLIER, 6);
 CONSTANT(RESULT_ROWS, 7);
-/* Behind these is a row for each light, where they are apart: floats, summed over the rays.  Then
-   ROW_COLORS has the rest.  Last are two rows of light on a white plate, where that catches shadows:
-   as it is, and as it would be without the scene.  Behind them are two of what a glossy plate mirrors. */
+/* Behind these is a row for each light, where they are separate: floats, summed over the rays.
+   Then ROW_COLORS has the rest.  Last are two rows of light on a white plate, where that catches
+   shadows: as it is, and as it would be without the scene.  Behind them are two of what a glossy
+   plate mirrors. */
 CONSTANT(ROW_OF_LIGHTS, 7);
 CONSTANT(CAUGHT_ROWS, 2);
 

@@ -66,7 +66,7 @@ static bool has_scene(const Job *job, const Shader *shader)
 }
 
 /* Tells how many items of this shader make a slice, as learned so far.  Shaders without the scene cost next
-   to nothing, so they are counted apart from the others of a phase. */
+   to nothing, so they are counted separately from the others of a phase. */
 static double *items_at_once(Job *job, KrsPhase phase, const Shader *shader)
 {
     return &job->rendering->items_at_once[phase][has_scene(job, shader)];

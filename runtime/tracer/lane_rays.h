@@ -9,9 +9,9 @@
 
 /* Why lanes cannot march the rays of a picture, in words of its author; NULL: they can. */
 const char *lane_rays_refuse(const Job *job);
-/* Whether they find normals as well, by the octahedron; else shaders do. */
+/* Tells whether lanes find normals as well, by the octahedron; else shaders do. */
 bool lane_rays_find_normals(const Job *job);
-/* Whether they meet planes without a march. */
+/* Tells whether rays meet planes without a march. */
 bool lane_rays_know_planes(const Job *job);
 /* Marches the ray of each pixel of the band to its end. */
 bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work);

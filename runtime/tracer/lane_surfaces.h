@@ -8,7 +8,8 @@
 #include "rays/surfaces.h"
 #include "runtime/tracer/job.h"
 
-/* Whether lanes find the surfaces of a frame: they march its rays, and none goes on behind a surface. */
+/* Tells whether lanes find the surfaces of a frame: they march its rays, and none goes on behind a
+   surface. */
 bool lane_surfaces_suit(const Job *job);
 /* How many rows a surface has. */
 uint32_t lane_surfaces_rows(const KrsRendering *rendering);

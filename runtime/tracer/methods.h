@@ -29,7 +29,8 @@ bool rendering_has_beams(const KrsRendering *rendering, KrsTrace trace);
 bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace);
 /* Tells whether shaders for all march groups are for the rays of the picture and for those of its paths. */
 bool rendering_mixes_rays(const KrsRendering *rendering);
-/* Tells whether many noises of a surface are one loop: less for the driver to translate, but turns cost. */
+/* Tells whether many noises of a surface are one loop: less for the driver to translate, but
+   iterations cost. */
 bool rendering_gathers_noises(const KrsRendering *rendering);
 /* The kind of normals to compute.  The default is by derivatives in algebraic scenes, else by the
    octahedron.  Scenes with sheets have no choice: by derivatives. */

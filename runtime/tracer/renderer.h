@@ -13,11 +13,12 @@ KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emu
 /* Lists the shaders of previews without a scene for a rendering, PIXEL_SHADERS at most, that do not
    exist.  Returns how many. */
 size_t renderer_request_pixels(const KrsRendering *rendering, ShaderRequest *requests);
-/* Likewise the shaders of escape.comp for a kind of primary rays, and for paths; 2 at most. */
+/* Lists likewise the shaders of escape.comp for a kind of primary rays, and for paths; 2 at
+   most. */
 size_t renderer_request_escapes(KrsRenderer *renderer, RayKind kind, ShaderRequest *requests);
 /* Makes these shaders of previews.  Adds the time that this takes to that of the rendering. */
 bool renderer_create_pixels(KrsRendering *rendering);
-/* Likewise those of escape.comp. */
+/* Makes those of escape.comp likewise. */
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);
 /* The shader of escape.comp for rays of paths, which renderer_create_escapes has made; where paths may

@@ -201,15 +201,15 @@ bool view_ray(const KrsCamera *camera, uint32_t width, uint32_t height, const do
 {
     Basis        basis;
     double       extent[2];
-    const double turns = camera->projection == KRS_PERSPECTIVE;
+    const double fans = camera->projection == KRS_PERSPECTIVE;
     if (camera->projection == KRS_PANORAMA || !camera_is_valid(camera) ||
         !camera_basis(camera, &basis))
         return false;
     half_extent(camera, width, height, extent);
     for (int i = 0; i < 3; i++) {
         double beside = extent[0] * place[0] * basis.right[i] + extent[1] * place[1] * basis.up[i];
-        origin[i]     = camera->eye[i] + (1 - turns) * beside;
-        direction[i]  = basis.forward[i] + turns * beside;
+        origin[i]     = camera->eye[i] + (1 - fans) * beside;
+        direction[i]  = basis.forward[i] + fans * beside;
     }
     return true;
 }

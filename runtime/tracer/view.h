@@ -27,7 +27,7 @@ bool view_ray(const KrsCamera *camera, uint32_t width, uint32_t height, const do
 
 /* The width of a pixel in the middle of the picture, at a distance from the eye. */
 double view_pixel(const KrsCamera *camera, uint32_t height, double distance);
-/* Likewise of a ray of a list, for which the camera stands; NULL: there is no list. */
+/* The same of a ray of a list, for which the camera stands; NULL: there is no list. */
 double view_width(const KrsCamera *camera, const KrsRays *rays, uint32_t height, double distance);
 
 /* Sets the box that rays are clipped to.  It is a little larger than [low, high], since surfaces
