@@ -20,7 +20,7 @@ typedef struct RaySet {
     /* Takes the distances for rays of hits. */
     void (*take_blocked)(RayBlock *block, const BlockRule *rule, const float at[RAYS_OF_BLOCK],
                          const float distances[RAYS_OF_BLOCK]);
-    /* Whether some ray marches between. */
+    /* Tells whether some ray marches between. */
     bool (*has)(const RayBlock *block, float first, float last);
 } RaySet;
 

@@ -39,7 +39,7 @@ static bool is_there(const RayBlock *block, int i)
     return block->state[i] == RAY_MARCHES || block->state[i] == RAY_IS_BESIDE;
 }
 
-/* Of the rays that march, and of those beside. */
+/* Measures the bundle of the rays that march, and of those beside. */
 static void measure_bundle(const RayBlock *blocks, Bundle *bundle)
 {
     double sum[6] = {0}, rays = 0;

@@ -21,7 +21,7 @@ static inline const float *ray_cell_run(const RayCell *cell, const float points[
 
 /* normals.c: how far from hits at t, in parts of the reach of differences there, distances are asked for. */
 #define TAPS_REACH 2.5f
-/* That reach where a pixel is so wide, and no coordinate is larger. */
+/* Returns that reach where a pixel is so wide, and no coordinate is larger. */
 float ray_normal_reach(const RayRule *rule, float width, float t, float largest);
 /* Finds the normals of the rays that have hit since `before`, which has the states of then.  Returns how many
    distances were evaluated. */

@@ -8,7 +8,7 @@
 #include "rays/ray_field.h"
 #include "rays/waves.h"
 
-/* Of the instruction set that lane tapes are run by. */
+/* Returns the set of the instruction set that lane tapes are run by. */
 static const RaySet *set_of_lanes(void)
 {
     static const RaySet *const sets[] = {

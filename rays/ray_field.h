@@ -34,7 +34,7 @@ struct RayField {
     float         margin; /* what rounding may make of coordinates */
 };
 
-/* Whether numbers of copies may be above 2^24, up to which single precision knows them. */
+/* Tells whether numbers of copies may be above 2^24, up to which single precision knows them. */
 bool ray_has_large_numbers(const Tape *tape);
 /* Values of the frame for who changes them: tapes that read tables do. */
 NodeValue *ray_copy_values(const KrsState *state, Arena *arena);

@@ -42,13 +42,15 @@ typedef struct RayBlock {
     float    t[RAYS_OF_BLOCK], side[RAYS_OF_BLOCK]; /* -1: inside of a solid, 1: outside of all */
     uint32_t unresolved[RAYS_OF_BLOCK];             /* it ran out of steps */
     float    normal[3][RAYS_OF_BLOCK], evenness[RAYS_OF_BLOCK]; /* of hits, if they are wanted */
-    /* Of rays of hits: how high they begin, the error of coordinates, the cosine to the normal; of cones the radius at
-       distance 1 and what must be empty around them; the least step. */
+    /* Rays of hits have these: how high they begin, the error of coordinates, the cosine to the
+       normal; of cones the radius at distance 1 and what must be empty around them; the least
+       step. */
     float lift[RAYS_OF_BLOCK], rounding[RAYS_OF_BLOCK], facing[RAYS_OF_BLOCK];
     float cone[RAYS_OF_BLOCK], margin[RAYS_OF_BLOCK], least[RAYS_OF_BLOCK];
     /* Their distance at the start, relative to the true one; 1: the last step was the least one. */
     float ratio[RAYS_OF_BLOCK], took_least[RAYS_OF_BLOCK];
-    /* Of the march: the empty length around t, the next step, how the former changes along the ray. */
+    /* The state of the march: the empty length around t, the next step, how the former changes
+       along the ray. */
     float clearance[RAYS_OF_BLOCK], step[RAYS_OF_BLOCK], slope[RAYS_OF_BLOCK];
 } RayBlock;
 

@@ -47,8 +47,8 @@ typedef struct SurfaceField SurfaceField;
 /* NULL: memory has run out.  The state stays as it is while the field is in use. */
 SurfaceField *surface_field_new(KrsState *state, bool layers);
 void          surface_field_free(SurfaceField *field);
-/* Whether surfaces can be found: not where there are mirrors, glass or open surfaces, where there is nothing, or
-   where numbers of copies are too large for single precision. */
+/* Tells whether surfaces can be found: not where there are mirrors, glass or open surfaces, where
+   there is nothing, or where numbers of copies are too large for single precision. */
 bool surface_field_suits(const KrsScene *scene);
 
 /* Finds surfaces, in one of the parts of run_in_parallel.  Points are near those before and behind them; as many as
