@@ -36,7 +36,7 @@ static void print_place(const double point[3])
     printf("[%.6g, %.6g, %.6g]", point[0] + 0.0, point[1] + 0.0, point[2] + 0.0); /* no -0 */
 }
 
-/* The turn that makes a direction of the scene the one away from the plate. */
+/* Finds the rotation that makes a direction of the scene the one away from the plate. */
 static void find_rotation(const double from[3], const double to[3], double axis[3], double *degrees)
 {
     double cosine = 0, length;

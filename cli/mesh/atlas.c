@@ -1,9 +1,10 @@
 /*
  * atlas.c: an atlas of charts.
  *
- * A chart is a group of triangles that lie beside each other and face about one way.  It is seen from there, so it is a
- * height field: a triangle that would lie above or below another of its chart begins one of its own.  Charts are turned so
- * that their rectangles are small, and these stand on shelves.  Pixels are as small as the picture permits.
+ * A chart is a group of triangles that lie beside each other and face about one way.  It is seen
+ * from there, so it is a height field: a triangle that would lie above or below another of its
+ * chart begins one of its own.  Charts are rotated so that their rectangles are small, and these
+ * stand on shelves.  Pixels are as small as the picture permits.
  */
 #include "cli/mesh/atlas.h"
 
@@ -26,7 +27,7 @@ static const double MAX_FILLED = 0.9, GROWTH = 1.04;
 
 typedef struct Chart {
     size_t   first, count; /* of Layout.list */
-    double   cosine, sine; /* it is turned by this */
+    double   cosine, sine; /* it is rotated by this */
     double   low[2];       /* then, of its triangles */
     uint32_t width, height;
     uint32_t at[2];
@@ -358,10 +359,10 @@ static bool grow_chart(Layout *l, uint32_t seed)
 
 /* ---- rectangles ---- */
 
-static void rotate(const Chart *chart, const double point[2], double turned[2])
+static void rotate(const Chart *chart, const double point[2], double rotated[2])
 {
-    turned[0] = chart->cosine * point[0] - chart->sine * point[1];
-    turned[1] = chart->sine * point[0] + chart->cosine * point[1];
+    rotated[0] = chart->cosine * point[0] - chart->sine * point[1];
+    rotated[1] = chart->sine * point[0] + chart->cosine * point[1];
 }
 
 static void find_size(const Layout *l, const Chart *chart, double low[2], double size[2])
@@ -381,7 +382,7 @@ static void find_size(const Layout *l, const Chart *chart, double low[2], double
         size[n] = high[n] - low[n];
 }
 
-/* Takes another turn if that makes the rectangle smaller; rectangles lie. */
+/* Takes another rotation if that makes the rectangle smaller; rectangles lie. */
 static void try_rotation(const Layout *l, Chart *best, double *least, double x, double y)
 {
     Chart  chart  = *best;
@@ -470,10 +471,10 @@ static void place_charts(Layout *l)
         const Chart *chart = &l->charts.items[n];
         for (size_t i = chart->first; i < chart->first + chart->count; i++)
             for (int k = 0; k < 3; k++) {
-                double *corner = l->corners[l->list[i]][k], turned[2];
-                rotate(chart, corner, turned);
+                double *corner = l->corners[l->list[i]][k], rotated[2];
+                rotate(chart, corner, rotated);
                 for (int m = 0; m < 2; m++)
-                    corner[m] = turned[m] - chart->low[m] + chart->at[m] + MARGIN;
+                    corner[m] = rotated[m] - chart->low[m] + chart->at[m] + MARGIN;
             }
     }
 }

@@ -37,7 +37,7 @@ void mesh_copy_vertex(const MeshParts *parts, const MeshCopy *copy, size_t numbe
         at[i] = copy->matrix ? dot3(copy->matrix[i], vertex) + copy->matrix[i][3] : vertex[i];
 }
 
-/* Mirrored triangles are turned, so that they face outwards again. */
+/* Reverses the order of mirrored triangles, so that they face outwards again. */
 static int corner_of(const MeshCopy *copy, int k) { return copy->mirrored && k > 0 ? 3 - k : k; }
 
 void mesh_copy_triangle(const MeshParts *parts, const MeshCopy *copy, size_t number, size_t base,
@@ -66,7 +66,7 @@ void mesh_copy_places(const MeshParts *parts, const MeshCopy *copy, size_t numbe
                sizeof places[k]);
 }
 
-/* A similarity turns directions, and makes them longer by its scale. */
+/* A similarity rotates directions, and makes them longer by its scale. */
 static void rotate(const double (*matrix)[4], float direction[3])
 {
     const double from[3] = {direction[0], direction[1], direction[2]};

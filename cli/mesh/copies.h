@@ -10,7 +10,7 @@
 typedef struct MeshCopy {
     const MeshPart *part;
     const double (*matrix)[4]; /* NULL: it is where it is */
-    bool mirrored;             /* its triangles face inwards unless they are turned */
+    bool mirrored;             /* its triangles face inwards unless their order is reversed */
 } MeshCopy;
 
 /* Calls `visit` for each copy of a body until it returns false; then that is returned. */

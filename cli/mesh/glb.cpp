@@ -317,16 +317,16 @@ int add_times(tinygltf::Model &model, const MeshTrack &track, Times &times)
 }
 
 // A channel for what a node has, unless it stays the same.
-void add_channel(tinygltf::Model &model, int node, const MeshTrack &track, bool turns,
+void add_channel(tinygltf::Model &model, int node, const MeshTrack &track, bool rotates,
                  double lengths, Times &times)
 {
     std::vector<float> values;
     bool               stays = true;
-    const size_t       width = turns ? 4 : 3;
+    const size_t       width = rotates ? 4 : 3;
     for (size_t i = 0; i < track.count; i++)
         for (size_t k = 0; k < width; k++) {
             const MeshPose &pose = track.keys[i].pose;
-            values.push_back((float)(turns ? pose.rotation[k] : lengths * pose.translation[k]));
+            values.push_back((float)(rotates ? pose.rotation[k] : lengths * pose.translation[k]));
             stays = stays && values.back() == values[k];
         }
     if (stays)
@@ -337,13 +337,13 @@ void add_channel(tinygltf::Model &model, int node, const MeshTrack &track, bool 
     sampler.input         = add_times(model, track, times);
     sampler.interpolation = "LINEAR";
     add_accessor(model, 0, TINYGLTF_COMPONENT_TYPE_FLOAT,
-                 turns ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, track.count);
+                 rotates ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, track.count);
     for (float value : values)
         append(model.buffers[0].data, value);
     sampler.output      = end_accessor(model);
     channel.sampler     = (int)animation.samplers.size();
     channel.target_node = node;
-    channel.target_path = turns ? "rotation" : "translation";
+    channel.target_path = rotates ? "rotation" : "translation";
     animation.samplers.push_back(sampler);
     animation.channels.push_back(channel);
 }

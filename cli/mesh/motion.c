@@ -1,9 +1,9 @@
 /*
  * motion.c: how copies move from frame to frame, as keyframes.
  *
- * Each frame is a keyframe.  Between two of them a program turns a copy at an even speed and moves it straight on.
- * Where that is not where the copy belongs, as far as seven places between tell, there is another keyframe in the
- * middle, and so on.
+ * Each frame is a keyframe.  Between two of them a program rotates a copy at an even speed and
+ * moves it straight on.  Where that is not where the copy belongs, as far as seven places between
+ * tell, there is another keyframe in the middle, and so on.
  */
 #include <math.h>
 #include <stddef.h>

@@ -40,15 +40,15 @@ static void find_rotation(const double m[3][3], double q[4])
 
 void mesh_pose_of(const double matrix[3][4], MeshPose *pose)
 {
-    double turn[3][3];
+    double rotation[3][3];
     pose->mirrored = mesh_is_reflection(matrix);
     pose->scale    = length3(matrix[0]);
     for (int i = 0; i < 3; i++) {
         pose->translation[i] = matrix[i][3];
         for (int k = 0; k < 3; k++)
-            turn[i][k] = (pose->mirrored && k == 0 ? -1 : 1) * matrix[i][k] / pose->scale;
+            rotation[i][k] = (pose->mirrored && k == 0 ? -1 : 1) * matrix[i][k] / pose->scale;
     }
-    find_rotation((const double(*)[3])turn, pose->rotation);
+    find_rotation((const double(*)[3])rotation, pose->rotation);
 }
 
 void mesh_pose_between(const MeshPose *a, const MeshPose *b, double share, MeshPose *between)

@@ -10,7 +10,8 @@
 extern "C" {
 #endif
 
-/* A similarity: what is placed is mirrored in the plane x = 0, if it is, then scaled, turned and moved. */
+/* A similarity: what is placed is mirrored in the plane x = 0, if it is, then scaled, rotated and
+   moved. */
 typedef struct MeshPose {
     double translation[3];
     double rotation[4]; /* a unit quaternion x, y, z, w */

@@ -28,7 +28,7 @@ static bool is_whole_png(const char *path, off_t length)
     return whole;
 }
 
-/* Tells whether all chunks that the table of an EXR promises are in the file. */
+/* Tells whether all chunks that the table of an EXR lists are in the file. */
 static bool has_all_chunks(exr_const_context_t context, off_t length)
 {
     exr_storage_t    storage;
