@@ -28,7 +28,7 @@ typedef struct PartBalls {
     double *radii; /* of each, where they differ; else NULL */
 } PartBalls;
 
-/* Whether a point is in a simple solid, in its own space. */
+/* Tells whether a point is in a simple solid, in its own space. */
 typedef struct PartInside {
     enum {
         PART_UNTOLD,     /* it is something else */

@@ -1,8 +1,8 @@
 /*
  * transform.c: affine maps of imported files, as methods of the language.
  *
- * Every matrix is a mirror or none, then a turn, a scaling along the axes, and
- * another turn (its singular value decomposition).  Files mostly have matrices
+ * Every matrix is a mirror or none, then a rotation, a scaling along the axes, and
+ * another rotation (its singular value decomposition).  Files mostly have matrices
  * of which one or two of these suffice.
  */
 #include "import/common/transform.h"
@@ -195,7 +195,7 @@ static void write_rotation(Text *text, double rows[3][3])
     text_add(text, "deg)");
 }
 
-/* Turns g and v so that g[a][b] is 0 (Jacobi). */
+/* Rotates g and v so that g[a][b] is 0 (Jacobi). */
 static void jacobi_rotate(double g[3][3], double v[3][3], int a, int b)
 {
     if (fabs(g[a][b]) <= 1e-13 * sqrt(fabs(g[a][a] * g[b][b])))

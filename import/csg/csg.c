@@ -5,7 +5,7 @@
  *     node  = { "#" } name "(" [ argument { "," argument } ] ")" ( ";" | "{" { node } "}" )
  *     argument = [ name "=" ] value
  *
- * Its z is up, that of scenes is towards the eye: the whole is turned when it is shown.
+ * Its z is up, that of scenes is towards the eye: the whole is rotated when it is shown.
  */
 #include "import/csg/csg.h"
 

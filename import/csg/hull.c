@@ -363,7 +363,8 @@ Part *csg_grown(const CsgNode *node, Part *part, double radius)
     return around;
 }
 
-/* An upright column, where it is only moved and turned about z: its figure as it is seen from above. */
+/* An upright column, where it is only moved and rotated about z: its figure as it is seen from
+   above. */
 static bool upright_column(Import *import, const Part *part, PartColumn *column, double shift[3])
 {
     const Transform *transform = &part->transform;

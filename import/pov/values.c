@@ -266,7 +266,7 @@ static void rotate_about(const double v[3], const double axis[3], double degrees
         to[i] = c * v[i] + s * across[i] + along * u[i];
 }
 
-static bool vector_turned(PovReader *reader, bool by_axis, PovValue *value)
+static bool vector_rotated(PovReader *reader, bool by_axis, PovValue *value)
 {
     PovValue by, angle = {.count = 1};
     if (!pov_condition(reader, value) || !next_argument(reader, &by) ||
@@ -350,7 +350,7 @@ static bool call_special(PovReader *reader, const char *name, PovValue *value)
     } else if (strcmp(name, "seed") == 0) {
         good = pov_condition(reader, value);
     } else if (strcmp(name, "vrotate") == 0 || strcmp(name, "vaxis_rotate") == 0) {
-        good = vector_turned(reader, name[1] == 'a', value);
+        good = vector_rotated(reader, name[1] == 'a', value);
     } else if (strcmp(name, "dimension_size") == 0 || strcmp(name, "dimensions") == 0) {
         good = of_array(reader, name[9] == '_', value);
     } else if (strcmp(name, "select") == 0) {

@@ -46,15 +46,15 @@ static void widen(PovView *view)
 /* A camera is moved as it is at this word: what stands behind it is where it says. */
 static void move_camera(PovReader *reader, PovView *view, const Transform *transform)
 {
-    Transform turn = *transform;
-    memset(turn.shift, 0, sizeof turn.shift);
+    Transform rotation = *transform;
+    memset(rotation.shift, 0, sizeof rotation.shift);
     transform_apply(transform, view->location, view->location);
     transform_apply(transform, view->look_at, view->look_at);
-    transform_apply(&turn, view->direction, view->direction);
-    transform_apply(&turn, view->right, view->right);
-    transform_apply(&turn, view->up, view->up);
+    transform_apply(&rotation, view->direction, view->direction);
+    transform_apply(&rotation, view->right, view->right);
+    transform_apply(&rotation, view->up, view->up);
     if (view->looks)
-        transform_apply(&turn, view->sky, view->sky);
+        transform_apply(&rotation, view->sky, view->sky);
     double slack = 1e-6 * length3(view->right) * length3(view->up);
     if (fabs(dot3(view->right, view->up)) > slack)
         import_note(reader->import, reader->words.word.line, "the camera is not sheared");

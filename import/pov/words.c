@@ -65,13 +65,13 @@ void pov_point(const double q[3], double p[3])
     p[2] = -q[2];
 }
 
-/* About x, then about y, then about z. */
-static Transform turns(const double angles[3])
+/* Rotates about x, then about y, then about z. */
+static Transform rotate_by_angles(const double angles[3])
 {
     Transform transform = transform_identity();
     for (int axis = 0; axis < 3; axis++) {
-        Transform turn = transform_rotate(axis, angles[axis] * DEGREE);
-        transform      = transform_chain(&transform, &turn);
+        Transform rotation = transform_rotate(axis, angles[axis] * DEGREE);
+        transform          = transform_chain(&transform, &rotation);
     }
     return transform;
 }
@@ -149,7 +149,7 @@ bool pov_transform(PovReader *reader, Transform *transform, bool *taken)
             v[i] = v[i] == 0 ? 1 : v[i];
     }
     if (!matrix)
-        next = translate ? transform_move(v) : rotate ? turns(v) : transform_scale(v);
+        next = translate ? transform_move(v) : rotate ? rotate_by_angles(v) : transform_scale(v);
     *transform = transform_chain(transform, &next);
     return true;
 }

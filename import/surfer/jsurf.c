@@ -57,7 +57,7 @@ static bool read_space(const JsurfSurface *surface, const char *key, Space *spac
     return true;
 }
 
-/* The factor by which a space is larger than another that is turned against it at most; 0: not so,
+/* The factor by which a space is larger than another that is rotated against it at most; 0: not so,
    or mirrored.  Files have seven digits. */
 static double space_factor(const Space *space)
 {
@@ -77,7 +77,7 @@ static bool refuse_space(const JsurfSurface *surface, const char *key, const cha
     return import_refuse(surface->import, jsurf_line(surface, key), "`%s` %s", key, why);
 }
 
-/* A turn, without its inverse's need of division. */
+/* Reads a rotation, whose inverse needs no division. */
 static bool read_rotation(const JsurfSurface *surface, const char *key, Space *space)
 {
     if (!read_space(surface, key, space))
@@ -102,17 +102,17 @@ static Space inverse_rotation(const Space *space)
 /* Reads the map from the camera's space to that of the ball, and the scale of the surface. */
 static bool read_spaces(JsurfSurface *surface, Space *camera)
 {
-    Space  whole, turn, own, surfaces;
+    Space  whole, rotation, own, surfaces;
     double zoom = 0;
     if (!read_rotation(surface, "transform_matrix", &whole) ||
-        !read_rotation(surface, "rotation_matrix", &turn) ||
+        !read_rotation(surface, "rotation_matrix", &rotation) ||
         !read_rotation(surface, "camera_transform", &own) ||
         !read_space(surface, "surface_transform_matrix", &surfaces) ||
         !jsurf_numbers(surface, "scale_factor", &zoom, 1))
         return false;
     own           = inverse_rotation(&own);
-    turn          = space_after(&turn, &own);
-    *camera       = space_after(&whole, &turn);
+    rotation      = space_after(&rotation, &own);
+    *camera       = space_after(&whole, &rotation);
     double factor = space_factor(&surfaces), off = 0;
     for (int i = 0; i < 3; i++) {
         off = fmax(off, fabs(surfaces.rows[i][3]));
