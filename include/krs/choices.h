@@ -41,7 +41,7 @@ typedef enum KrsSchedule {
 } KrsSchedule;
 extern const char *const krs_schedule_names[KRS_MAX_CHOICES];
 
-/* Whether heavy components of a scene are marched by one distance, or each by itself:
+/* Says whether heavy components of a scene are marched by one distance, or each by itself:
    KRS_COMPONENTS_TOGETHER and so on. */
 typedef enum KrsComponents {
 #define KRS_COMPONENTS(id, name, about) KRS_COMPONENTS_##id,

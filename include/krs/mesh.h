@@ -81,7 +81,7 @@ void                krs_mesh_free(KrsMesh *mesh);
 KRS_SIZED KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
                                       KrsMesh **simplified);
 
-/* How an item is placed: x -> matrix (x, 1), which turns, moves, mirrors and scales evenly. */
+/* How an item is placed: x -> matrix (x, 1), which rotates, moves, mirrors and scales evenly. */
 typedef struct KrsTransform {
     size_t item;
     double matrix[3][4];
@@ -132,7 +132,7 @@ bool         krs_assembly_visit(const KrsAssembly *assembly, KrsVisitCopy *visit
 /* What the time does to a component, of a scene that was compiled with KrsOptions.motion.  All are false for one that
    stands still. */
 typedef struct KrsMotion {
-    bool moves;    /* parts of it are moved or turned: krs_assemble takes it apart */
+    bool moves;    /* parts of it are moved or rotated: krs_assemble takes it apart */
     bool deforms;  /* something changes its form, or its size: a mesh is that of one time */
     bool recolors; /* its material changes */
 } KrsMotion;

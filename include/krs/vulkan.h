@@ -47,8 +47,8 @@ typedef void KrsValidationCallback(void *user, const char *message);
    caller can tell slow from stuck. */
 typedef void KrsWorkingCallback(void *user);
 
-/* Whether branches skip shapes that are far away for their size.  The default is on, but off on
-   devices of type CPU, which run both sides of a branch. */
+/* Says whether branches skip shapes that are far away for their size.  The default is on, but off
+   on devices of type CPU, which run both sides of a branch. */
 typedef enum KrsEarlyOuts {
     KRS_EARLY_OUTS_DEFAULT,
     KRS_EARLY_OUTS_ON,
