@@ -15,9 +15,9 @@
 #include "live/text/text_edit.h"
 
 /* The angle of a drag over the height of the window, and of a step. */
-#define DRAG_TURN M_PI
-#define STEP_TURN (M_PI / 24)
-#define STEP_MOVE 0.05
+#define DRAG_ORBIT M_PI
+#define STEP_ORBIT (M_PI / 24)
+#define STEP_MOVE  0.05
 /* What a step of the wheel leaves of the distance. */
 #define WHEEL_FACTOR 0.88
 /* Flying passes this part of the distance to the target in a second. */
@@ -32,7 +32,7 @@ static void changed(Viewing *viewing)
     viewing_show(viewing);
 }
 
-static void turn(Viewing *viewing, double right, double up)
+static void orbit(Viewing *viewing, double right, double up)
 {
     krs_camera_orbit(&viewing->view.camera, right, up);
     changed(viewing);
@@ -135,10 +135,10 @@ static void act_perspective(Viewing *viewing)
     changed(viewing);
 }
 
-static void act_turn_left(Viewing *viewing) { turn(viewing, -STEP_TURN, 0); }
-static void act_turn_right(Viewing *viewing) { turn(viewing, STEP_TURN, 0); }
-static void act_turn_up(Viewing *viewing) { turn(viewing, 0, STEP_TURN); }
-static void act_turn_down(Viewing *viewing) { turn(viewing, 0, -STEP_TURN); }
+static void act_orbit_left(Viewing *viewing) { orbit(viewing, -STEP_ORBIT, 0); }
+static void act_orbit_right(Viewing *viewing) { orbit(viewing, STEP_ORBIT, 0); }
+static void act_orbit_up(Viewing *viewing) { orbit(viewing, 0, STEP_ORBIT); }
+static void act_orbit_down(Viewing *viewing) { orbit(viewing, 0, -STEP_ORBIT); }
 static void act_move_left(Viewing *viewing) { pan(viewing, -STEP_MOVE, 0); }
 static void act_move_right(Viewing *viewing) { pan(viewing, STEP_MOVE, 0); }
 static void act_move_up(Viewing *viewing) { pan(viewing, 0, STEP_MOVE); }
@@ -396,9 +396,9 @@ void act_drag(void *user, int button, int modifiers, double right, double down)
                (button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT)))
         pan(viewing, x, -y);
     else if (button == GLFW_MOUSE_BUTTON_LEFT)
-        turn(viewing, -x * DRAG_TURN, y * DRAG_TURN);
+        orbit(viewing, -x * DRAG_ORBIT, y * DRAG_ORBIT);
     else {
-        krs_camera_look(&viewing->view.camera, x * DRAG_TURN / 2, -y * DRAG_TURN / 2);
+        krs_camera_look(&viewing->view.camera, x * DRAG_ORBIT / 2, -y * DRAG_ORBIT / 2);
         changed(viewing);
     }
 }

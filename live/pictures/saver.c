@@ -74,7 +74,7 @@ static void aim(const Saver *saver, View *view)
 {
     const SaveOrder *order = &saver->order;
     const double     i     = saver->frame;
-    if (order->kind == SAVE_TURN)
+    if (order->kind == SAVE_TURNTABLE)
         krs_camera_orbit(&view->camera, 2 * M_PI * i / frames_of(order), 0);
     if (order->kind != SAVE_TIME)
         return;

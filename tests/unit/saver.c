@@ -166,7 +166,7 @@ static void turns_go_around(void **context)
 {
     (void)context;
     KrsCamera camera = stage.order.view.camera;
-    order(SAVE_TURN, 4, false, "turn");
+    order(SAVE_TURNTABLE, 4, false, "turn");
     assert_int_equal(wait_for_it().status, KRS_OK);
     assert_png("turn-0000.png", &camera, stage.order.view.time);
     const double x = camera.eye[0] - camera.target[0], z = camera.eye[2] - camera.target[2];
