@@ -160,7 +160,7 @@ static void draw_reference(Bench *bench, Contest *contest, Subject *subject, Ima
         fail("%s: the picture is empty", contest->row->name);
 }
 
-/* Whether the shader by hand is of the same scene. */
+/* Compares the shader by hand with the reference: it must be of the same scene. */
 static void compare_geometry(Bench *bench, Contest *contest, const Subject *subject,
                              const Image *reference)
 {
@@ -175,22 +175,22 @@ static void compare_geometry(Bench *bench, Contest *contest, const Subject *subj
 
 /* ---- Running ---- */
 
-static void run_entry(Bench *bench, Subject *subject, Entry *entry, size_t turn, Image *image)
+static void run_entry(Bench *bench, Subject *subject, Entry *entry, size_t repeat, Image *image)
 {
     if (entry->written)
-        entry->runs[turn] = handwritten_run(bench, entry->written, image);
+        entry->runs[repeat] = handwritten_run(bench, entry->written, image);
     else
-        entry->runs[turn] = subject_render(bench, subject, &entry->options, &entry->stats, image);
+        entry->runs[repeat] = subject_render(bench, subject, &entry->options, &entry->stats, image);
 }
 
 static void run_all(Bench *bench, Contest *contest, Subject *subject, const Image *reference)
 {
-    for (size_t turn = 0; turn < bench->repeats; turn++)
+    for (size_t repeat = 0; repeat < bench->repeats; repeat++)
         for (size_t i = 0; i < contest->count; i++) {
             Entry *entry = &contest->entries[i];
-            bool   last  = turn + 1 == bench->repeats;
+            bool   last  = repeat + 1 == bench->repeats;
             Image  image;
-            run_entry(bench, subject, entry, turn, last ? &image : NULL);
+            run_entry(bench, subject, entry, repeat, last ? &image : NULL);
             if (!last)
                 continue;
             entry->coverage  = image_coverage(&image);

@@ -57,12 +57,12 @@ static void take_figures(Bench *bench, Growth *growth, size_t i, Tree *tree)
 
 static void run_in_turns(Bench *bench, Tree *trees, size_t count, const KrsRenderOptions *options)
 {
-    for (size_t turn = 0; turn < bench->repeats; turn++)
+    for (size_t repeat = 0; repeat < bench->repeats; repeat++)
         for (size_t i = 0; i < count; i++) {
-            Tree *tree            = &trees[i];
-            tree->pictures[turn]  = subject_render(bench, &tree->subject, options, &tree->stats,
-                                                   NULL);
-            tree->distances[turn] = bench_shader_run(bench, &tree->distance, GROUPS);
+            Tree *tree              = &trees[i];
+            tree->pictures[repeat]  = subject_render(bench, &tree->subject, options, &tree->stats,
+                                                     NULL);
+            tree->distances[repeat] = bench_shader_run(bench, &tree->distance, GROUPS);
         }
 }
 

@@ -33,7 +33,10 @@ double image_coverage(const Image *image)
 }
 
 /* Returns how far two depths differ, in widths of a pixel at depth b. */
-static double apart(float a, float b, double pixel) { return fabs((double)a - b) / (pixel * b); }
+static double depth_difference(float a, float b, double pixel)
+{
+    return fabs((double)a - b) / (pixel * b);
+}
 
 typedef enum Difference { SAME, OTHER_FATE, OTHER_DEPTH } Difference;
 
@@ -41,7 +44,7 @@ static Difference difference(float a, float b, double pixel)
 {
     if (isinf(a) || isinf(b))
         return isinf(a) && isinf(b) ? SAME : OTHER_FATE;
-    return apart(a, b, pixel) > DEPTH_STEP ? OTHER_DEPTH : SAME;
+    return depth_difference(a, b, pixel) > DEPTH_STEP ? OTHER_DEPTH : SAME;
 }
 
 static bool is_inside(const Image *image, uint32_t x, uint32_t y, double pixel)
@@ -71,7 +74,7 @@ Agreement image_compare(const Image *image, const Image *reference, double pixel
             found.inside_differs += inside && here != SAME;
             found.inside += inside;
             if (errors && inside && here != OTHER_FATE && !isinf(reference->depth[i]))
-                errors[both++] = apart(image->depth[i], reference->depth[i], pixel);
+                errors[both++] = depth_difference(image->depth[i], reference->depth[i], pixel);
         }
     found.depth_error = both > 0 ? median(errors, both) : NAN;
     free(errors);

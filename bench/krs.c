@@ -131,7 +131,7 @@ static void set_out(Bench *bench, Runner *runners, int stand, uint32_t levels)
     runner->options.error        = PERMITTED_ERROR;
     runner->options.no_occlusion = true; /* which is not told either */
     runner->subject              = find_subject(bench, runners, stand, levels);
-    runner->runs                 = arena_new_array(bench->arena, Times, MAX_TURNS);
+    runner->runs                 = arena_new_array(bench->arena, Times, MAX_REPEATS);
     subject_prewarm(bench, runner->subject, &runner->options, &stats);
 }
 
@@ -145,11 +145,11 @@ static void close_subjects(Runner *runners)
 }
 
 static void run_once(Bench *bench, Sequences *sequences, Runner *runner, int stand, size_t at,
-                     size_t turn)
+                     size_t repeat)
 {
     KrsRenderStats stats;
     Image          image;
-    runner->runs[turn] = subject_render(bench, runner->subject, &runner->options, &stats, &image);
+    runner->runs[repeat] = subject_render(bench, runner->subject, &runner->options, &stats, &image);
     sequences->coverage[stand][at]    = image_coverage(&image);
     sequences->evaluations[stand][at] = stats.evaluations_per_ray;
     sequences->flops[stand][at]       = stats.flops_per_evaluation;
@@ -162,15 +162,15 @@ static void run_levels(Bench *bench, Sequences *sequences, size_t at, uint32_t l
     Runner runners[STAND_COUNT];
     for (int i = 0; i < STAND_COUNT; i++)
         set_out(bench, runners, i, levels);
-    for (size_t turn = 0; turn < sequences->turns; turn++)
+    for (size_t repeat = 0; repeat < sequences->repeats; repeat++)
         for (int i = 0; i < STAND_COUNT; i++)
             if (runners[i].runs)
-                run_once(bench, sequences, &runners[i], i, at, turn);
+                run_once(bench, sequences, &runners[i], i, at, repeat);
     for (int i = 0; i < STAND_COUNT; i++) {
         sequences->ms[i][at] = NAN;
         if (!runners[i].runs)
             continue;
-        Times times                = times_median(runners[i].runs, sequences->turns);
+        Times times                = times_median(runners[i].runs, sequences->repeats);
         sequences->ms[i][at]       = march_ms(&times);
         sequences->beams_ms[i][at] = times.phase[KRS_PHASE_BEAMS];
         sequences->cpu_ms[i][at]   = times.cpu;
@@ -189,9 +189,9 @@ static Line line_of(const Sequences *sequences, int stand)
 void sequences_run(Bench *bench, Sequences *sequences)
 {
     const uint32_t *levels = bench->quick ? quick_levels : all_levels;
-    *sequences = (Sequences){.turns = bench->repeats < MAX_TURNS ? bench->repeats : MAX_TURNS,
-                             .count = bench->quick ? sizeof quick_levels / sizeof quick_levels[0]
-                                                   : sizeof all_levels / sizeof all_levels[0]};
+    *sequences = (Sequences){.repeats = bench->repeats < MAX_REPEATS ? bench->repeats : MAX_REPEATS,
+                             .count   = bench->quick ? sizeof quick_levels / sizeof quick_levels[0]
+                                                     : sizeof all_levels / sizeof all_levels[0]};
     for (size_t i = 0; i < sequences->count; i++) {
         tell("sequences and compounds of %u levels", levels[i]);
         sequences->levels[i] = levels[i];

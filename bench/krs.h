@@ -8,7 +8,7 @@
 #include "bench/bench.h"
 #include "bench/measure.h"
 
-enum { MAX_LEVELS = 8, MAX_TURNS = 3 };
+enum { MAX_LEVELS = 8, MAX_REPEATS = 3 };
 
 typedef enum Stand {
     STAND_TREE_STRAIGHTFORWARD,
@@ -42,7 +42,7 @@ extern const StandRow stand_rows[STAND_COUNT];
 
 /* What is not a number was left out. */
 typedef struct Sequences {
-    size_t count, turns; /* numbers of levels; pictures of each */
+    size_t count, repeats; /* numbers of levels; pictures of each */
     double levels[MAX_LEVELS];
     double ms[STAND_COUNT][MAX_LEVELS];     /* beams, primary rays and normals: the median */
     double cpu_ms[STAND_COUNT][MAX_LEVELS]; /* of all threads, for the whole picture */

@@ -6,7 +6,7 @@
 #include <math.h>
 
 /* These equal the numbers of peak.comp. */
-enum { TURNS = 1024, STEPS_A_TURN = 8, LANES = 64, VECTOR = 4 };
+enum { ITERATIONS = 1024, STEPS_PER_ITERATION = 8, LANES = 64, VECTOR = 4 };
 
 /* A dispatch lasts this long at least. */
 static const double MIN_MS = 50;
@@ -15,7 +15,7 @@ static void compile(Bench *bench, Peak *peak, uint32_t chains)
 {
     static const char path[] = "bench/peak.comp";
     Text              sizes  = {.arena = bench->arena};
-    text_format(&sizes, "#define CHAINS %u\n#define TURNS %d\n", chains, TURNS);
+    text_format(&sizes, "#define CHAINS %u\n#define ITERATIONS %d\n", chains, ITERATIONS);
     peak->chains = chains;
     bench_shader_create(
         bench, &peak->shader,
@@ -30,7 +30,8 @@ static double run(Bench *bench, Peak *peak)
         peak->groups *= 2;
         ms = bench_shader_run(bench, &peak->shader, peak->groups);
     }
-    return 2.0 * VECTOR * peak->chains * STEPS_A_TURN * TURNS * LANES * peak->groups / ms / 1e6;
+    return 2.0 * VECTOR * peak->chains * STEPS_PER_ITERATION * ITERATIONS * LANES * peak->groups /
+           ms / 1e6;
 }
 
 void peak_open(Bench *bench, Peak *peak)

@@ -22,7 +22,7 @@ void main()
     vec4  chain[CHAINS], scale = vec4(0.999, 0.998, 0.997, 0.996), step = vec4(0.001 * seed);
     for (int i = 0; i < CHAINS; i++)
         chain[i] = vec4(seed) + float(i);
-    for (int turn = zero; turn < TURNS; turn++) {
+    for (int iteration = zero; iteration < ITERATIONS; iteration++) {
         TWICE TWICE TWICE TWICE
     }
     vec4 sum = vec4(0.0);

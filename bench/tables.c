@@ -302,7 +302,7 @@ static void tell_sequences(const Bench *bench, const Results *results, Text *tex
                 " primary rays and normals; cpu: of all threads, for the whole picture;"
                 " kflop/ray: the time of a ray times the peak of the device, measured."
                 "  Medians of %zu.\n",
-                s->turns);
+                s->repeats);
     for (size_t i = 0; i < s->count; i++)
         tell_levels(bench, results, i, text);
     tell_beside(s, text);

@@ -58,10 +58,10 @@ static void run_row(Bench *bench, Triangles *triangles, size_t at)
                      row->doublings - growing_rows[i].doublings);
         subject_prewarm(bench, &subjects[i], &options, &stats);
     }
-    for (size_t turn = 0; turn < bench->repeats; turn++)
+    for (size_t repeat = 0; repeat < bench->repeats; repeat++)
         for (int i = 0; i < GROWING_COUNT; i++)
             if (is_there(row, i))
-                runs[i][turn] = subject_render(bench, &subjects[i], &options, NULL, NULL);
+                runs[i][repeat] = subject_render(bench, &subjects[i], &options, NULL, NULL);
     for (int i = 0; i < GROWING_COUNT; i++) {
         triangles->ns_per_ray[i][at] = NAN;
         if (!is_there(row, i))

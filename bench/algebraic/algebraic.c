@@ -192,14 +192,14 @@ static void run_methods(const Fixture *fixture, const Subject *subject, const Vi
         methods[m].unresolved  = picture->stats.unresolved;
         krs_picture_free(picture);
     }
-    for (size_t turn = 0; turn < repeats; turn++)
+    for (size_t repeat = 0; repeat < repeats; repeat++)
         for (int m = 0; m < VARIANTS; m++) {
-            double      before     = cpu_ms();
-            KrsPicture *picture    = shoot(fixture, &variants[m]);
-            methods[m].cpu[turn]   = cpu_ms() - before;
-            methods[m].frame[turn] = picture->stats.total_ms;
-            methods[m].rays[turn]  = picture->stats.phase_ms[KRS_PHASE_BEAMS] +
-                                    picture->stats.phase_ms[KRS_PHASE_PRIMARY];
+            double      before       = cpu_ms();
+            KrsPicture *picture      = shoot(fixture, &variants[m]);
+            methods[m].cpu[repeat]   = cpu_ms() - before;
+            methods[m].frame[repeat] = picture->stats.total_ms;
+            methods[m].rays[repeat]  = picture->stats.phase_ms[KRS_PHASE_BEAMS] +
+                                      picture->stats.phase_ms[KRS_PHASE_PRIMARY];
             krs_picture_free(picture);
         }
 }

@@ -126,14 +126,14 @@ void julias_run(Julias *julias, const char *krs, size_t repeats)
     char        folder[FOLDER_ROOM];
     Run         run = {0};
     folder_make(folder);
-    for (size_t turn = 0; turn <= repeats; turn++) {
+    for (size_t repeat = 0; repeat <= repeats; repeat++) {
         run_krs_julia(krs, folder, seen, &run);
-        if (turn > 0) { /* the first fills the cache */
+        if (repeat > 0) { /* the first fills the cache */
             runs_take(&julias->ours, &run);
-            julias->judged[0] = turn == 1 ? judge_julia(seen) : julias->judged[0];
+            julias->judged[0] = repeat == 1 ? judge_julia(seen) : julias->judged[0];
             run_pov_julia(folder, seen, &run);
             runs_take(&julias->pov, &run);
-            julias->judged[1] = turn == 1 ? judge_julia(seen) : julias->judged[1];
+            julias->judged[1] = repeat == 1 ? judge_julia(seen) : julias->judged[1];
         }
     }
     folder_remove(folder);

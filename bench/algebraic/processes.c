@@ -80,27 +80,27 @@ void run_krs(const char *krs, const char *folder, const char *cache, const char 
 static const char *const names_of_ours[OURS] = {"krs, nothing cached", "krs",
                                                 "krs, octahedron normals"};
 
-static void run_ours(const char *krs, const char *folder, size_t turn, const char *text,
+static void run_ours(const char *krs, const char *folder, size_t repeat, const char *text,
                      Runs ours[OURS])
 {
     static char *const stencil[] = {"--normals", "octahedron", NULL};
     Run                run       = {0};
     char               cache[32];
-    snprintf(cache, sizeof cache, "cache%zu", turn);
+    snprintf(cache, sizeof cache, "cache%zu", repeat);
     run_krs(krs, folder, cache, text, NULL, &run);
     runs_take(&ours[COLD], &run);
     run_krs(krs, folder, cache, text, NULL, &run);
     runs_take(&ours[WARM], &run);
     run_krs(krs, folder, "stencil", text, stencil, &run);
-    if (turn == 0) /* that has only filled the cache */
+    if (repeat == 0) /* that has only filled the cache */
         run_krs(krs, folder, "stencil", text, stencil, &run);
     runs_take(&ours[STENCIL], &run);
 }
 
-static bool takes_part(const Program *program, const Subject *subject, size_t turn)
+static bool takes_part(const Program *program, const Subject *subject, size_t repeat)
 {
     return program_is_installed(program->command) && subject->degree <= program->largest_degree &&
-           subject->degree >= program->min_degree && (!program->slow || turn == 0);
+           subject->degree >= program->min_degree && (!program->slow || repeat == 0);
 }
 
 void processes_run(Processes *processes, const char *krs, const Subject *subject, const View *view,
@@ -108,11 +108,11 @@ void processes_run(Processes *processes, const char *krs, const Subject *subject
 {
     char folder[FOLDER_ROOM];
     folder_make(folder);
-    for (size_t turn = 0; turn < repeats; turn++) {
-        run_ours(krs, folder, turn, text, processes->ours);
+    for (size_t repeat = 0; repeat < repeats; repeat++) {
+        run_ours(krs, folder, repeat, text, processes->ours);
         for (size_t i = 0; i < program_count; i++) {
             Run run = {0};
-            if (!takes_part(&programs[i], subject, turn))
+            if (!takes_part(&programs[i], subject, repeat))
                 continue;
             if (!programs[i].run(&programs[i], folder, subject, view, &run))
                 give_up(programs[i].name, "it failed");

@@ -271,7 +271,7 @@ static bool run_pov_isosurface(const Program *program, const char *folder, const
 /* ---- surf ---- */
 
 /* Writes a text with u, v, w in the place of x, y, z, which are those of the picture. */
-static void write_turned(FILE *file, const char *text)
+static void write_rotated(FILE *file, const char *text)
 {
     for (; *text; text++)
         fputc(*text >= 'x' && *text <= 'z' ? *text - 'x' + 'u' : *text, file);
@@ -289,11 +289,11 @@ static void write_surf(const char *path, const char *picture, const Subject *sub
                 view -> right[i] * unit, view -> up[i] * unit, view -> back[i] * unit);
     for (const Definition *d = definitions; d->name; d++) {
         fprintf(file, "poly %s = ", d->name);
-        write_turned(file, d->text);
+        write_rotated(file, d->text);
         fprintf(file, ";\n");
     }
     fprintf(file, "surface = ");
-    write_turned(file, subject->text);
+    write_rotated(file, subject->text);
     fprintf(file,
             ";\nperspective = parallel;\nclip = sphere;\nradius = %.17g;\n"
             "clip_front = 100;\nclip_back = -100;\n"

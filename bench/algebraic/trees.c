@@ -174,14 +174,14 @@ void trees_run(Trees *trees, const char *krs, size_t repeats)
     folder_make(folder);
     snprintf(path, sizeof path, "%s/tree.pov", folder);
     trees->branches = write_pov_tree(path);
-    for (size_t turn = 0; turn <= repeats; turn++) {
+    for (size_t repeat = 0; repeat <= repeats; repeat++) {
         Run run = {0};
         for (int i = 0; i < 2; i++) {
             run_krs_tree(krs, folder, levels[i], &run);
-            if (turn > 0) /* the first fills the cache */
+            if (repeat > 0) /* the first fills the cache */
                 runs_take(&trees->ours[i], &run);
         }
-        if (turn > 0) {
+        if (repeat > 0) {
             run_pov_tree(folder, &run);
             runs_take(&trees->written, &run);
         }

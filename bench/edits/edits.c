@@ -22,7 +22,7 @@
 #include "bench/fixture.h"
 #include "bench/view/number_edit.h"
 
-enum { NUMBERS = 3, TURNS = 3, MAX_EDITS = NUMBERS * TURNS, TIMEOUT = 600 };
+enum { NUMBERS = 3, REPEATS = 3, MAX_EDITS = NUMBERS * REPEATS, TIMEOUT = 600 };
 static const char picture_name[] = "picture.png";
 
 extern char **environ;
@@ -179,7 +179,7 @@ static size_t time_watch(Trial *trial, Edit edits[MAX_EDITS])
     const clockid_t clock = find_clock(trial, process);
     for (size_t i = 0; i < trial->count; i++)
         edit_watched(trial, &trial->numbers[i], stats, clock);
-    for (int turn = 0; turn < TURNS; turn++)
+    for (int repeat = 0; repeat < REPEATS; repeat++)
         for (size_t i = 0; i < trial->count; i++)
             edits[count++] = edit_watched(trial, &trial->numbers[i], stats, clock);
     kill(process, SIGTERM);
@@ -287,7 +287,7 @@ static void print_head(const Sheet *sheet)
         "its own, "
         "`krs render --specialize structure`, with full caches, from its start to its end; then "
         "the same without the frame, and of all processors.\n\n",
-        TURNS, NUMBERS);
+        REPEATS, NUMBERS);
     sheet_print(sheet, "| scene | edit | frame | less | slowest | used | process | less | used |\n"
                        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
 }

@@ -20,7 +20,7 @@
 #include "krs/vulkan.h"
 #include "runtime/writer/png.h"
 
-enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, TURNS = 3, PATH_SAMPLES = 4 };
+enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, REPEATS = 3, PATH_SAMPLES = 4 };
 
 static Sheet sheet;
 
@@ -35,11 +35,11 @@ static KrsPicture *shoot(const Fixture *fixture, const KrsRenderOptions *options
 {
     KrsPicture *picture = NULL;
     *least              = INFINITY;
-    for (int turn = 0; turn <= TURNS; turn++) { /* the first compiles */
+    for (int repeat = 0; repeat <= REPEATS; repeat++) { /* the first compiles */
         krs_picture_free(picture);
         double begun = cpu_ms();
         picture      = fixture_render(fixture, options);
-        *least       = turn > 0 ? fmin(*least, cpu_ms() - begun) : *least;
+        *least       = repeat > 0 ? fmin(*least, cpu_ms() - begun) : *least;
     }
     return picture;
 }

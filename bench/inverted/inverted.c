@@ -75,14 +75,14 @@ static double hits_of(const KrsPicture *picture)
     return (double)count / PIXELS;
 }
 
-static void measure(const Fixture *fixture, const KrsPicture *fine, Row *row, size_t turn)
+static void measure(const Fixture *fixture, const KrsPicture *fine, Row *row, size_t repeat)
 {
     double      used            = cpu_ms();
     KrsPicture *picture         = shoot(fixture, row->trace, row->beams, 0.25);
     used                        = cpu_ms() - used;
-    row->cpu_ms                 = turn == 0 ? used : fmin(row->cpu_ms, used);
+    row->cpu_ms                 = repeat == 0 ? used : fmin(row->cpu_ms, used);
     const KrsRenderStats *stats = &picture->stats;
-    row->ms[turn]    = stats->phase_ms[KRS_PHASE_BEAMS] + stats->phase_ms[KRS_PHASE_PRIMARY];
+    row->ms[repeat]  = stats->phase_ms[KRS_PHASE_BEAMS] + stats->phase_ms[KRS_PHASE_PRIMARY];
     row->evaluations = stats->evaluations_per_ray;
     row->unresolved  = stats->unresolved;
     row->hits        = hits_of(picture);
@@ -106,11 +106,11 @@ static void compare(KrsRenderer *renderer, const struct Subject *subject, size_t
     Fixture     fixture          = fixture_open(renderer, subject->path, NULL, false);
     KrsPicture *fine             = shoot(&fixture, KRS_TRACE_PLAIN, false, 0.01);
     /* Nothing is timed that has not run before. */
-    for (size_t turn = 0; turn <= repeats; turn++)
+    for (size_t repeat = 0; repeat <= repeats; repeat++)
         for (size_t i = 0; i < 2 * TRACES; i++) {
             rows[i].trace = traces[i % TRACES];
             rows[i].beams = i < TRACES;
-            measure(&fixture, fine, &rows[i], turn ? turn - 1 : 0);
+            measure(&fixture, fine, &rows[i], repeat ? repeat - 1 : 0);
         }
     for (size_t i = 0; i < 2 * TRACES; i++)
         print_row(subject->name, &rows[i], repeats);

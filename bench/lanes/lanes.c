@@ -28,7 +28,8 @@ static double now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* Spheres in rows, put on and taken off by turns, so that no list of alike parts is made of them. */
+/* Spheres in rows, put on and taken off alternately, so that no list of alike parts is made of
+   them. */
 static void write_scene(char *text, size_t size, int spheres)
 {
     size_t length = (size_t)snprintf(text, size, "let s0 = sphere(0.5);\n");

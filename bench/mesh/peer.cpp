@@ -26,7 +26,7 @@ using Function      = double (*)(Point);
 
 /* Rotates a point by -20 degrees around (1, 2, 3), so that no axis is that of a grid
    (Rodrigues). */
-static Point turned(Point p)
+static Point rotated(Point p)
 {
     const double angle = -20 * M_PI / 180, c = std::cos(angle), s = std::sin(angle);
     const double length = std::sqrt(14), n[3] = {1 / length, 2 / length, 3 / length};
@@ -44,7 +44,7 @@ static double ring(double x, double y, double z, double major, double minor)
 
 static double torus(Point p)
 {
-    p = turned(p);
+    p = rotated(p);
     return ring(p.x(), p.y(), p.z(), 1, 0.4);
 }
 

@@ -199,7 +199,7 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
 
 /* ---- What filtering costs: one sample of a large picture, with it and without, in turns ---- */
 
-enum { LARGE_WIDTH = 1280, LARGE_HEIGHT = 720, TURNS = 7 };
+enum { LARGE_WIDTH = 1280, LARGE_HEIGHT = 720, REPEATS = 7 };
 
 static void time_once(const Fixture *fixture, bool plain, double *normals, double *all)
 {
@@ -217,16 +217,16 @@ static void time_once(const Fixture *fixture, bool plain, double *normals, doubl
 static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
 {
     Fixture fixture = fixture_of(renderer, flight);
-    double  normals[2][TURNS], all[2][TURNS], prewarm;
+    double  normals[2][REPEATS], all[2][REPEATS], prewarm;
     krs_state_set_time(fixture.state, 0);
     for (int plain = 0; plain < 2; plain++)
         time_once(&fixture, plain, &prewarm, &prewarm);
-    for (int turn = 0; turn < TURNS; turn++)
+    for (int repeat = 0; repeat < REPEATS; repeat++)
         for (int plain = 0; plain < 2; plain++)
-            time_once(&fixture, plain, &normals[plain][turn], &all[plain][turn]);
-    double filtered = median(all[0], TURNS), unfiltered = median(all[1], TURNS);
+            time_once(&fixture, plain, &normals[plain][repeat], &all[plain][repeat]);
+    double filtered = median(all[0], REPEATS), unfiltered = median(all[1], REPEATS);
     sheet_print(&sheet, "| %s | %.1f | %.1f | %.0f | %.0f | %.2f |\n", flight->name,
-                median(normals[1], TURNS), median(normals[0], TURNS), unfiltered, filtered,
+                median(normals[1], REPEATS), median(normals[0], REPEATS), unfiltered, filtered,
                 filtered / unfiltered);
     fixture_close(&fixture);
 }
@@ -275,7 +275,7 @@ int main(int count, char **arguments)
                 "\n%dx%d, one sample, medians of %d in turns, ms\n\n"
                 "| scene | normals | normals, filtered | total | total, filtered | times |\n"
                 "| --- | --- | --- | --- | --- | --- |\n",
-                LARGE_WIDTH, LARGE_HEIGHT, TURNS);
+                LARGE_WIDTH, LARGE_HEIGHT, REPEATS);
     for (int i = 0; i < FLIGHTS; i++)
         if (is_wanted(&flights[i], count, arguments))
             time_filter(renderer, &flights[i]);

@@ -17,7 +17,7 @@
 #include "krs/vulkan.h"
 #include "runtime/shaders/stencil.h"
 
-enum { POINTS = 2000, WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, TURNS = 5 };
+enum { POINTS = 2000, WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, REPEATS = 5 };
 
 static const double reaches[] = {1e-5, 5e-5, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 2e-2};
 enum { REACHES = sizeof reaches / sizeof *reaches };
@@ -242,7 +242,7 @@ static double difference(const KrsPicture *a, const KrsPicture *b)
 static void print_pictures(KrsRenderer *renderer, const char *name, const char *path,
                            const char *text)
 {
-    static double ms[KRS_NORMALS_COUNT][TURNS], total[KRS_NORMALS_COUNT][TURNS];
+    static double ms[KRS_NORMALS_COUNT][REPEATS], total[KRS_NORMALS_COUNT][REPEATS];
     Fixture       fixture = fixture_open(renderer, path, text, true);
     KrsPicture   *truth   = shoot(&fixture, KRS_NORMALS_ANALYTIC, 0, true);
     double        apart[KRS_NORMALS_COUNT];
@@ -251,16 +251,16 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
         apart[normals]      = difference(truth, picture);
         krs_picture_free(picture);
     }
-    for (int turn = 0; turn < TURNS; turn++)
+    for (int repeat = 0; repeat < REPEATS; repeat++)
         for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++) {
-            KrsPicture *picture  = shoot(&fixture, normals, 0, false);
-            ms[normals][turn]    = picture->stats.phase_ms[KRS_PHASE_NORMALS];
-            total[normals][turn] = picture->stats.total_ms;
+            KrsPicture *picture    = shoot(&fixture, normals, 0, false);
+            ms[normals][repeat]    = picture->stats.phase_ms[KRS_PHASE_NORMALS];
+            total[normals][repeat] = picture->stats.total_ms;
             krs_picture_free(picture);
         }
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++)
         sheet_print(&sheet, "| %s | %s | %.2f | %.1f | %.2g |\n", name, krs_normals_names[normals],
-                    median(ms[normals], TURNS), median(total[normals], TURNS), apart[normals]);
+                    median(ms[normals], REPEATS), median(total[normals], REPEATS), apart[normals]);
     fflush(stdout);
     krs_picture_free(truth);
     fixture_close(&fixture);
@@ -278,7 +278,7 @@ int main(void)
                 "and the median\nangle in degrees between these normals and those by derivatives, "
                 "without filtering\n\n"
                 "| scene | normals | ms | total ms | apart |\n| --- | --- | --- | --- | --- |\n",
-                WIDTH, HEIGHT, TURNS);
+                WIDTH, HEIGHT, REPEATS);
     for (int i = 0; i < SURFACES; i++)
         print_pictures(renderer, surfaces[i].name, surfaces[i].name, surfaces[i].text);
     print_pictures(renderer, "flange", "bench/scenes/csg.krs", NULL);

@@ -154,7 +154,7 @@ static double count_pictures(Trial *trial, void (*step)(Trial *trial, int i), ui
     return count / (now() - begun);
 }
 
-static void turn(Trial *trial, int i)
+static void orbit(Trial *trial, int i)
 {
     (void)i;
     krs_camera_orbit(&trial->view.camera, 0.02, 0);
@@ -211,7 +211,7 @@ static void measure(const Sheet *sheet, const char *path)
     await(&trial, false);
     const double first  = now() - begun;
     const Edit   edit   = time_edits(&trial);
-    const double camera = count_pictures(&trial, turn, &turned);
+    const double camera = count_pictures(&trial, orbit, &turned);
     const double slider = count_pictures(&trial, slide, &slid);
     char         edited[64];
     if (edit.clock < 0)
