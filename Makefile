@@ -50,7 +50,7 @@ RUNTIME  := $(foreach room,device tracer/research tracer integrators film displa
 # What programs link with of other versions, too (api/README.md).
 API      := $(call sources,api)
 IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
-LIVE     := $(foreach room,live/text live/pictures live/window live,$(call sources,$(room)))
+LIVE     := $(foreach room,profile live/text live/pictures live/window live,$(call sources,$(room)))
 LIVE_BRIDGE := live/window/gui.cpp
 CLI      := $(foreach room,cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli,$(call sources,$(room)))
 CLI_BRIDGE := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cpp

@@ -317,6 +317,38 @@ static void print_json(const Options *options, const KrsScene *scene)
     puts(json.bytes);
 }
 
+/* Options that have a meaning with one of two others alone. */
+typedef struct OnlyWith {
+    OptionId id;
+    bool     print, cost;
+} OnlyWith;
+
+KrsStatus info_check_options(const Options *options)
+{
+    static const OnlyWith rows[] = {
+        {OPTION_PRINT_UNITS, .print = true}, {OPTION_AXIS, .print = true},
+        {OPTION_PRINT_ERROR, .print = true}, {OPTION_OVERHANG, .print = true},
+        {OPTION_NOZZLE, .print = true},      {OPTION_DENSITY, .print = true},
+        {OPTION_COMPONENT, .print = true},   {OPTION_WITHIN, .print = true},
+        {OPTION_TIME, true, true},           {OPTION_SET, true, true},
+        {OPTION_ZONE, true, true},           {OPTION_COST_SIZE, .cost = true},
+        {OPTION_COST_CAMERA, .cost = true},  {OPTION_COST_SECONDS, .cost = true},
+        {OPTION_COST_RAYS, .cost = true},    {OPTION_DEVICE, .cost = true},
+        {OPTION_CACHE, .cost = true}};
+    if (options->print && options->cost)
+        return say_usage(options, "--print and --cost are two questions; ask one");
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        const OnlyWith *row = &rows[k];
+        if (option_is_given(options, row->id) && !(options->print && row->print) &&
+            !(options->cost && row->cost))
+            return say_usage(options, "--%s is for %s", option_info[row->id].name,
+                             !row->cost    ? "the figures of --print"
+                             : !row->print ? "the times of --cost"
+                                           : "the figures of --print and the times of --cost");
+    }
+    return KRS_OK;
+}
+
 KrsStatus command_info(Options *options)
 {
     KrsScene *scene  = NULL;
@@ -325,6 +357,8 @@ KrsStatus command_info(Options *options)
         status = scene_open(options, options->files.items[0], &scene);
     if (status == KRS_OK && options->print)
         status = info_print(options, scene);
+    else if (status == KRS_OK && options->cost)
+        status = info_cost(options, scene);
     else if (status == KRS_OK && options->json)
         print_json(options, scene);
     else if (status == KRS_OK)

@@ -1,5 +1,6 @@
 /*
- * info.h: one run of `krs info`: info.c shows what a scene consists of, info_print.c the figures of a part.
+ * info.h: one run of `krs info`: info.c shows what a scene consists of, info_print.c the figures of a part, info_cost.c
+ * what parts cost.
  */
 #ifndef KRS_INFO_H
 #define KRS_INFO_H
@@ -7,9 +8,11 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/console.h"
 
-/* Refuses options that have no meaning without --print. */
+/* Refuses options that have no meaning without --print, or without --cost. */
 KrsStatus info_check_options(const Options *options);
 /* Measures what the scene shows, and prints that. */
 KrsStatus info_print(const Options *options, const KrsScene *scene);
+/* Times what the parts of the scene cost, and prints that. */
+KrsStatus info_cost(const Options *options, const KrsScene *scene);
 
 #endif

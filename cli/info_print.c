@@ -317,16 +317,3 @@ KrsStatus info_print(const Options *options, const KrsScene *scene)
     krs_state_free(state);
     return status;
 }
-
-KrsStatus info_check_options(const Options *options)
-{
-    static const OptionId of_print[] = {OPTION_PRINT_UNITS, OPTION_AXIS,   OPTION_PRINT_ERROR,
-                                        OPTION_OVERHANG,    OPTION_NOZZLE, OPTION_DENSITY,
-                                        OPTION_COMPONENT,   OPTION_WITHIN, OPTION_TIME,
-                                        OPTION_SET,         OPTION_ZONE};
-    for (size_t k = 0; k < sizeof of_print / sizeof *of_print && !options->print; k++)
-        if (option_is_given(options, of_print[k]))
-            return say_usage(options, "--%s is for the figures of --print",
-                             option_info[of_print[k]].name);
-    return KRS_OK;
-}

@@ -20,39 +20,6 @@
 #include "cli/shell/supervise.h"
 #include "cli/picture/whole.h"
 
-static KrsStatus say_unknown_camera(const Options *options, const char *const *names, size_t count)
-{
-    const char *nearest = nearest_name(options->camera, names, count);
-    Text        known   = {.arena = options->arena};
-    for (size_t i = 0; i < count; i++)
-        text_format(&known, "%s`%s`", i ? ", " : "", names[i]);
-    if (nearest)
-        return say_usage(options, "the scene has no camera `%s`; did you mean `%s`?%s%s",
-                         options->camera, nearest, count > 1 ? " It has " : "",
-                         count > 1 ? known.bytes : "");
-    return say_usage(options, "the scene has no camera `%s`; it has %s", options->camera,
-                     count ? known.bytes : "none with a name; give it one: `camera side { ... }`");
-}
-
-static KrsStatus find_camera(const Options *options, const KrsScene *scene, size_t *camera)
-{
-    size_t       count = krs_camera_count(scene), named = 0;
-    const char **names = arena_new_array(options->arena, const char *, count + 1);
-    *camera            = 0;
-    for (size_t i = 0; options->camera && i < count; i++) {
-        const char *name = krs_camera_name(scene, i);
-        if (name && strcmp(name, options->camera) == 0) {
-            *camera = i;
-            return KRS_OK;
-        }
-        if (name)
-            names[named++] = name;
-    }
-    if (!options->camera)
-        return KRS_OK;
-    return say_unknown_camera(options, names, named);
-}
-
 static bool show_progress(void *user, double done)
 {
     Render *render = user;
@@ -148,7 +115,7 @@ static KrsStatus choose_how(Render *render)
     KrsRenderOptions *how     = &render->how;
     KrsView           view;
     size_t            camera;
-    KrsStatus         status = find_camera(options, render->scene, &camera);
+    KrsStatus         status = scene_camera(options, render->scene, &camera);
     if (status == KRS_OK)
         status = krs_state_view(render->state, camera, &view);
     if (status != KRS_OK)

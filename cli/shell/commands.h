@@ -51,6 +51,8 @@ void scene_print_counts(const DiagnosticSink *sink);
 
 /* A frame with --set, --zone and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
 KrsStatus scene_state(const Options *options, const KrsScene *scene, KrsState **state);
+/* The number of the camera that --camera names, or of the first; KRS_BAD_ARGUMENT and words: there is none. */
+KrsStatus scene_camera(const Options *options, const KrsScene *scene, size_t *camera);
 /* Words as well where the frame cannot have this time. */
 KrsStatus scene_set_time(const Options *options, KrsState *state, double time);
 /* "a/ring.krs" is called "ring". */

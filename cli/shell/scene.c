@@ -63,14 +63,14 @@ static KrsSpecialize find_specialize(const Options *options)
 static bool shows_pictures(const Options *options)
 {
     return options->command == COMMAND_RENDER || options->command == COMMAND_WATCH ||
-           options->command == COMMAND_VIEW;
+           options->command == COMMAND_VIEW || (options->command == COMMAND_INFO && options->cost);
 }
 
 /* Those that say something of a figure, or write it. */
 static bool takes_figures(const Options *options)
 {
     return options->command == COMMAND_SLICE || options->command == COMMAND_CHECK ||
-           (options->command == COMMAND_INFO && !options->print);
+           (options->command == COMMAND_INFO && !options->print && !options->cost);
 }
 
 KrsOptions scene_options(DiagnosticSink *sink, const char *path)
@@ -323,6 +323,39 @@ KrsStatus scene_state(const Options *options, const KrsScene *scene, KrsState **
         *state = NULL;
     }
     return status;
+}
+
+static KrsStatus say_unknown_camera(const Options *options, const char *const *names, size_t count)
+{
+    const char *nearest = nearest_name(options->camera, names, count);
+    Text        known   = {.arena = options->arena};
+    for (size_t i = 0; i < count; i++)
+        text_format(&known, "%s`%s`", i ? ", " : "", names[i]);
+    if (nearest)
+        return say_usage(options, "the scene has no camera `%s`; did you mean `%s`?%s%s",
+                         options->camera, nearest, count > 1 ? " It has " : "",
+                         count > 1 ? known.bytes : "");
+    return say_usage(options, "the scene has no camera `%s`; it has %s", options->camera,
+                     count ? known.bytes : "none with a name; give it one: `camera side { ... }`");
+}
+
+KrsStatus scene_camera(const Options *options, const KrsScene *scene, size_t *camera)
+{
+    size_t       count = krs_camera_count(scene), named = 0;
+    const char **names = arena_new_array(options->arena, const char *, count + 1);
+    *camera            = 0;
+    for (size_t i = 0; options->camera && i < count; i++) {
+        const char *name = krs_camera_name(scene, i);
+        if (name && strcmp(name, options->camera) == 0) {
+            *camera = i;
+            return KRS_OK;
+        }
+        if (name)
+            names[named++] = name;
+    }
+    if (!options->camera)
+        return KRS_OK;
+    return say_unknown_camera(options, names, named);
 }
 
 void json_number(Text *json, double number)

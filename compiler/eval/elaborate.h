@@ -124,6 +124,7 @@ struct Elaboration {
     struct Iterated
         *iterated; /* such a loop, while its body is tried with a leaf for its variable; or NULL */
     bool beams;    /* someone asks for capsules that are shown */
+    Span without;  /* what the expression there makes is empty (hollow.c); source 0: nothing is */
     const Syntax *joining; /* a call that joins shapes, or a `show`, of which
                                     the arguments are evaluated; or NULL */
 };
@@ -177,6 +178,12 @@ Environment bind(Elaboration *e, const Environment *env, const char *name, Value
 bool check_shape_count(Elaboration *e, const List *list, Span span);
 /* The value of a top-level definition, evaluated when it is first needed, at `use`. */
 Value run_definition(Elaboration *e, Definition *definition, Span use);
+
+/* ---- hollow.c: a scene without a part ---- */
+/* The place as a span of the texts that are loaded; source 0: none of them is the author's and has that name. */
+Span location_span(const Sources *sources, const KrsLocation *location);
+/* A shape as an empty one in its box, and shapes of a list likewise; any other value as it is. */
+Value value_hollow(Elaboration *e, Value value);
 
 /* ---- forget.c: what is needed while one element or one iteration of a loop is evaluated ---- */
 typedef struct EvaluationMark {

@@ -320,6 +320,13 @@ static Value evaluate_inner(Elaboration *e, const Environment *env, const Syntax
     }
 }
 
+static bool is_left_out(const Elaboration *e, Span span)
+{
+    const Span *without = &e->without;
+    return span.start == without->start && span.end == without->end &&
+           span.source == without->source && without->source != 0;
+}
+
 Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     if (!count_steps(e, 1, syntax->span))
@@ -331,5 +338,5 @@ Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax)
     e->depth++;
     Value value = evaluate_inner(e, env, syntax);
     e->depth--;
-    return value;
+    return is_left_out(e, syntax->span) ? value_hollow(e, value) : value;
 }

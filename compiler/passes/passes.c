@@ -128,6 +128,8 @@ KrsStatus pass_elaborate(Compilation *c)
                                   .outlines      = c->options->outlines,
                                   .parameterises = parameterises(c),
                                   .textures      = {.arena = &c->scene->arena}};
+    if (c->options->without)
+        e.without = location_span(&c->sources, c->options->without);
     elaborate(&e);
     graph_drop_older(graph);
     if (!c->request->inspect) {

@@ -14,6 +14,19 @@ static const char *retain_text(Compilation *c, const char *text)
     return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
 }
 
+/* Where the author's texts have something; zeros for what a text of the library has.  Mostly it is in the text of
+   the one before, which may be NULL. */
+static KrsLocation retain_location(Compilation *c, Span span, const KrsLocation *before)
+{
+    const Source *source = &c->sources.items[span.source];
+    if (span.source == 0 || source->library)
+        return (KrsLocation){0};
+    const bool same     = before && before->source && !strcmp(before->source, source->name);
+    Position   position = source_position(source, span.start);
+    return (KrsLocation){same ? before->source : retain_text(c, source->name), span.start, span.end,
+                         position.line, position.column};
+}
+
 static void retain_components(Compilation *c)
 {
     KrsScene    *scene     = c->scene;
@@ -34,6 +47,7 @@ static void retain_components(Compilation *c)
                                                .levels     = from->shape->levels,
                                                .instances  = from->shape->instances,
                                                .inversions = from->shape->inversions};
+        to->location          = retain_location(c, from->span, i ? &to[-1].location : NULL);
         for (int k = 0; k < 3; k++) {
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
@@ -238,6 +252,12 @@ static void retain_options(Compilation *c)
     c->scene->name         = retain_text(c, c->name);
     c->scene->options      = *c->options;
     c->scene->options.root = retain_text(c, c->options->root);
+    if (c->options->without) {
+        KrsLocation *without      = arena_new(&c->scene->arena, KrsLocation);
+        *without                  = *c->options->without;
+        without->source           = retain_text(c, without->source);
+        c->scene->options.without = without;
+    }
 }
 
 KrsStatus pass_retain(Compilation *c)

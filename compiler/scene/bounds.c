@@ -111,8 +111,9 @@ static bool say_the_same(const KrsBound *a, const KrsBound *b)
     return a->depth == b->depth && a->line == b->line && a->column == b->column &&
            a->slope == b->slope && a->exact == b->exact && a->estimate == b->estimate &&
            a->levels == b->levels && a->instances == b->instances && a->similar == b->similar &&
-           a->same == b->same && !strcmp(a->name, b->name) && !strcmp(a->source, b->source) &&
-           !strcmp(a->rule, b->rule);
+           a->same == b->same && a->start == b->start && a->end == b->end &&
+           !a->given == !b->given && (!a->given || !strcmp(a->given, b->given)) &&
+           !strcmp(a->name, b->name) && !strcmp(a->source, b->source) && !strcmp(a->rule, b->rule);
 }
 
 static const char *copy_text(Listing *l, const char *text)
@@ -132,6 +133,7 @@ static const KrsBound *lasting(Listing *l, const KrsBound *about)
     copy->name     = copy_text(l, about->name);
     copy->source   = copy_text(l, about->source);
     copy->rule     = copy_text(l, about->rule);
+    copy->given    = about->given ? copy_text(l, about->given) : NULL;
     return copy;
 }
 
@@ -143,6 +145,7 @@ static BoundEntry entry_for(Listing *l, const Shape *shape, Box box, uint32_t de
                             .similar   = similar,
                             .same      = same,
                             .name      = shape->name,
+                            .given     = shape->given,
                             .source    = source->name,
                             .rule      = rule_of(l, shape),
                             .slope     = shape->slope,
@@ -154,6 +157,10 @@ static BoundEntry entry_for(Listing *l, const Shape *shape, Box box, uint32_t de
         Position position = source_position(source, shape->span.start);
         about.line        = position.line;
         about.column      = position.column;
+    }
+    if (!source->library) {
+        about.start = shape->span.start;
+        about.end   = shape->span.end;
     }
     BoundEntry entry = {.about = lasting(l, &about)};
     for (int i = 0; i < 3; i++) {

@@ -26,7 +26,7 @@ extern "C" {
 #define KRS_VERSION_MINOR 2
 #define KRS_VERSION_PATCH 0
 /* Grows by 1 whenever the headers have something new: a function, a member, a choice. */
-#define KRS_API_VERSION 2
+#define KRS_API_VERSION 3
 
 /*
  * Structs that a program owns get new members, always behind the others: options, what is told of a scene, answers.
@@ -127,6 +127,13 @@ typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length
    that diagnostics show; it lives until the callback returns. */
 typedef void KrsOpenedCallback(void *user, const char *path);
 
+/* A place of a text: bytes [start, end) of the file or text of this name. */
+typedef struct KrsLocation {
+    const char *source;
+    uint32_t    start, end;
+    uint32_t    line, column; /* of its beginning, from 1 */
+} KrsLocation;
+
 /* Says where numbers of the scene's text are in its shaders. */
 typedef enum KrsSpecialize {
     KRS_SPECIALIZE_NUMBERS,   /* in their text, as literals: fast frames */
@@ -176,6 +183,9 @@ typedef struct KrsOptions {
     KrsOpenedCallback *opened;      /* may be NULL */
     void              *opened_user; /* handed to `opened` */
     bool research; /* compile steps for KRS_TRACE_TAYLOR and all methods behind it, too */
+    /* Shapes that the expression at this place of the author's texts makes are empty, in their boxes: the scene without
+       a part, to see what that costs.  Line and column do not count.  NULL: all are as they are written. */
+    const KrsLocation *without;
 } KrsOptions;
 
 /* Compiles a text in memory, or a file.  `name` is the text's name in diagnostics, and paths of
@@ -410,14 +420,8 @@ typedef struct KrsCamera {
    is the default.  The name is NULL if the camera has none, and lives as long as the scene. */
 size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);
-/* The place of a camera's block in the text: bytes [start, end) of the file or text of this name,
-   from `camera` to behind the `}`.  KRS_BAD_ARGUMENT: there is no such camera, or the compiler
-   places it. */
-typedef struct KrsLocation {
-    const char *source;
-    uint32_t    start, end;
-    uint32_t    line, column; /* of its beginning, from 1 */
-} KrsLocation;
+/* The place of a camera's block in the text, from `camera` to behind the `}`.  KRS_BAD_ARGUMENT: there is no such
+   camera, or the compiler places it. */
 KRS_SIZED KrsStatus krs_camera_location(const KrsScene *scene, size_t index, KrsLocation *location);
 /* A camera at the state's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
    index. */
@@ -429,15 +433,16 @@ typedef struct KrsComponent {
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
     double      slope;           /* the derived bound on the slope of its expression */
     KRS_WAS(bool per_state, bool per_frame,
-            "per_state"); /* `slope` is that of the first state; each has its own */
-    bool     exact;       /* the distance is exact outside wherever docs/math.md says so */
-    bool     estimate;    /* nothing is proven of the distance; else it is a bound */
-    bool     figure;      /* a plane figure: KrsOptions.figures */
-    uint32_t levels;      /* number of reflections of its outermost sequence, or 0 */
-    double   instances;   /* number of generators with all their copies */
-    uint32_t inversions;  /* maps that invert, in its outermost sequence or `.transform` */
-    double   flops;       /* multiply-adds to evaluate its distance at a point; its share
+            "per_state");   /* `slope` is that of the first state; each has its own */
+    bool        exact;      /* the distance is exact outside wherever docs/math.md says so */
+    bool        estimate;   /* nothing is proven of the distance; else it is a bound */
+    bool        figure;     /* a plane figure: KrsOptions.figures */
+    uint32_t    levels;     /* number of reflections of its outermost sequence, or 0 */
+    double      instances;  /* number of generators with all their copies */
+    uint32_t    inversions; /* maps that invert, in its outermost sequence or `.transform` */
+    double      flops;      /* multiply-adds to evaluate its distance at a point; its share
                                     where many that are alike are evaluated together */
+    KrsLocation location;   /* of the expression that is shown; zeros where the library shows it */
 } KrsComponent;
 
 size_t krs_component_count(const KrsScene *scene);
@@ -463,7 +468,9 @@ typedef struct KrsBound {
     double      instances;
     /* How many parts of the same structure, made at the same place, have no entry. */
     KRS_WAS(uint32_t similar, uint32_t alike, "similar");
-    size_t same; /* number from 1 of the entry that lists its parts; 0: this one */
+    size_t      same;       /* number from 1 of the entry that lists its parts; 0: this one */
+    uint32_t    start, end; /* bytes of `source`; zeros where that is a text of the library */
+    const char *given;      /* what the author calls it, by the `let` that has it first; or NULL */
 } KrsBound;
 
 /* The number of entries, at most 256; 0 if there is no such component.  *more, unless NULL, becomes
