@@ -1,5 +1,5 @@
 /*
- * assemble.c: krs_assemble: the parts of a scene as meshes, and where their copies are.
+ * assemble.c: krs_assemble meshes the parts of a scene, and finds where their copies are.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "mesh/mesh.h"
 #include "mesh/similarity.h"
 
-/* Items that a search for how far one reaches may look at. */
+/* Items that a search for how far one reaches may visit. */
 enum { MAX_VISITS = 1 << 20 };
 /* What sticks out of a mirror by so much of the size is rounding. */
 static const double ROUNDING_OF_MIRRORS = 1e-9;
@@ -22,11 +22,11 @@ typedef struct Assembler {
     KrsAssembly          *to;
     ReachSearch           search;
     double               *scales;         /* of items: how much larger a copy is, at most */
-    bool                 *separate;       /* of the components that are lowered: taken apart */
+    bool                 *separate;       /* of lowered components: has items of its own */
     size_t                meshed, meshes; /* for the fraction of the work */
 } Assembler;
 
-/* ---- how items are placed ---- */
+/* ---- transforms ---- */
 
 static double number_of(const Assembler *a, Node node, int component)
 {
@@ -71,7 +71,7 @@ static void read_transform(const Assembler *a, const AssemblyTransform *from, Kr
     }
 }
 
-/* The items of the scene; behind them are one of what is not taken apart, and one of all. */
+/* Copies the items of the scene, with room for one of what is not separated, and one of all. */
 static bool copy_items(Assembler *a)
 {
     size_t       items = a->from->items.count, components = a->state->scene->component_count;
@@ -99,7 +99,7 @@ static bool copy_items(Assembler *a)
     return true;
 }
 
-/* ---- which components are taken apart ---- */
+/* ---- which components are separated ---- */
 
 static bool is_cut(Assembler *a, const AssemblyTransform *transform)
 {
@@ -112,7 +112,7 @@ static bool is_cut(Assembler *a, const AssemblyTransform *transform)
     return reach_along(&a->search, transform->item, similarity_identity, normal, most) > most;
 }
 
-/* Tells whether an item, or one that it is made of, is cut; `asked` has answers + 1. */
+/* Tells whether a mirror cuts an item, or one that it is made of; `asked` has answers + 1. */
 static bool has_cuts(Assembler *a, size_t number, char *asked)
 {
     const AssemblyItem *item = &a->from->items.items[number];
@@ -133,7 +133,7 @@ static bool is_wanted(const Assembler *a, size_t lowered)
            a->state->scene->lowered[a->options->component - 1] == lowered;
 }
 
-/* False: none is. */
+/* Chooses the components that are separated; returns false if none is. */
 static bool choose_components(Assembler *a, char *asked)
 {
     const uint32_t *of_component = a->from->of_component;
@@ -147,7 +147,7 @@ static bool choose_components(Assembler *a, char *asked)
     return any;
 }
 
-/* ---- all ---- */
+/* ---- the whole ---- */
 
 static void place_still(KrsAssembly *to, size_t item)
 {
@@ -156,7 +156,7 @@ static void place_still(KrsAssembly *to, size_t item)
     memcpy(transform->matrix, similarity_identity, sizeof transform->matrix);
 }
 
-/* An item for what is not taken apart, if there is such, and one for all. */
+/* Adds an item for what is not separated, if there is such, and one for all. */
 static void add_last_items(Assembler *a)
 {
     KrsAssembly *to    = a->to;
@@ -172,7 +172,8 @@ static void add_last_items(Assembler *a)
     to->items[to->item_count++] = (KrsItem){.first = first, .count = to->transform_count - first};
 }
 
-/* How many copies items have, how large, and where one is, from all down to the meshes. */
+/* Counts the copies of items, and finds how large they are and where the first is, from the whole
+   down to the meshes. */
 static void count_copies(Assembler *a)
 {
     KrsAssembly *to   = a->to;
@@ -229,7 +230,7 @@ static KrsStatus mesh_part(Assembler *a, size_t number)
     return mesh_item(a, number, &solid);
 }
 
-/* What is not taken apart, as one mesh. */
+/* Makes one mesh of what is not separated. */
 static KrsStatus mesh_rest(Assembler *a, size_t number)
 {
     const KrsScene *scene  = a->state->scene;
@@ -281,9 +282,9 @@ static void find_box(Assembler *a)
     }
 }
 
-/* ---- what is asked for ---- */
+/* ---- entry points ---- */
 
-/* What moves would stand still where it is not taken apart. */
+/* Tells whether something that moves would stand still, since it is not separated. */
 static bool stands_still(const Assembler *a)
 {
     for (size_t i = 0; a->from->motions && i < a->state->scene->component_count; i++)
@@ -344,7 +345,7 @@ KrsStatus krs_assemble(KrsState *state, const KrsMeshOptions *options, KrsAssemb
     return status;
 }
 
-/* Tells whether a mirror cuts what a copy is made of. */
+/* Tells whether a mirror cuts an item of which there are copies. */
 static bool any_is_cut(Assembler *a)
 {
     for (size_t i = 0; i < a->to->item_count; i++)

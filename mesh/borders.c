@@ -1,8 +1,10 @@
 /*
- * borders.c: triangles are looked at in many points, and edges are split where the material changes along them.
+ * borders.c: samples triangles at many points, and splits edges where the material changes along
+ * them.
  *
- * Both triangles of an edge are split at the same vertex, so the mesh stays closed.  A straight border through a triangle is an
- * edge at once; where one bends, its triangles are halved until it is near enough.
+ * Both triangles of an edge are split at the same vertex, so the mesh stays closed.  A straight
+ * border through a triangle is an edge at once; where one bends, its triangles are halved until it
+ * is near enough.
  */
 #include "mesh/borders.h"
 
@@ -18,19 +20,19 @@
 #include "mesh/common/numbering.h"
 
 enum { MAX_ROUNDS = 64, PROBES = 64, HALVINGS = 45 };
-/* In errors: how far points are apart, if that is enough, and from edges, where the mesh may belong to the neighbour; how near to a vertex an
-   edge is not split. */
+/* In errors: the spacing of samples, their margin to edges, where the mesh may belong to the
+   neighbour, and how near to a vertex no edge is split. */
 static const double SPACING = 2, MARGIN = 1.5, NEAR_VERTEX = 0.25;
-/* Points are no nearer than this part of the size of the mesh, however small the error is. */
+/* The least spacing, as a part of the size of the mesh. */
 static const double MIN_SPACING = 1.0 / 500;
-/* Parts of the height of a triangle: the most that MARGIN is; and how far from an edge the place is where it is
-   split. */
+/* Parts of the height of a triangle: the largest margin, and the distance to an edge at which its
+   split is searched. */
 static const double MAX_MARGIN = 1.0 / 3, AT_EDGE = 1e-4;
 
-/* Where to split the edges of a triangle, from corner k to the next; 0: not. */
-typedef struct Wish {
+/* Where to split the edges of a triangle, from corner k to the next; 0: nowhere. */
+typedef struct SplitPoints {
     double at[3];
-} Wish;
+} SplitPoints;
 
 typedef struct Borders {
     Memory                memory;
@@ -49,10 +51,10 @@ typedef struct Borders {
     struct {
         uint32_t *items;
         size_t    count, capacity;
-    } fresh;             /* triangles to be looked at */
+    } fresh;             /* triangles to be sampled */
     bool         *mixed; /* of all triangles */
-    Wish         *wishes;
-    double        error, spacing; /* in the scene: of the mesh, and of points */
+    SplitPoints  *split_points;
+    double        error, spacing; /* in the scene: the mesh's, and that of samples */
     bool          normals;        /* materials depend on them */
     int           round;
     atomic_size_t next;
@@ -61,15 +63,15 @@ typedef struct Borders {
 
 /* ---- materials at points ---- */
 
-/* A triangle in the scene; `margin` is the least weight that points have of each corner. */
-typedef struct Look {
+/* A triangle in the scene; `margin` is the least weight of each corner in a sample. */
+typedef struct Sampling {
     Borders  *b;
     KrsState *state;
-    bool      asks;                                 /* whether the mesh is still wanted */
+    bool      asks; /* reports progress, and stops if that says so */
     double    corners[3][3], margin[3], heights[3]; /* of the corners */
     double    lengths[3];                           /* of the edges from them */
     int       longest;
-} Look;
+} Sampling;
 
 static uint64_t mix_in(uint64_t label, const void *bytes, size_t size)
 {
@@ -78,7 +80,7 @@ static uint64_t mix_in(uint64_t label, const void *bytes, size_t size)
     return label;
 }
 
-/* A number that different materials have in common seldom: a hash (FNV-1a) of what is known of them. */
+/* Returns a hash (FNV-1a) of all properties of the material. */
 static uint64_t label_of(const KrsHit *hit)
 {
     uint64_t label = 14695981039346656037u;
@@ -88,18 +90,19 @@ static uint64_t label_of(const KrsHit *hit)
     return mix_in(label, &hit->material, sizeof hit->material);
 }
 
-static void find_labels(Look *look, const double (*weights)[3], size_t count, uint64_t *labels)
+static void find_labels(Sampling *sampling, const double (*weights)[3], size_t count,
+                        uint64_t *labels)
 {
     double points[PROBES][3];
     KrsHit hits[PROBES];
     for (size_t i = 0; i < count; i++) {
         memset(points[i], 0, sizeof points[i]);
         for (int k = 0; k < 3; k++)
-            add_scaled3(points[i], points[i], weights[i][k], look->corners[k]);
+            add_scaled3(points[i], points[i], weights[i][k], sampling->corners[k]);
     }
-    if (state_probe(look->state, (const double(*)[3])points, count, look->b->normals, hits) !=
-        KRS_OK)
-        atomic_store(&look->b->failed, true);
+    if (state_probe(sampling->state, (const double(*)[3])points, count, sampling->b->normals,
+                    hits) != KRS_OK)
+        atomic_store(&sampling->b->failed, true);
     else
         for (size_t i = 0; i < count; i++)
             labels[i] = label_of(&hits[i]);
@@ -117,8 +120,8 @@ static void point_of_row(const Row *row, double share, double weights[3])
         weights[k] = row->from[k] + share * (row->to[k] - row->from[k]);
 }
 
-/* The first step behind which another label is than `label`; the number of steps + 1: all have it. */
-static size_t find_change(Look *look, const Row *row, uint64_t label)
+/* Returns the first step whose label is not `label`; the number of steps + 1 if all have it. */
+static size_t find_change(Sampling *sampling, const Row *row, uint64_t label)
 {
     double   weights[PROBES][3];
     uint64_t labels[PROBES];
@@ -127,35 +130,36 @@ static size_t find_change(Look *look, const Row *row, uint64_t label)
         for (size_t i = 0; i < now; i++)
             point_of_row(row, row->steps ? (double)(first + i) / (double)row->steps : 0.5,
                          weights[i]);
-        find_labels(look, (const double(*)[3])weights, now, labels);
+        find_labels(sampling, (const double(*)[3])weights, now, labels);
         for (size_t i = 0; i < now; i++)
-            if (labels[i] != label || atomic_load(&look->b->failed))
+            if (labels[i] != label || atomic_load(&sampling->b->failed))
                 return first + i;
     }
     return row->steps + 1;
 }
 
-static uint64_t label_in(Look *look, const Row *row, double share)
+static uint64_t label_in(Sampling *sampling, const Row *row, double share)
 {
     double   weights[1][3];
     uint64_t label = 0;
     point_of_row(row, share, weights[0]);
-    find_labels(look, (const double(*)[3])weights, 1, &label);
+    find_labels(sampling, (const double(*)[3])weights, 1, &label);
     return label;
 }
 
 /* ---- a triangle ---- */
 
-static size_t steps_along(const Look *look, double length)
+static size_t steps_along(const Sampling *sampling, double length)
 {
-    return (size_t)ceil(length / look->b->spacing);
+    return (size_t)ceil(length / sampling->b->spacing);
 }
 
-/* Along the edge from a corner, with this weight of the corner across from it, up to parts of the margins. */
-static Row row_along(const Look *look, int corner, double weight, double part)
+/* Returns a row along the edge from a corner, with this weight of the opposite corner, up to parts
+   of the margins. */
+static Row row_along(const Sampling *sampling, int corner, double weight, double part)
 {
     int    next = (corner + 1) % 3, across = (corner + 2) % 3;
-    double least = part * look->margin[corner], min_next = part * look->margin[next];
+    double least = part * sampling->margin[corner], min_next = part * sampling->margin[next];
     Row    row       = {{0, 0, 0}, {0, 0, 0}, 0};
     row.from[across] = row.to[across] = weight;
     row.from[next]                    = min_next;
@@ -163,73 +167,74 @@ static Row row_along(const Look *look, int corner, double weight, double part)
     row.from[corner]                  = 1 - weight - min_next;
     row.to[next]                      = 1 - weight - least;
     double share                      = row.from[corner] - row.to[corner];
-    row.steps = share > 0 ? steps_along(look, share * look->lengths[corner]) : 0;
+    row.steps = share > 0 ? steps_along(sampling, share * sampling->lengths[corner]) : 0;
     return row;
 }
 
-static void open_look(Look *look, const uint32_t triangle[3])
+static void open_sampling(Sampling *sampling, const uint32_t triangle[3])
 {
-    const Borders *b = look->b;
+    const Borders *b = sampling->b;
     double         along[3], across[3], product[3];
     for (int k = 0; k < 3; k++) {
         const double *at = b->vertices.items[triangle[k]];
         for (int i = 0; i < 3; i++)
-            look->corners[k][i] = b->copy ? dot3(b->copy[i], at) + b->copy[i][3] : at[i];
+            sampling->corners[k][i] = b->copy ? dot3(b->copy[i], at) + b->copy[i][3] : at[i];
     }
-    add_scaled3(along, look->corners[1], -1, look->corners[0]);
-    add_scaled3(across, look->corners[2], -1, look->corners[0]);
+    add_scaled3(along, sampling->corners[1], -1, sampling->corners[0]);
+    add_scaled3(across, sampling->corners[2], -1, sampling->corners[0]);
     cross3(along, across, product);
-    look->longest = 0;
+    sampling->longest = 0;
     for (int k = 0; k < 3; k++) {
-        look->lengths[k] = distance3(look->corners[k], look->corners[(k + 1) % 3]);
-        if (look->lengths[k] > look->lengths[look->longest])
-            look->longest = k;
+        sampling->lengths[k] = distance3(sampling->corners[k], sampling->corners[(k + 1) % 3]);
+        if (sampling->lengths[k] > sampling->lengths[sampling->longest])
+            sampling->longest = k;
     }
     for (int k = 0; k < 3; k++) {
-        double length    = look->lengths[(k + 1) % 3];
-        double height    = length > 0 ? length3(product) / length : 0;
-        look->heights[k] = height;
-        look->margin[k]  = height * MAX_MARGIN > MARGIN * b->error ? MARGIN * b->error / height
-                                                                   : MAX_MARGIN;
+        double length        = sampling->lengths[(k + 1) % 3];
+        double height        = length > 0 ? length3(product) / length : 0;
+        sampling->heights[k] = height;
+        sampling->margin[k]  = height * MAX_MARGIN > MARGIN * b->error ? MARGIN * b->error / height
+                                                                       : MAX_MARGIN;
     }
 }
 
-/* Each round is taken for half of the work that is left. */
-static void ask(const Look *look)
+/* Reports progress, where each round counts as half of the work that is left. */
+static void ask(const Sampling *sampling)
 {
-    Borders              *b       = look->b;
+    Borders              *b       = sampling->b;
     const KrsMeshOptions *options = b->options;
-    double                looked  = fmin(1, (double)atomic_load(&b->next) / (double)b->fresh.count);
-    if (look->asks && options->progress &&
-        !options->progress(options->user, 1 - ldexp(1 - 0.5 * looked, -b->round)))
+    double                sampled = fmin(1, (double)atomic_load(&b->next) / (double)b->fresh.count);
+    if (sampling->asks && options->progress &&
+        !options->progress(options->user, 1 - ldexp(1 - 0.5 * sampled, -b->round)))
         atomic_store(&b->stopped, true);
 }
 
-/* Tells whether another material is somewhere than in the middle. */
-static bool has_two(Look *look)
+/* Tells whether some sample has another material than the middle. */
+static bool has_two(Sampling *sampling)
 {
     static const Row MIDDLE = {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 0};
-    int              base = look->longest, across = (base + 2) % 3;
-    double           least = look->margin[across];
-    double           most  = 1 - look->margin[base] - look->margin[(base + 1) % 3];
-    size_t           rows  = steps_along(look, (most - least) * look->heights[across]);
-    uint64_t         label = label_in(look, &MIDDLE, 0);
-    for (size_t i = 0; i <= rows && !atomic_load(&look->b->stopped); i++) {
+    int              base = sampling->longest, across = (base + 2) % 3;
+    double           least = sampling->margin[across];
+    double           most  = 1 - sampling->margin[base] - sampling->margin[(base + 1) % 3];
+    size_t           rows  = steps_along(sampling, (most - least) * sampling->heights[across]);
+    uint64_t         label = label_in(sampling, &MIDDLE, 0);
+    for (size_t i = 0; i <= rows && !atomic_load(&sampling->b->stopped); i++) {
         double share = rows ? (double)i / (double)rows : 0;
-        Row    row   = row_along(look, base, least + share * (most - least), 1);
-        ask(look);
-        if (find_change(look, &row, label) <= row.steps)
+        Row    row   = row_along(sampling, base, least + share * (most - least), 1);
+        ask(sampling);
+        if (find_change(sampling, &row, label) <= row.steps)
             return true;
     }
     return false;
 }
 
-/* Where the material changes between two points of a row that have these labels. */
-static double halve(Look *look, const Row *row, double low, double high, uint64_t label)
+/* Returns where the material changes between two points of a row, of which the first has this
+   label. */
+static double halve(Sampling *sampling, const Row *row, double low, double high, uint64_t label)
 {
     for (int i = 0; i < HALVINGS; i++) {
         double middle = 0.5 * (low + high);
-        if (label_in(look, row, middle) == label)
+        if (label_in(sampling, row, middle) == label)
             low = middle;
         else
             high = middle;
@@ -237,28 +242,29 @@ static double halve(Look *look, const Row *row, double low, double high, uint64_
     return 0.5 * (low + high);
 }
 
-/* Where it changes behind a step of a row. */
-static double halve_step(Look *look, const Row *row, size_t step, uint64_t label)
+/* Returns where the material changes before a step of a row. */
+static double halve_step(Sampling *sampling, const Row *row, size_t step, uint64_t label)
 {
     double part = 1 / (double)row->steps;
-    return halve(look, row, (double)(step - 1) * part, (double)step * part, label);
+    return halve(sampling, row, (double)(step - 1) * part, (double)step * part, label);
 }
 
-/* Where to split an edge: where the material first changes along it, or else, a margin away from it; 0: nowhere. */
-static double find_split(Look *look, int corner)
+/* Returns where to split an edge: where the material first changes along it, or a margin away from
+   it; 0: nowhere. */
+static double find_split(Sampling *sampling, int corner)
 {
     int    next   = (corner + 1) % 3;
-    double least  = NEAR_VERTEX * look->b->error / look->lengths[corner];
-    double inner  = look->margin[(corner + 2) % 3];
-    Row    rows[] = {row_along(look, corner, AT_EDGE * inner, AT_EDGE),
-                     row_along(look, corner, inner, 1)};
+    double least  = NEAR_VERTEX * sampling->b->error / sampling->lengths[corner];
+    double inner  = sampling->margin[(corner + 2) % 3];
+    Row    rows[] = {row_along(sampling, corner, AT_EDGE * inner, AT_EDGE),
+                     row_along(sampling, corner, inner, 1)};
     for (int i = 0; i < 2; i++) {
-        uint64_t label = label_in(look, &rows[i], 0);
-        size_t   step  = rows[i].steps ? find_change(look, &rows[i], label) : 1;
+        uint64_t label = label_in(sampling, &rows[i], 0);
+        size_t   step  = rows[i].steps ? find_change(sampling, &rows[i], label) : 1;
         double   weights[3];
         if (step == 0 || step > rows[i].steps)
             continue;
-        point_of_row(&rows[i], halve_step(look, &rows[i], step, label), weights);
+        point_of_row(&rows[i], halve_step(sampling, &rows[i], step, label), weights);
         double at = weights[next] / (weights[corner] + weights[next]);
         if (at > least && at < 1 - least)
             return at;
@@ -266,46 +272,47 @@ static double find_split(Look *look, int corner)
     return 0;
 }
 
-/* Edges along which the material changes are split there; if there is none, the longest one in its middle. */
-static void find_wish(Look *look, Wish *wish)
+/* Splits edges where the material changes along them; if there are none, the longest in its
+   middle. */
+static void find_split_points(Sampling *sampling, SplitPoints *points)
 {
     bool any = false;
     for (int k = 0; k < 3; k++) {
-        wish->at[k] = find_split(look, k);
-        any         = any || wish->at[k] > 0;
+        points->at[k] = find_split(sampling, k);
+        any           = any || points->at[k] > 0;
     }
     if (!any)
-        wish->at[look->longest] = 0.5;
+        points->at[sampling->longest] = 0.5;
 }
 
-static void look_at(Look *look, uint32_t triangle)
+static void examine(Sampling *sampling, uint32_t triangle)
 {
-    Borders *b = look->b;
-    open_look(look, b->triangles.items[triangle]);
-    memset(&b->wishes[triangle], 0, sizeof(Wish));
-    b->mixed[triangle] = look->lengths[look->longest] > b->spacing && has_two(look);
+    Borders *b = sampling->b;
+    open_sampling(sampling, b->triangles.items[triangle]);
+    memset(&b->split_points[triangle], 0, sizeof(SplitPoints));
+    b->mixed[triangle] = sampling->lengths[sampling->longest] > b->spacing && has_two(sampling);
     if (b->mixed[triangle])
-        find_wish(look, &b->wishes[triangle]);
+        find_split_points(sampling, &b->split_points[triangle]);
 }
 
-static void look_at_some(void *task, size_t part, size_t parts)
+static void examine_some(void *task, size_t part, size_t parts)
 {
     enum { SOME = 16 };
-    Borders *b    = task;
-    Look     look = {.b = b, .state = b->states[part], .asks = part == 0};
+    Borders *b        = task;
+    Sampling sampling = {.b = b, .state = b->states[part], .asks = part == 0};
     (void)parts;
     while (!atomic_load(&b->stopped) && !atomic_load(&b->failed)) {
         size_t begin = atomic_fetch_add(&b->next, SOME);
         if (begin >= b->fresh.count)
             return;
         for (size_t i = begin; i < begin + SOME && i < b->fresh.count; i++)
-            look_at(&look, b->fresh.items[i]);
+            examine(&sampling, b->fresh.items[i]);
     }
 }
 
 /* ---- all triangles ---- */
 
-/* New vertices, by their edges. */
+/* Adds the new vertices, and numbers them by their edges. */
 static void split_edges(Borders *b, Numbering *splits)
 {
     for (size_t i = 0; i < b->fresh.count; i++) {
@@ -314,7 +321,7 @@ static void split_edges(Borders *b, Numbering *splits)
             uint32_t from  = b->triangles.items[triangle][k];
             uint32_t to    = b->triangles.items[triangle][(k + 1) % 3];
             uint32_t fresh = (uint32_t)b->vertices.count;
-            double   at    = b->wishes[triangle].at[k], point[3], along[3];
+            double   at    = b->split_points[triangle].at[k], point[3], along[3];
             if (at == 0 || numbering_take(splits, edge_key(from, to), fresh) != fresh)
                 continue;
             add_scaled3(along, b->vertices.items[to], -1, b->vertices.items[from]);
@@ -327,14 +334,14 @@ static void split_edges(Borders *b, Numbering *splits)
 
 /* A triangle that is split. */
 typedef struct Parent {
-    uint32_t place; /* of the first part; NO_NUMBER: that is there */
+    uint32_t slot; /* triangle that the next part replaces; NO_NUMBER: it is added */
     bool     mixed;
 } Parent;
 
 static void add_triangle(Borders *b, Parent *parent, uint32_t x, uint32_t y, uint32_t z)
 {
     const uint32_t corners[3] = {x, y, z};
-    uint32_t       number     = parent->place;
+    uint32_t       number     = parent->slot;
     if (number == NO_NUMBER) {
         array_reserve_large(&b->arena, &b->triangles);
         number = (uint32_t)b->triangles.count++;
@@ -342,7 +349,7 @@ static void add_triangle(Borders *b, Parent *parent, uint32_t x, uint32_t y, uin
     memcpy(b->triangles.items[number], corners, sizeof corners);
     if (parent->mixed)
         array_push_large(&b->arena, &b->fresh, number);
-    parent->place = NO_NUMBER;
+    parent->slot = NO_NUMBER;
 }
 
 static double length_between(const Borders *b, uint32_t from, uint32_t to)
@@ -350,7 +357,8 @@ static double length_between(const Borders *b, uint32_t from, uint32_t to)
     return distance3(b->vertices.items[from], b->vertices.items[to]);
 }
 
-/* Two edges of a triangle are split: the first corner is cut off, and the rest along its shorter diagonal. */
+/* Splits a triangle at two edges: cuts off the first corner, and the rest along its shorter
+   diagonal. */
 static void split_two(Borders *b, Parent *parent, const uint32_t c[3], uint32_t first,
                       uint32_t last)
 {
@@ -374,15 +382,15 @@ static void split_triangle(Borders *b, const Numbering *splits, uint32_t number)
         count += middles[k] != NO_NUMBER;
     }
     for (int k = 0; k < 3; k++) {
-        const uint32_t turned[3] = {c[k], c[(k + 1) % 3], c[(k + 2) % 3]};
+        const uint32_t rotated[3] = {c[k], c[(k + 1) % 3], c[(k + 2) % 3]};
         uint32_t       own = middles[k], before = middles[(k + 2) % 3];
         if (count == 1 && own != NO_NUMBER) {
-            add_triangle(b, &parent, turned[0], own, turned[2]);
-            add_triangle(b, &parent, own, turned[1], turned[2]);
+            add_triangle(b, &parent, rotated[0], own, rotated[2]);
+            add_triangle(b, &parent, own, rotated[1], rotated[2]);
         } else if (count == 2 && own != NO_NUMBER && before != NO_NUMBER)
-            split_two(b, &parent, turned, own, before);
+            split_two(b, &parent, rotated, own, before);
         else if (count == 3)
-            add_triangle(b, &parent, turned[0], own, before);
+            add_triangle(b, &parent, rotated[0], own, before);
     }
     if (count == 3)
         add_triangle(b, &parent, middles[0], middles[1], middles[2]);
@@ -448,10 +456,10 @@ static KrsStatus split(Borders *b, KrsState *state, KrsMesh *mesh)
         return KRS_OUT_OF_MEMORY;
     KrsStatus status = open_borders(b, state, mesh);
     for (; status == KRS_OK && b->round < MAX_ROUNDS && b->fresh.count > 0; b->round++) {
-        b->mixed  = arena_new_array(&b->arena, bool, b->triangles.count);
-        b->wishes = arena_new_array(&b->arena, Wish, b->triangles.count);
+        b->mixed        = arena_new_array(&b->arena, bool, b->triangles.count);
+        b->split_points = arena_new_array(&b->arena, SplitPoints, b->triangles.count);
         atomic_store(&b->next, 0);
-        run_in_parallel(look_at_some, b);
+        run_in_parallel(examine_some, b);
         if (atomic_load(&b->stopped) || atomic_load(&b->failed))
             return atomic_load(&b->stopped) ? KRS_INTERRUPTED : KRS_OUT_OF_MEMORY;
         split_all(b);

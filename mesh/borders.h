@@ -7,10 +7,12 @@
 #include "krs/krs.h"
 
 /*
- * Splits the triangles of a mesh, in place, along the borders between materials that change in steps (steps.h), so that
- * each has the material of its middle everywhere but nearer than one and a half errors to its edges.  So the surface
- * stays the same.  Triangles are looked at about two errors apart, or a 500th of the size of the mesh if that is more.  `copy`: where in the scene a copy of the mesh is; NULL: it is where it
- * is.  Of the options it asks for error, memory_limit, progress and user.  On failure the mesh is as it was.
+ * Splits the triangles of a mesh, in place, along the borders between materials that change in
+ * steps (steps.h).  Then each has the material of its middle everywhere, but for one and a half
+ * errors beside its edges; the surface stays the same.  Triangles are sampled at about two errors,
+ * or at a 500th of the size of the mesh if that is more.  `copy` is the transform of a copy of the
+ * mesh in the scene, or NULL. Of the options it asks for error, memory_limit, progress and user.
+ * On failure the mesh is as it was.
  */
 KrsStatus mesh_split_at_borders(KrsState *state, const KrsMeshOptions *options,
                                 const double (*copy)[4], KrsMesh      *mesh);

@@ -1,4 +1,4 @@
-/* mesh.c: krs_mesh: what is asked for, and what is given back. */
+/* mesh.c: krs_mesh checks what is asked for, runs the mesher and copies its mesh. */
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,15 +14,15 @@
 
 static const double DEFAULT_ERROR = 1.0 / 200, MIN_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */
-/* Errors besides, at each attempt: tetrahedra lie otherwise then. */
+/* Errors that the side of the cube is longer at each attempt, so that tetrahedra lie otherwise. */
 enum { ATTEMPTS = 3 };
 static const double MORE_SIDE[ATTEMPTS] = {4, 6, 9.5};
-/* The part of the error that is for leaving out triangles. */
-static const double SPARED = 0.5;
+/* The part of the error that is reserved for simplification. */
+static const double RESERVED = 0.5;
 
-/* ---- what is asked for ---- */
+/* ---- options and memory ---- */
 
-/* The box of what is meshed; false: it has no end. */
+/* Finds the box of what is meshed; returns false where it is unbounded. */
 static bool find_box(Mesher *m)
 {
     const KrsMeshOptions *options = m->options;
@@ -106,7 +106,7 @@ static void close_voids(Mesher *m)
     m->unresolved += closed;
 }
 
-/* What goes around a rod or through a hole that is thinner than the error, where nothing was said of any. */
+/* Counts rods and holes that are thinner than the error, if nothing else is unresolved. */
 static void count_handles(Mesher *m)
 {
     double at[3];
@@ -123,7 +123,7 @@ static bool may_be_few(const Mesher *m)
     return !m->options->even && (m->solid->plain || m->solid->steps || m->options->shape);
 }
 
-/* False: it is not wanted, or not flat. */
+/* Meshes a solid between planes; returns false if that is not wanted, or the solid is not flat. */
 static bool find_flat(Mesher *m)
 {
     FlatVertices vertices  = {0};
@@ -152,14 +152,14 @@ static KrsStatus run(Mesher *m, KrsState *state, KrsMesh **mesh)
     KrsStatus status = is_nothing(m) ? KRS_OK : open_fields(m, state);
     if (status == KRS_OK && !is_nothing(m) && !find_flat(m)) {
         draft = m->options->draft;
-        m->error -= m->spared;
+        m->error -= m->reserved;
         status = find_proven_mesh(m) ? KRS_OK : KRS_INTERRUPTED;
         if (status == KRS_OK) {
             close_voids(m);
             count_handles(m);
         }
     } else
-        m->spared = 0;
+        m->reserved = 0;
     if (status == KRS_OK)
         status = copy_mesh(m, &state->scene->options.allocator, mesh);
     if (status == KRS_OK)
@@ -176,23 +176,24 @@ static bool options_are_valid(Mesher *m, int attempt)
         return false;
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, m->high[k] - m->low[k]);
-    m->error  = options->error > 0 ? options->error : DEFAULT_ERROR * longest;
-    m->side   = CUBE_SIDE * longest + MORE_SIDE[attempt] * m->error;
-    m->spared = options->simplify && may_be_few(m) ? SPARED * m->error : 0;
+    m->error    = options->error > 0 ? options->error : DEFAULT_ERROR * longest;
+    m->side     = CUBE_SIDE * longest + MORE_SIDE[attempt] * m->error;
+    m->reserved = options->simplify && may_be_few(m) ? RESERVED * m->error : 0;
     return is_nothing(m) || m->error >= MIN_ERROR * m->side;
 }
 
 static const KrsMeshOptions no_options = {0};
 
-/* The part of the work that is done when there is a mesh of all triangles. */
+/* The part of the work that is done when there is a mesh that is not simplified. */
 static const double MESHED = 0.5;
-/* The same when there are as few as are wanted, which are then split where materials change. */
+/* The part that is done when it is simplified, and triangles are still to be split where materials
+   change. */
 static const double ALL_MESHED = 0.8;
 
 /* One of two steps of the work. */
 typedef struct Step {
     const KrsMeshOptions *options;
-    double                begun, part, said; /* what is done is never less than was said */
+    double                begun, part, said; /* `said` is what was reported last, and never falls */
 } Step;
 
 static bool report_progress(void *user, double fraction)
@@ -210,13 +211,13 @@ static KrsMeshOptions options_of_step(Step *step)
     return options;
 }
 
-/* Uses up what was spared of the error. */
-static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh **mesh)
+/* Simplifies the mesh within the reserved part of the error. */
+static KrsStatus simplify_mesh(const KrsMeshOptions *options, double reserved, KrsMesh **mesh)
 {
     Step           step  = {options, MESHED, 1 - MESHED, 0};
     KrsMeshOptions these = options_of_step(&step);
     KrsMesh       *all   = *mesh;
-    these.error          = spared;
+    these.error          = reserved;
     KrsStatus status     = krs_mesh_simplify(all, &these, mesh);
     krs_mesh_free(all);
     if (status != KRS_OK)
@@ -224,9 +225,10 @@ static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh
     return status;
 }
 
-/* `*spared`: of the error, for leaving out triangles; `*handles`: as of Mesher. */
+/* Makes one mesh; `*reserved` becomes the error that is left for simplification, `*handles` as in
+   Mesher. */
 static KrsStatus mesh_attempt(KrsState *state, const KrsMeshOptions *options,
-                              const MeshSolid *solid, int attempt, KrsMesh **mesh, double *spared,
+                              const MeshSolid *solid, int attempt, KrsMesh **mesh, double *reserved,
                               size_t *handles)
 {
     Mesher *m = calloc(1, sizeof *m);
@@ -239,31 +241,33 @@ static KrsStatus mesh_attempt(KrsState *state, const KrsMeshOptions *options,
     m->memory.limit  = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
     m->arena.memory  = &m->memory;
     KrsStatus status = options_are_valid(m, attempt) ? run(m, state, mesh) : KRS_BAD_ARGUMENT;
-    *spared          = m->spared;
+    *reserved        = m->reserved;
     *handles         = m->handles;
     close_mesher(m);
     return status;
 }
 
-/* Where a mesh has handles they are mostly those of its tetrahedra at a sharp edge, so others are tried. */
+/* Makes a mesh, by other tetrahedra as long as it has handles: these mostly come of tetrahedra at a
+   sharp edge. */
 static KrsStatus mesh_once(KrsState *state, const KrsMeshOptions *options, const MeshSolid *solid,
                            KrsMesh **mesh)
 {
-    Step           step    = {options, 0, options->simplify ? MESHED : 1, 0};
-    KrsMeshOptions these   = options_of_step(&step);
-    KrsStatus      status  = KRS_OK;
-    double         spared  = 0;
-    size_t         handles = 1;
-    *mesh                  = NULL;
+    Step           step     = {options, 0, options->simplify ? MESHED : 1, 0};
+    KrsMeshOptions these    = options_of_step(&step);
+    KrsStatus      status   = KRS_OK;
+    double         reserved = 0;
+    size_t         handles  = 1;
+    *mesh                   = NULL;
     for (int attempt = 0; attempt < ATTEMPTS && status == KRS_OK && handles > 0; attempt++) {
         krs_mesh_free(*mesh);
         *mesh  = NULL;
-        status = mesh_attempt(state, &these, solid, attempt, mesh, &spared, &handles);
+        status = mesh_attempt(state, &these, solid, attempt, mesh, &reserved, &handles);
     }
-    return status == KRS_OK && spared > 0 ? leave_out(options, spared, mesh) : status;
+    return status == KRS_OK && reserved > 0 ? simplify_mesh(options, reserved, mesh) : status;
 }
 
-/* Half of the error needs several times the memory: where there is not so much, no triangle is left out. */
+/* Makes a mesh, which is not simplified if memory runs out: half of the error needs several times
+   the memory. */
 static KrsStatus mesh_all(KrsState *state, const KrsMeshOptions *options, const MeshSolid *solid,
                           KrsMesh **mesh)
 {
@@ -275,7 +279,7 @@ static KrsStatus mesh_all(KrsState *state, const KrsMeshOptions *options, const 
     return status;
 }
 
-/* Triangles of one material each. */
+/* Splits triangles until each has one material. */
 static KrsStatus split_at_borders(KrsState *state, const KrsMeshOptions *options,
                                   const MeshSolid *solid, KrsMesh **mesh)
 {

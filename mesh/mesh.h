@@ -6,7 +6,7 @@
 
 #include "compiler/field/solid.h"
 
-/* As krs_mesh, which it is behind; the component of the options does not count. */
+/* Makes a mesh as krs_mesh does, of any solid; ignores the component of the options. */
 KrsStatus mesh_solid(KrsState *state, const KrsMeshOptions *options, const MeshSolid *solid,
                      KrsMesh **mesh);
 

@@ -1,11 +1,11 @@
 /*
- * rounds.c: a coarse mesh, and a finer one where it is refuted, until it is proven.
+ * rounds.c: refines a coarse mesh where it is refuted, until it is proven.
  *
- * Where the surface is smooth a proof takes no more than values that are known (smooth.h), so a mesh is
- * refined there first.  Then parts that have edges are proven by cells (verify.h).  Such a proof holds
- * until the mesh changes where it asked for it: those that were bisected mark the cells of a grid.  What is refuted
- * is bisected and proven first.  When nothing is refuted any more, proofs that have become stale are
- * found again.
+ * Where the surface is smooth a proof takes no more than values that are known (smooth.h), so a
+ * mesh is refined there first.  Then parts that have edges are proven by cells (verify.h).  Such a
+ * proof holds until the mesh changes where the proof has used it: tetrahedra that were bisected
+ * mark cells of a grid.  What is refuted is bisected and proven first.  When nothing is refuted any
+ * more, proofs that have become stale are found again.
  */
 #include "mesh/rounds.h"
 
@@ -17,15 +17,15 @@
 #include "mesh/proof/bounds.h"
 #include "mesh/proof/draft.h"
 
-enum { ASK_EVERY = 16 }; /* groups between two questions */
-/* The cube's corner is nowhere in particular, so that planes of the scene seldom have points of the
-   grid. */
+enum { ASK_EVERY = 16 }; /* groups between two reports of progress */
+/* The cube's corner has arbitrary coordinates, so that points of the grid are seldom on planes of
+   the scene. */
 static const double CUBE_CORNER[3] = {0.04417, 0.04731, 0.04553};
 
 /* ---- marks ---- */
 
-/* Where a tetrahedron is, and so far around. */
-static void add_place(const Mesher *m, const Tet *tet, double around, MarkBox *box)
+/* Adds the box of a tetrahedron, `around` wider on all sides, to a box of marks. */
+static void add_tet_box(const Mesher *m, const Tet *tet, double around, MarkBox *box)
 {
     double low[3], high[3];
     tet_box(m, tet, low, high);
@@ -36,34 +36,33 @@ static void add_place(const Mesher *m, const Tet *tet, double around, MarkBox *b
     mark_box_add(&m->tets, low, high, box);
 }
 
-/* What is fresh has triangles now, or had some before it was bisected.  Until there are proofs none can become stale. */
+/* Marks fresh tetrahedra that have triangles now, or had some before they were bisected.  Until
+   there are proofs none can become stale. */
 static void mark_fresh(Mesher *m)
 {
     for (size_t i = 0; i < m->tets.fresh.count; i++) {
         Tet    *tet = &m->tets.list.items[m->tets.fresh.items[i]];
         MarkBox box = mark_box_none();
         if (m->has_proofs && (tet->replaced || tet->triangle_count > 0)) {
-            add_place(m, tet, 0, &box);
+            add_tet_box(m, tet, 0, &box);
             marks_set(&m->marks, &box);
         }
         tet->replaced = false;
     }
 }
 
-/* ---- groups ---- */
+/* ---- progress ---- */
 
-/* ---- how far the work is ---- */
-
-/* The parts of the work that are done when nothing is refuted by bounds, and when all has been looked at by cells.  After
-   that, each round of cells does about half of what is left. */
+/* The parts of the work that are done when bounds refute nothing more, and when cells have verified
+   all.  After that each round of cells does about half of what is left. */
 static const double BOUNDS_DONE = 0.35, CELLS_DONE = 0.8;
-/* Tetrahedra that are looked at by bounds for each that is refuted, until none is. */
+/* Tetrahedra that will be bounded for each that is refuted now. */
 static const double FOLLOWING = 8;
 
-/* When so many have been looked at by bounds and so many are refuted. */
-static double fraction_by_bounds(double looked, double refuted)
+/* Returns the part that is done when so many have been bounded and so many are refuted. */
+static double fraction_by_bounds(double bounded, double refuted)
 {
-    return looked > 0 ? BOUNDS_DONE * looked / (looked + FOLLOWING * refuted) : 0;
+    return bounded > 0 ? BOUNDS_DONE * bounded / (bounded + FOLLOWING * refuted) : 0;
 }
 
 static double fraction_by_cells(const Mesher *m)
@@ -76,11 +75,14 @@ static void advance(Mesher *m, double part)
     m->fraction = max2(m->fraction, m->begun + part * (m->goal - m->begun));
 }
 
-/* The first part of a round runs in the thread of the caller, so it may ask. */
+/* Reports progress and tells whether to go on; only the caller's thread may ask, which runs the
+   first part of a round. */
 static bool is_wanted(const Mesher *m)
 {
     return !m->options->progress || m->options->progress(m->options->user, m->fraction);
 }
+
+/* ---- groups ---- */
 
 static void add_to_groups(Mesher *m, size_t index)
 {
@@ -102,7 +104,7 @@ static void find_fresh_groups(Mesher *m)
     atomic_store(&m->next_group, 0);
 }
 
-/* Tetrahedra of these states, by where they are. */
+/* Groups tetrahedra whose states are in this range, by their locations. */
 static void find_groups(Mesher *m, TetState first, TetState last)
 {
     groups_clear(&m->groups);
@@ -113,7 +115,7 @@ static void find_groups(Mesher *m, TetState first, TetState last)
     atomic_store(&m->next_group, 0);
 }
 
-/* Twice the error around is within it. */
+/* Returns the box of a group, wider by twice the error on all sides. */
 static Box box_of_group(Mesher *m, const Group *group)
 {
     double low[3], high[3], least[3], most[3];
@@ -164,7 +166,8 @@ static void work_on_groups(void *task, size_t part, size_t parts)
     }
 }
 
-/* `goal`: the part of all work that is done then. */
+/* Does work on all groups; returns false if stopped.  `goal` is the part of all work that is done
+   afterwards. */
 static bool for_groups(Mesher *m, WorkOnGroup *work, double goal)
 {
     GroupWork w = {m, work};
@@ -174,16 +177,17 @@ static bool for_groups(Mesher *m, WorkOnGroup *work, double goal)
     return !atomic_load(&m->stopped);
 }
 
-/* ---- where no cells are needed ---- */
+/* ---- proofs by bounds ---- */
 
-/* Edges, in errors, of the smallest tetrahedra that are bisected since their mesh is not on the surface, where it is within the
-   error of it. */
+/* Edges, in errors, of the smallest tetrahedra that are bisected because their mesh is off the
+   surface, though within the error. */
 static const double MIN_OFF_SURFACE = 1;
-/* Parts of the error: a mesh whose middles are farther off goes through a tetrahedron or a face more often than their corners
-   tell.  Where pieces prove it to be near it does so less often: at an edge it may be off by more. */
+/* Parts of the error by which middles may be off: beyond them the surface passes a tetrahedron or a
+   face more often than corners tell.  It does so less often at edges that pieces prove. */
 static const double OFF_SURFACE = 0.15, OFF_PIECES = 0.3;
 
-/* Tells whether its mesh passes near the surface, or it is too small to be bisected for that. */
+/* Tells whether the mesh in a tetrahedron is near the surface, or the tetrahedron is too small to
+   be bisected. */
 static bool is_near_surface(const Mesher *m, const Tet *tet)
 {
     double off = tet->state == TET_FITS && tet->steep > 0 ? OFF_PIECES : OFF_SURFACE;
@@ -192,7 +196,7 @@ static bool is_near_surface(const Mesher *m, const Tet *tet)
            tets_longest_edge(&m->tets, tet) <= MIN_OFF_SURFACE * m->error;
 }
 
-/* By bounds; and those whose mesh is off the surface are refuted in any case. */
+/* Finds states by bounds; also refutes tetrahedra whose mesh is off the surface. */
 static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
 {
     bound_group(m, verifier, group);
@@ -203,7 +207,7 @@ static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
     }
 }
 
-/* What needs no cells. */
+/* Marks as proven what bounds alone prove. */
 static void judge_smooth(Mesher *m)
 {
     Sure sure;
@@ -216,12 +220,12 @@ static void judge_smooth(Mesher *m)
         if (sure.everywhere) {
             tet->state = TET_PROVEN;
             tet->needs = mark_box_none();
-            add_place(m, tet, m->error, &tet->needs);
+            add_tet_box(m, tet, m->error, &tet->needs);
         }
     }
 }
 
-/* ---- where it has edges ---- */
+/* ---- proofs by cells ---- */
 
 static void verify_group(Mesher *m, Verifier *verifier, const Group *group)
 {
@@ -241,7 +245,7 @@ static bool has_proof(const Tet *tet)
     return tet->state == TET_PROVEN || tet->state == TET_UNRESOLVED;
 }
 
-/* Proofs are stale where the mesh has changed since they were found. */
+/* Marks proofs as stale where the mesh has changed since they were found. */
 static void find_stale(Mesher *m)
 {
     for (size_t i = 0; i < m->tets.list.count; i++) {
@@ -251,7 +255,7 @@ static void find_stale(Mesher *m)
     marks_clear(&m->marks);
 }
 
-/* False: no proof was stale. */
+/* Forgets stale proofs; returns false if there are none. */
 static bool forget_stale(Mesher *m)
 {
     bool any = false;
@@ -273,7 +277,7 @@ static bool bisect_refuted(Mesher *m, size_t i)
     return true;
 }
 
-/* All that is refuted is among those that were fresh, or among all. */
+/* Bisects what is refuted among tetrahedra that were fresh, or among all; returns how many. */
 static size_t bisect_all_refuted(Mesher *m, bool fresh)
 {
     size_t count = fresh ? m->last.count : m->tets.list.count, refuted = 0;
@@ -282,7 +286,7 @@ static size_t bisect_all_refuted(Mesher *m, bool fresh)
     return refuted;
 }
 
-/* Parts that are refuted from the beginning, but not where there is clearly no surface. */
+/* Bisects parts that are refuted from the beginning, but not where there is clearly no surface. */
 static void bisect_hopeless(Mesher *m)
 {
     bool any;
@@ -300,7 +304,8 @@ static void bisect_hopeless(Mesher *m)
     } while (any);
 }
 
-/* Bisects what is refuted, and what then no longer meets its neighbours; false: there is nothing. */
+/* Bisects what is refuted, and what then no longer meets its neighbours; returns false if nothing
+   is refuted. */
 static bool refine(Mesher *m, bool fresh)
 {
     m->last.count = 0;
@@ -315,8 +320,8 @@ static bool refine(Mesher *m, bool fresh)
     return true;
 }
 
-/* First tetrahedra: about as large as they will be where the surface is as curved as a ball that fills the box,
-   and half of that where there are few. */
+/* Makes the first tetrahedra: about as large as a ball that fills the box needs, and half of that
+   where these are few. */
 static void bisect_evenly(Mesher *m)
 {
     Verifier verifier = {.field = &m->fields[0], .tets = &m->tets, .error = m->error};
@@ -347,7 +352,7 @@ static void find_tree(Mesher *m)
             &m->arena);
 }
 
-/* Where the first tetrahedron that is unresolved is so: that is found again, since few are. */
+/* Finds where the first unresolved tetrahedron is so, by verifying it again. */
 static void find_unresolved(Mesher *m)
 {
     size_t i = 0;
@@ -357,7 +362,7 @@ static void find_unresolved(Mesher *m)
         return;
     Tet tet = m->tets.list.items[i];
     verify_tet(&m->verifiers[0], &tet);
-    memcpy(m->unresolved_at, m->verifiers[0].place, sizeof m->unresolved_at);
+    memcpy(m->unresolved_at, m->verifiers[0].location, sizeof m->unresolved_at);
 }
 
 static void count_unresolved(Mesher *m)
@@ -372,27 +377,28 @@ static void count_refuted(Mesher *m)
     size_t count = m->tets.fresh.count, refuted = 0;
     for (size_t i = 0; i < count; i++)
         refuted += m->tets.list.items[m->tets.fresh.items[i]].state == TET_REFUTED;
-    m->looked += (double)count;
-    m->fraction = max2(m->fraction, fraction_by_bounds(m->looked, (double)refuted));
+    m->bounded += (double)count;
+    m->fraction = max2(m->fraction, fraction_by_bounds(m->bounded, (double)refuted));
 }
 
-/* Until nothing is refuted by bounds; only what is fresh is looked at.  False: it was stopped. */
+/* Refines until bounds refute nothing more; each round bounds what is fresh.  Returns false if
+   stopped. */
 static bool refine_by_bounds(Mesher *m)
 {
     do {
-        contour_look(&m->contour);
+        contour_find_patches(&m->contour);
         mark_fresh(m);
         find_fresh_groups(m);
         double count = (double)m->tets.fresh.count, few = count / 3;
         if (!for_groups(m, m->options->draft ? draft_group : judge_group,
-                        fraction_by_bounds(m->looked + count, few)))
+                        fraction_by_bounds(m->bounded + count, few)))
             return false;
         count_refuted(m);
     } while (refine(m, true));
     return true;
 }
 
-/* False: it was stopped. */
+/* Proves what is left by cells; returns false if stopped. */
 static bool prove(Mesher *m)
 {
     find_stale(m);
@@ -410,8 +416,9 @@ static bool prove(Mesher *m)
     return is_wanted(m);
 }
 
-/* A knife edge is thinner than tetrahedra farther from its end than the error, unless they are smaller than that.  Where
-   solids touch none are small enough, and many places are not decided.  False: nothing becomes finer. */
+/* Has unresolved tetrahedra bisected further; returns false if nothing becomes finer.  A knife edge
+   is thinner than tetrahedra at more than the error from its end, unless they are smaller still.
+   Where solids touch none are small enough, and many stay unresolved. */
 static bool sharpen(Mesher *m)
 {
     enum { MAX_FIRST = 300, MAX_LATER = 1000 };
@@ -427,18 +434,19 @@ static bool sharpen(Mesher *m)
     return refine(m, false);
 }
 
-/* Handles and parts that the mesh has, and the solid has not, at edges.  False: there are none. */
+/* Removes handles and islands that the mesh has at edges, and the solid has not; returns false if
+   there are none. */
 static bool tidy(Mesher *m)
 {
-    enum { MAX_TIMES = 4, MAX_PLACES = 256 };
+    enum { MAX_TIMES = 4, MAX_LOCATIONS = 256 };
     static const double AROUND = 3, DEEP = 0.5; /* errors */
-    double              places[MAX_PLACES][3];
+    double              locations[MAX_LOCATIONS][3];
     bool                any = false;
     if (m->tidied++ >= MAX_TIMES)
         return false;
-    size_t count = handles_places(&m->contour, AROUND * m->error, places, MAX_PLACES);
+    size_t count = handles_find(&m->contour, AROUND * m->error, locations, MAX_LOCATIONS);
     for (size_t i = 0; i < count; i++)
-        any = sides_tidy(&m->contour, places[i], AROUND * m->error, DEEP * m->error) || any;
+        any = sides_tidy(&m->contour, locations[i], AROUND * m->error, DEEP * m->error) || any;
     return any;
 }
 

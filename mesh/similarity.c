@@ -5,7 +5,7 @@
 
 const double similarity_identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
-/* x - 2 (normal . x - offset) normal */
+/* Maps x to Maps x to Maps x to x - 2 (normal . x - offset) normal... */
 void similarity_mirror(const double normal[3], double offset, double matrix[3][4])
 {
     for (int i = 0; i < 3; i++) {
@@ -33,7 +33,7 @@ void similarity_product(const double a[3][4], const double b[3][4], double matri
                            (k == 3 ? a[i][3] : 0);
 }
 
-void similarity_apply(const double matrix[3][4], const double point[3], double image[3])
+static void similarity_apply(const double matrix[3][4], const double point[3], double image[3])
 {
     for (int i = 0; i < 3; i++)
         image[i] = dot3(matrix[i], point) + matrix[i][3];
@@ -43,8 +43,8 @@ double similarity_scale(const double matrix[3][4]) { return length3(matrix[0]); 
 
 /* ---- reach ---- */
 
-/* The direction in the item's own space, longer by the scale, and what the shift adds. */
-static double turn_back(const double matrix[3][4], const double direction[3], double own[3])
+/* Finds the direction in the item's own space, longer by the scale; returns what the shift adds. */
+static double to_item_space(const double matrix[3][4], const double direction[3], double own[3])
 {
     double added = 0;
     own[0] = own[1] = own[2] = 0;
@@ -86,7 +86,7 @@ double reach_along(ReachSearch *search, size_t number, const double matrix[3][4]
                    const double direction[3], double least)
 {
     const KrsItem *item = &search->assembly->items[number];
-    double         own[3], added = turn_back(matrix, direction, own);
+    double         own[3], added = to_item_space(matrix, direction, own);
     double         most = added + reach_of_bounds(&search->bounds[number], own);
     if (most <= least)
         return least;
@@ -120,7 +120,7 @@ static Box box_of_mesh(const KrsMesh *mesh)
     return box;
 }
 
-static Box place_box(const double matrix[3][4], Box box)
+static Box transform_box(const double matrix[3][4], Box box)
 {
     Range rows[3][3], shift[3];
     for (int i = 0; i < 3; i++) {
@@ -131,7 +131,7 @@ static Box place_box(const double matrix[3][4], Box box)
     return box_move(box_rotate(box, rows), shift);
 }
 
-static Ball place_ball(const double matrix[3][4], Ball ball)
+static Ball transform_ball(const double matrix[3][4], Ball ball)
 {
     Ball image = {.radius = ball.radius};
     if (ball.radius < 0 || isinf(ball.radius))
@@ -158,7 +158,7 @@ void find_item_bounds(ReachSearch *search, size_t number)
         const struct ItemBounds *placed = &search->bounds[transform->item];
         if (box_is_empty(placed->box))
             continue;
-        bounds->box  = box_hull(bounds->box, place_box(matrix, placed->box));
-        bounds->ball = ball_hull(bounds->ball, place_ball(matrix, placed->ball));
+        bounds->box  = box_hull(bounds->box, transform_box(matrix, placed->box));
+        bounds->ball = ball_hull(bounds->ball, transform_ball(matrix, placed->ball));
     }
 }

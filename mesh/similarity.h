@@ -1,5 +1,5 @@
 /*
- * similarity.h: where copies are: similarities as matrices, and how far what they place reaches.
+ * similarity.h: similarities as matrices, and how far the items that they place reach.
  */
 #ifndef KRS_MESH_SIMILARITY_H
 #define KRS_MESH_SIMILARITY_H
@@ -12,26 +12,26 @@ extern const double similarity_identity[3][4];
 void similarity_mirror(const double normal[3], double offset, double matrix[3][4]);
 void similarity_map(double scale, const double rows[3][3], const double shift[3],
                     double matrix[3][4]);
-/* matrix = a b; it may be none of them. */
+/* Sets matrix = a b; matrix must be neither of them. */
 void   similarity_product(const double a[3][4], const double b[3][4], double matrix[3][4]);
-void   similarity_apply(const double matrix[3][4], const double point[3], double image[3]);
 double similarity_scale(const double matrix[3][4]);
 
-/* A search for how far items reach; each may be as large as a box and a ball, the smaller of which counts. */
+/* A search for how far items reach; each item is within a box and a ball. */
 typedef struct ReachSearch {
     const KrsAssembly *assembly;
     struct ItemBounds {
         Box  box;
         Ball ball;
     } * bounds;    /* of each item */
-    size_t visits; /* of items that may still be made */
+    size_t visits; /* visits of items that are left */
 } ReachSearch;
 
-/* Finds the bounds of an item from those that it places, or from its mesh; where it has neither they are
-   as they were. */
+/* Finds the bounds of an item from those that it places, or from its mesh; without either they
+   stay. */
 void find_item_bounds(ReachSearch *search, size_t item);
-/* The largest dot product of a direction with a point of the placed item, and not below `least`.  It may be too
-   large where there are no meshes yet, and is infinite when visits have run out. */
+/* Returns the largest dot product of a direction with a point of the placed item, and not below
+   `least`.  It may be too large where there are no meshes yet, and is infinite when visits have run
+   out. */
 double reach_along(ReachSearch *search, size_t item, const double matrix[3][4],
                    const double direction[3], double least);
 

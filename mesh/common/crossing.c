@@ -1,8 +1,9 @@
 /*
- * crossing.c: closed surfaces, and triangles that cross.
+ * crossing.c: finds open edges, and triangles that cross.
  *
- * Two triangles are apart if some direction separates them: a normal, a product of an edge of each, or, where both
- * are in a plane, what is across an edge (the separating axis theorem).
+ * By the separating axis theorem two triangles are disjoint if some direction separates them: a
+ * normal, the cross product of an edge of each, or, where both are in a plane, the direction across
+ * an edge.
  */
 #include "mesh/common/crossing.h"
 
@@ -16,7 +17,7 @@ static uint64_t ends_of(uint32_t from, uint32_t to) { return (uint64_t)from << 3
 
 static uint32_t from_of(const TriangleEdge *edge) { return (uint32_t)(edge->ends >> 32); }
 
-/* Few begin at the same vertex. */
+/* Sorts the edges from one vertex by insertion, since they are few. */
 static void sort_of_vertex(TriangleEdge *edges, size_t count)
 {
     for (size_t i = 1; i < count; i++) {
@@ -34,18 +35,18 @@ TriangleEdges sort_edges(const uint32_t (*triangles)[3], size_t count, Arena *ar
     for (size_t i = 0; i < 3 * count; i++)
         if (triangles[i / 3][i % 3] >= edges.vertex_count)
             edges.vertex_count = (size_t)triangles[i / 3][i % 3] + 1;
-    edges.items     = arena_new_array(arena, TriangleEdge, edges.count + 1);
-    edges.begins    = arena_new_array(arena, uint32_t, edges.vertex_count + 2);
-    uint32_t *place = edges.begins + 1; /* becomes `begins` while edges are put there */
+    edges.items    = arena_new_array(arena, TriangleEdge, edges.count + 1);
+    edges.begins   = arena_new_array(arena, uint32_t, edges.vertex_count + 2);
+    uint32_t *next = edges.begins + 1; /* becomes `begins` while edges are put there */
     for (size_t i = 0; i < edges.count; i++)
-        place[triangles[i / 3][i % 3] + 1]++;
+        next[triangles[i / 3][i % 3] + 1]++;
     for (size_t i = 0; i < edges.vertex_count; i++)
-        place[i + 1] += place[i];
+        next[i + 1] += next[i];
     for (size_t i = 0; i < edges.count; i++) {
-        const uint32_t *corners    = triangles[i / 3];
-        uint32_t        from       = corners[i % 3];
-        edges.items[place[from]++] = (TriangleEdge){ends_of(from, corners[(i + 1) % 3]),
-                                                    (uint32_t)(i / 3)};
+        const uint32_t *corners   = triangles[i / 3];
+        uint32_t        from      = corners[i % 3];
+        edges.items[next[from]++] = (TriangleEdge){ends_of(from, corners[(i + 1) % 3]),
+                                                   (uint32_t)(i / 3)};
     }
     for (size_t i = 0; i < edges.vertex_count; i++)
         sort_of_vertex(edges.items + edges.begins[i], edges.begins[i + 1] - edges.begins[i]);
@@ -73,7 +74,7 @@ void report_open(const TriangleEdges *edges, ReportTriangle *report, void *user)
     }
 }
 
-/* From one triangle to the next, which begins where this one ends. */
+/* Goes around the vertex, from each triangle to the one behind its last edge. */
 bool is_one_ring(const TriangleEdges *edges, const uint32_t (*triangles)[3], uint32_t vertex)
 {
     uint32_t begin = edges->begins[vertex], count = edges->begins[vertex + 1] - begin;
@@ -94,7 +95,7 @@ bool is_one_ring(const TriangleEdges *edges, const uint32_t (*triangles)[3], uin
 
 typedef struct Pair {
     const double (*a)[3], (*b)[3];
-    double margin; /* they must be apart by more than that, */
+    double margin; /* least gap between the two */
 } Pair;
 
 static bool separates(const Pair *pair, const double axis[3])
@@ -130,7 +131,8 @@ static bool separated_by_edges(const Pair *pair)
     return false;
 }
 
-/* By the normal of one of them, or across its edges. */
+/* Tells whether the normal of one triangle, or a direction across one of its edges, separates
+   them. */
 static bool separated_by_plane(const Pair *pair, const double (*corners)[3])
 {
     double edges[2][3], normal[3];
@@ -149,7 +151,7 @@ static bool separated_by_plane(const Pair *pair, const double (*corners)[3])
     return false;
 }
 
-/* Neighbours at an edge are apart unless one lies on the other. */
+/* Tells whether two triangles with a common edge lie on each other. */
 static bool are_folded(const double (*a)[3], const double (*b)[3])
 {
     static const double least = 1e-4; /* radians */
@@ -165,7 +167,7 @@ static bool are_folded(const double (*a)[3], const double (*b)[3])
     return dot3(normals[0], normals[1]) < 0 && length3(cross) < least;
 }
 
-/* ---- all ---- */
+/* ---- a triangle and the mesh ---- */
 
 typedef struct Search {
     const Bvh *bvh;
@@ -182,7 +184,7 @@ static int count_shared(const uint32_t a[3], const uint32_t b[3])
     return shared;
 }
 
-static bool is_apart(void *user, uint32_t other, const double corners[3][3])
+static bool is_separate(void *user, uint32_t other, const double corners[3][3])
 {
     const Search *search = user;
     int           shared = count_shared(search->bvh->triangles[search->triangle],
@@ -220,5 +222,5 @@ bool triangle_crosses(const Bvh *bvh, uint32_t triangle, double depth)
             high[k] = fmax(high[k], search.corners[c][k] + 2 * search.rounding);
         }
     }
-    return !bvh_visit_box(bvh, low, high, is_apart, &search);
+    return !bvh_visit_box(bvh, low, high, is_separate, &search);
 }

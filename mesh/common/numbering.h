@@ -26,12 +26,12 @@ typedef struct Numbering {
 
 #define NO_NUMBER UINT32_MAX
 
-/* The number of a key, or NO_NUMBER. */
+/* Returns the number of a key, or NO_NUMBER. */
 uint32_t numbering_find(const Numbering *numbering, NumberKey key);
-/* The number of a key, which is `fresh` if it had none. */
+/* Returns the number of a key; a new key gets the number `fresh`. */
 uint32_t numbering_take(Numbering *numbering, NumberKey key, uint32_t fresh);
 
-/* Keys of two or three different numbers, whatever their order. */
+/* Return keys of two or three different numbers, whatever their order. */
 NumberKey edge_key(uint32_t a, uint32_t b);
 NumberKey face_key(uint32_t a, uint32_t b, uint32_t c);
 

@@ -1,4 +1,4 @@
-/* contour.c: vertices on edges, in faces and inside, and the triangles between them. */
+/* contour.c: finds vertices on edges, in faces and inside of tetrahedra. */
 #include "mesh/contour/contour.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "mesh/contour/snap.h"
 #include "mesh/contour/weights.h"
 
-/* Part of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere. */
+/* Part of an edge at its ends where no vertex is, so that no vertices coincide. */
 static const double END_OF_EDGE = 1e-4;
 /* Part of an edge between a point that was moved to the other side and the vertex. */
 static const double BESIDE_MOVED = 0.1;
@@ -54,14 +54,14 @@ static void find_distances(const void *user, const MeshField *field, const uint3
 
 static void find_all(Contour *contour, const Batches *batches, size_t first, size_t end)
 {
-    const Tets *tets      = contour->tets;
-    BatchPlace  place     = {.fields = contour->fields,
+    const Tets  *tets     = contour->tets;
+    BatchContext context  = {.fields = contour->fields,
                              .origin = {tets->origin[0], tets->origin[1], tets->origin[2]},
                              .side   = tets->step * CUBE_STEPS,
                              .margin = 0.01 * contour->error,
                              .groups = &contour->groups};
     contour->groups.arena = contour->arena;
-    batches_find(&place, batches, contour, first, end);
+    batches_find(&context, batches, contour, first, end);
 }
 
 void contour_distances(Contour *contour)
@@ -73,15 +73,16 @@ void contour_distances(Contour *contour)
 
 /* ---- vertices on edges ---- */
 
-/* Where one end was moved to the other side the place is near to that one. */
+/* Returns a search for the vertex on an edge, which is done where a point was moved to the other
+   side: the vertex is near to that point. */
 static RootSearch root_search(const Contour *contour, const Crossing *crossing)
 {
-    const TetPoint *points = contour->tets->points.items;
-    bool            turned = points[crossing->from].distance > points[crossing->to].distance;
-    uint32_t        from   = turned ? crossing->to : crossing->from,
-             to            = turned ? crossing->from : crossing->to;
-    RootSearch search      = {
-             .high = 1, .at_low = points[from].distance, .at_high = points[to].distance};
+    const TetPoint *points   = contour->tets->points.items;
+    bool            reversed = points[crossing->from].distance > points[crossing->to].distance;
+    uint32_t        from     = reversed ? crossing->to : crossing->from,
+             to              = reversed ? crossing->from : crossing->to;
+    RootSearch search        = {
+               .high = 1, .at_low = points[from].distance, .at_high = points[to].distance};
     tets_position(contour->tets, from, search.from);
     tets_position(contour->tets, to, search.along);
     add_scaled3(search.along, search.along, -1, search.from);
@@ -92,8 +93,8 @@ static RootSearch root_search(const Contour *contour, const Crossing *crossing)
     return search;
 }
 
-static void find_places(const Contour *contour, const MeshField *field, const uint32_t *numbers,
-                        size_t count)
+static void locate_crossings(const Contour *contour, const MeshField *field,
+                             const uint32_t *numbers, size_t count)
 {
     RootSearch searches[MAX_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
@@ -110,9 +111,9 @@ static void find_places(const Contour *contour, const MeshField *field, const ui
     }
 }
 
-/* Values and normals, by differences; without those the normals are along the edges. */
-static void look_at_crossings(const Contour *contour, const MeshField *field,
-                              const uint32_t *numbers, size_t count)
+/* Finds values and normals by differences; where these vanish normals stay along the edges. */
+static void find_normals(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+                         size_t count)
 {
     enum { EACH = 7, AT_ONCE = MAX_FIELD_POINTS / EACH };
     double step = 1e-3 * contour->error;
@@ -148,13 +149,14 @@ static void find_crossings(const void *user, const MeshField *field, const uint3
                            size_t count)
 {
     const Contour *contour = user;
-    find_places(contour, field, numbers, count);
-    look_at_crossings(contour, field, numbers, count);
+    locate_crossings(contour, field, numbers, count);
+    find_normals(contour, field, numbers, count);
 }
 
 /* ---- vertices in faces ---- */
 
-/* Where the surface's planes at both crossings meet the face. */
+/* Finds the vertex in a face: where the tangent planes at both crossings meet it, snapped to the
+   surface. */
 static void find_line(const Contour *contour, const MeshField *field, double missed, FaceLine *line)
 {
     const Crossing *a = &contour->crossings.items[line->crossings[0]];
@@ -187,7 +189,7 @@ static void box_of_line(const void *user, size_t number, double low[3], double h
     box_of_points(contour, contour->lines.items[number].points, 3, low, high);
 }
 
-/* Most are straight. */
+/* Finds vertices in faces, of which most need none. */
 static void find_lines(const void *user, const MeshField *field, const uint32_t *numbers,
                        size_t count)
 {
@@ -223,7 +225,8 @@ static void find_middle(const Contour *contour, const Patch *patch, double middl
                     contour->crossings.items[patch->crossings[i]].at);
 }
 
-/* In the middles of the lines from the vertex inside to those around it. */
+/* Returns the largest distance from the surface at the vertex inside and in the middles between it
+   and those around it. */
 static double off_of_fan(const Contour *contour, const MeshField *field, const Patch *patch)
 {
     const double *around[8];
@@ -237,7 +240,7 @@ static double off_of_fan(const Contour *contour, const MeshField *field, const P
     return max2(fabs(patch->value), max_off(field, patch->apex, around, count));
 }
 
-/* `missed` is the distance at the middle of the crossings. */
+/* Finds the vertex inside; `missed` is the distance at the middle of the crossings. */
 static void find_apex(const Contour *contour, const MeshField *field, const double middle[3],
                       double missed, Patch *patch)
 {
@@ -285,7 +288,7 @@ static void find_apexes(const void *user, const MeshField *field, const uint32_t
     }
 }
 
-/* ---- which tetrahedra have what ---- */
+/* ---- patches ---- */
 
 static uint32_t take_crossing(Contour *contour, uint32_t inside, uint32_t outside)
 {
@@ -304,7 +307,8 @@ static bool has_crossings(const FaceLine *line, uint32_t first, uint32_t second)
            (line->crossings[0] == second && line->crossings[1] == first);
 }
 
-/* The line between two crossings on one face.  It is another one if a point was moved to the other side. */
+/* Returns the line between two crossings on one face, which is found anew if a point was moved to
+   the other side. */
 static uint32_t take_line(Contour *contour, uint32_t first, uint32_t second)
 {
     const Crossing *a = &contour->crossings.items[first], *b = &contour->crossings.items[second];
@@ -343,7 +347,7 @@ static void reverse(uint32_t *numbers, uint32_t count)
     }
 }
 
-/* The points of a tetrahedron, those inside first; returns how many these are. */
+/* Lists the points of a tetrahedron, those inside first; returns how many are inside. */
 static uint32_t inside_first(const Tets *tets, const Tet *tet, uint32_t points[4])
 {
     uint32_t count = 0, end = 4;
@@ -373,7 +377,7 @@ static void add_patch(Contour *contour, uint32_t number, const uint32_t points[4
     array_push_large(contour->arena, &contour->patches, patch);
 }
 
-/* How many triangles fill a patch. */
+/* Returns how many triangles fill a patch. */
 static uint8_t triangles_of(const Contour *contour, const Patch *patch)
 {
     uint32_t count = patch->fan ? patch->corner_count : patch->corner_count - 2;
@@ -394,7 +398,7 @@ static void find_patches(Contour *contour, size_t first)
     find_all(contour, &patches, first, contour->patches.count);
 }
 
-void contour_look(Contour *contour)
+void contour_find_patches(Contour *contour)
 {
     const Tets *tets  = contour->tets;
     size_t      first = contour->patches.count;
@@ -414,8 +418,7 @@ void contour_look(Contour *contour)
     }
 }
 
-/* The shorter diagonal of four crossings begins there: 0 or 1. */
-uint32_t patch_turn(const Contour *contour, const Patch *patch)
+uint32_t patch_diagonal(const Contour *contour, const Patch *patch)
 {
     const double *at[4];
     if (patch->corner_count < 4)

@@ -1,12 +1,13 @@
 /*
- * contour.h: the mesh, as the tetrahedra are now.
+ * contour.h: the mesh of the present tetrahedra.
  *
- * Where an edge goes from inside to outside there is a vertex on it.  Those of a face are joined by a
- * line, which may have a further vertex in the face where the surface has an edge there.  So on
- * the boundary of each tetrahedron there is at most one closed line, and the triangles within fill it.
- * They are a fan around a vertex inside, or one or two triangles between the vertices of the edges.
- * In a convex body a fan from a point inside to a line on the boundary that does not meet itself is a
- * surface that does not, either.  So the mesh is closed, manifold, and never crosses itself.
+ * Where an edge goes from inside to outside there is a vertex on it.  Those of a face are joined by
+ * a line, which may have a further vertex in the face where the surface has an edge there.  So on
+ * the boundary of each tetrahedron there is at most one closed line, and the triangles within fill
+ * it.  They are a fan around a vertex inside, or one or two triangles between the vertices of the
+ * edges.  In a convex body a fan from a point inside to a line on the boundary that does not meet
+ * itself is a surface that does not, either.  So the mesh is closed, manifold, and never crosses
+ * itself.
  */
 #ifndef KRS_MESH_CONTOUR_H
 #define KRS_MESH_CONTOUR_H
@@ -26,17 +27,17 @@ typedef struct FaceLine {
     uint32_t points[3], crossings[2];
     bool     known, bent; /* there is a vertex in the face */
     double   at[3], value;
-    double   off; /* of the middles of its parts from the surface, at most; 0: little */
+    double   off; /* the largest distance of middles of its parts from the surface; 0: little */
 } FaceLine;
 
 /* A tetrahedron with inside and outside corners. */
 typedef struct Patch {
     uint32_t tet, corner_count; /* 3 or 4 crossings */
-    uint32_t crossings[4],
-        lines[4]; /* in order around it, outside to the front; lines[i] follows */
-    bool   fan;
-    double apex[3], value;
-    double off; /* as of lines */
+    /* In order around it, outside to the front; lines[i] follows crossings[i]. */
+    uint32_t crossings[4], lines[4];
+    bool     fan;
+    double   apex[3], value;
+    double   off; /* as of lines */
 } Patch;
 
 typedef struct Patches {
@@ -59,9 +60,10 @@ typedef struct Contour {
         FaceLine *items;
         size_t    count, capacity;
     } lines;
-    Patches patches,
-        before; /* patches: some are of tetrahedra that are no more, until triangles are found */
-    size_t known_crossings, known_lines, known_points; /* those that are computed */
+    /* Some patches are of tetrahedra that were bisected, until triangles are found; `before` is
+       room to drop these. */
+    Patches patches, before;
+    size_t  known_crossings, known_lines, known_points; /* those that are computed */
     struct {
         double (*items)[3];
         size_t count, capacity;
@@ -73,17 +75,17 @@ typedef struct Contour {
     uint32_t *vertex_of; /* of crossings, then of lines; NO_NUMBER: not used */
 } Contour;
 
-/* Distances of points that are new. */
+/* Finds the distances at new points. */
 void contour_distances(Contour *contour);
 /* Finds the patches of tetrahedra that are fresh. */
-void contour_look(Contour *contour);
-/* Finds vertices and triangles of all patches; those of each tetrahedron follow each other. */
+void contour_find_patches(Contour *contour);
+/* Finds vertices and triangles of all patches; the triangles of a tetrahedron follow each other. */
 void contour_find(Contour *contour);
 
-/* All triangles of a patch that is no fan have this crossing of it. */
-uint32_t patch_turn(const Contour *contour, const Patch *patch);
+/* Returns the crossing, 0 or 1, that all triangles of a patch have which is no fan. */
+uint32_t patch_diagonal(const Contour *contour, const Patch *patch);
 
-/* How far middles of its lines are off the surface, at most; 0: little. */
+/* Returns the largest distance of middles of its lines from the surface; 0: little. */
 double patch_off(const Contour *contour, const Patch *patch);
 
 static inline bool point_is_inside(const Tets *tets, uint32_t point)

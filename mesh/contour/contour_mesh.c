@@ -1,9 +1,9 @@
-/* contour_mesh.c: the triangles of all patches. */
+/* contour_mesh.c: makes the triangles of all patches. */
 #include <string.h>
 
 #include "mesh/contour/contour.h"
 
-/* Patches in the order of their tetrahedra, without those of tetrahedra that are no more. */
+/* Orders patches as their tetrahedra, and drops those of tetrahedra that were bisected. */
 static void arrange_patches(Contour *contour)
 {
     Tets   *tets           = contour->tets;
@@ -69,10 +69,10 @@ static void add_triangles(Contour *contour, const Patch *patch)
             add_triangle(contour, loop[i], loop[(i + 1) % count], apex);
         return;
     }
-    uint32_t turn = patch_turn(contour, patch);
-    add_triangle(contour, loop[turn], loop[turn + 1], loop[turn + 2]);
+    uint32_t first = patch_diagonal(contour, patch);
+    add_triangle(contour, loop[first], loop[first + 1], loop[first + 2]);
     if (count == 4)
-        add_triangle(contour, loop[turn], loop[turn + 2], loop[(turn + 3) % 4]);
+        add_triangle(contour, loop[first], loop[first + 2], loop[(first + 3) % 4]);
 }
 
 void contour_find(Contour *contour)

@@ -1,10 +1,11 @@
-/* groups.c: things are sorted by the cell that they are in. */
+/* groups.c: sorts items by their cells. */
 #include "mesh/contour/groups.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "compiler/base/minmax.h"
+
 enum { ALL_CELLS = GROUP_CELLS * GROUP_CELLS * GROUP_CELLS };
 
 void groups_clear(Groups *groups)
@@ -21,7 +22,8 @@ void groups_add(Groups *groups, uint32_t number, const double at[3])
     array_push_large(groups->arena, &groups->cells, cell);
 }
 
-/* Cells are joined, eight to one, where they would have few things each: a group costs as much as the whole scene. */
+/* Returns how often eight cells are joined to one, so that each has many items: pruning for a group
+   costs as much as the whole scene. */
 static uint32_t find_joinings(size_t count)
 {
     static const size_t THINGS   = 64; /* of each square, were all on one side of the cube */

@@ -1,7 +1,7 @@
 /*
- * groups.h: numbers of things in the order of where they are, in groups of neighbours.
+ * groups.h: sorts the numbers of items by their locations into groups of neighbours.
  *
- * Threads take groups as they come, and prune the scene once for each.
+ * Threads take one group after the other, and prune the scene once for each.
  */
 #ifndef KRS_MESH_GROUPS_H
 #define KRS_MESH_GROUPS_H
@@ -30,9 +30,9 @@ typedef struct Groups {
 } Groups;
 
 void groups_clear(Groups *groups);
-/* `at` is from 0 to 1. */
+/* Adds an item; the coordinates `at` are from 0 to 1. */
 void groups_add(Groups *groups, uint32_t number, const double at[3]);
-/* Puts what was added in order. */
+/* Makes groups of what was added. */
 void groups_finish(Groups *groups);
 
 #endif

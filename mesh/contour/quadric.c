@@ -1,11 +1,12 @@
-/* quadric.c: least squares in three unknowns, by the eigenvectors of the normal equations. */
+/* quadric.c: solves least squares in three unknowns by the eigenvectors of the normal equations. */
 #include "mesh/contour/quadric.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 
-/* A symmetric matrix and its eigenvectors, columns of v, by Jacobi rotations. */
+/* Makes m[p][q] 0 by a Jacobi rotation of a symmetric matrix; the columns of v become its
+   eigenvectors. */
 static void rotate_to_diagonal(double m[3][3], double v[3][3], int p, int q)
 {
     if (m[p][q] == 0)

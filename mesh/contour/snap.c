@@ -1,4 +1,4 @@
-/* snap.c: vertices of faces and tetrahedra go to the surface. */
+/* snap.c: moves vertices of faces and tetrahedra to the surface by Newton's steps. */
 #include "mesh/contour/snap.h"
 
 #include <string.h>
@@ -22,8 +22,8 @@ static void keep_snapping(const Snapping *snapping, double point[3])
     keep_inside(weights, inner, snapping->count, point, snapping->middle);
 }
 
-/* Goes along the gradient, as far as it is in the face, to where the value is 0; *value is that at `at`.
-   Where planes meet beyond a rounded edge this is a point of the edge. */
+/* Goes along the gradient, or its part in the face, to where the value is 0; *value is that at
+   `at`.  Where planes meet beyond a rounded edge this is a point of the edge. */
 static void snap(const MeshField *field, const Snapping *snapping, double at[3], double *value)
 {
     enum { TRIES = 2 };
@@ -46,7 +46,7 @@ static void snap(const MeshField *field, const Snapping *snapping, double at[3],
         add_scaled3(next, at, -*value / square, gradient);
         keep_snapping(snapping, next);
         double there = field_distance(field, next);
-        if (!(fabs(there) < fabs(*value))) /* nor what is no number */
+        if (!(fabs(there) < fabs(*value))) /* also where it is NaN */
             return;
         memcpy(at, next, sizeof next);
         *value = there;

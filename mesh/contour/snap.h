@@ -1,12 +1,12 @@
 /*
- * snap.h: where a vertex of a face or a tetrahedron is on the surface.
+ * snap.h: moves a vertex of a face or a tetrahedron to the surface.
  */
 #ifndef KRS_MESH_SNAP_H
 #define KRS_MESH_SNAP_H
 
 #include "compiler/field/field.h"
 
-/* A vertex of a face or a tetrahedron, which may go to the surface within it. */
+/* A vertex of a face or a tetrahedron, within which it may go to the surface. */
 typedef struct Snapping {
     const double (*corners)[3];
     int           count;  /* of the corners */
@@ -16,12 +16,12 @@ typedef struct Snapping {
     double        error;  /* of the mesh */
 } Snapping;
 
-/* From a guess, if there is one, else or if that leads nowhere from the middle.  False: no place was found where the
-   value is much less. */
+/* Searches from a guess, if there is one, and then from the middle; returns false if the value is
+   nowhere much less. */
 bool snap_nearby(const MeshField *field, const Snapping *snapping, bool guess, double at[3],
                  double *value);
 
-/* The largest value, without its sign, in the middles between a vertex and others. */
+/* Returns the largest absolute value in the middles between a vertex and others. */
 double max_off(const MeshField *field, const double at[3], const double *const *others,
                size_t count);
 

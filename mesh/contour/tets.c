@@ -1,4 +1,4 @@
-/* tets.c: bisection of tetrahedra, and its closure. */
+/* tets.c: bisects tetrahedra, and closes the bisection. */
 #include "mesh/contour/tets.h"
 
 #include <string.h>
@@ -21,8 +21,8 @@ static uint32_t take_point(Tets *tets, const uint32_t at[3])
     return number;
 }
 
-/* The shares of the four corners in a point change along these vectors.  Those of some corners together are 1 at them and
-   0 at the others. */
+/* Returns the width of a tetrahedron: 1 over the largest gradient of a barycentric coordinate, or
+   of a sum of two. */
 static float find_width(const Tets *tets, const Tet *tet)
 {
     double corners[4][3], edges[3][3], shares[4][3] = {{0}}, most = 0;
@@ -43,7 +43,7 @@ static float find_width(const Tets *tets, const Tet *tet)
     return (float)((1 - 1e-6) / most);
 }
 
-/* ---- which have a point, and which are to be looked at ---- */
+/* ---- points, and tetrahedra that wait for closure ---- */
 
 static void link_point(Tets *tets, uint32_t point, uint32_t tet)
 {
@@ -58,14 +58,14 @@ static bool has_point(const Tet *tet, uint32_t point)
            tet->points[3] == point;
 }
 
-static void let_wait(Tets *tets, size_t tet)
+static void queue_tet(Tets *tets, size_t tet)
 {
     while (tets->waiting.count <= tet / 64)
         array_push_large(tets->arena, &tets->waiting, 0);
     tets->waiting.items[tet / 64] |= (uint64_t)1 << tet % 64;
 }
 
-/* The first from a number on; as many as there are words for: none. */
+/* Returns the first that waits, from a number on; 64 times the number of words if none does. */
 static size_t first_waiting(const Tets *tets, size_t from)
 {
     size_t end = 64 * tets->waiting.count;
@@ -74,13 +74,14 @@ static size_t first_waiting(const Tets *tets, size_t from)
     return from;
 }
 
-/* Those with both points wait; of the lists, the second point's has `moved` where it had `from`. */
-static void wait_around(Tets *tets, uint32_t first, uint32_t second, uint32_t from, uint32_t moved)
+/* Lets tetrahedra with both points wait, and replaces `from` by `moved` in the list of the second
+   point. */
+static void queue_around(Tets *tets, uint32_t first, uint32_t second, uint32_t from, uint32_t moved)
 {
     for (uint32_t at = tets->points.items[second].first; at; at = tets->links.items[at - 1].next) {
         TetLink *link = &tets->links.items[at - 1];
         if (has_point(&tets->list.items[link->tet], first))
-            let_wait(tets, link->tet);
+            queue_tet(tets, link->tet);
         if (link->tet == from)
             link->tet = moved;
     }
@@ -132,7 +133,8 @@ bool tets_is_moved(const Tets *tets, const Tet *tet)
            points[tet->points[2]].moved || points[tet->points[3]].moved;
 }
 
-/* The six paths from one corner of the cube to the opposite one. */
+/* Makes Kuhn's six tetrahedra: each is a path along edges from one corner of the cube to the
+   opposite one. */
 void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
 {
     static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
@@ -155,7 +157,7 @@ void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
     }
 }
 
-/* The middle of two points; false: it is between whole steps. */
+/* Finds the middle of two points; returns false if it is between whole steps. */
 static bool find_middle(const Tets *tets, uint32_t a, uint32_t b, uint32_t middle[3])
 {
     const uint32_t *from = tets->points.items[a].at, *to = tets->points.items[b].at;
@@ -197,17 +199,17 @@ void tets_bisect(Tets *tets, size_t index)
     first.width                                  = find_width(tets, &first);
     second.width                                 = find_width(tets, &second);
     uint32_t added                               = (uint32_t)tets->list.count;
-    wait_around(tets, tet.points[0], tet.points[tet.tag], (uint32_t)index, added);
+    queue_around(tets, tet.points[0], tet.points[tet.tag], (uint32_t)index, added);
     replace_tet(tets, index, first);
     add_tet(tets, second);
-    let_wait(tets, added);
+    queue_tet(tets, added);
     link_point(tets, point, (uint32_t)index);
     for (int k = 0; k < 4; k++)
         if (second.points[k] != tet.points[tet.tag])
             link_point(tets, second.points[k], added);
 }
 
-/* Tells whether an edge has been bisected by a neighbour, which was after all met last. */
+/* Tells whether a neighbour has bisected an edge since the last closure. */
 static bool has_hanging_point(const Tets *tets, const Tet *tet)
 {
     uint32_t middle[3];
@@ -222,8 +224,8 @@ static bool has_hanging_point(const Tets *tets, const Tet *tet)
     return false;
 }
 
-/* What waits is looked at in the order of the list, again and again; so numbers are those that all would have, were all
-   looked at. */
+/* Bisects what waits in the order of the list, again and again, so that numbers are the same as if
+   all were tested. */
 void tets_close(Tets *tets)
 {
     bool any = true;

@@ -1,22 +1,21 @@
-/* voids.c: connected parts of the mesh, and those that are dropped. */
+/* voids.c: finds the components of the mesh by union-find, and drops some. */
 #include "mesh/contour/voids.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 
-/* A connected part; of those that are dropped `dropped` is true. */
+/* A component of the mesh. */
 typedef struct Shell {
     double low[3], high[3], volume;
     bool   used, dropped;
 } Shell;
 
 typedef struct Shells {
-    Contour *contour;
-    uint32_t
-          *leaders; /* of vertices: a vertex of the same part; the leader of a part leads itself */
-    Shell *shells;  /* by leader */
-    double at[3];
+    Contour  *contour;
+    uint32_t *leaders; /* union-find of vertices: another one of the same component, or itself */
+    Shell    *shells;  /* by leader */
+    double    at[3];
 } Shells;
 
 static uint32_t leader_of(const Shells *s, uint32_t vertex)
@@ -91,7 +90,7 @@ static size_t choose(Shells *s)
     return dropped;
 }
 
-/* What stays moves up; numbers of tetrahedra for triangles are no longer true. */
+/* Removes what is dropped; numbers of triangles in tetrahedra are stale then. */
 static void drop(Shells *s)
 {
     Contour  *contour  = s->contour;

@@ -1,9 +1,10 @@
-/* weights.c: weights of the corners of a triangle or a tetrahedron in a point. */
+/* weights.c: barycentric coordinates by areas and volumes. */
 #include "mesh/contour/weights.h"
 
 #include "compiler/base/vec.h"
 
-/* Part of a face or a tetrahedron along its border where no vertex is, so that those of others are elsewhere. */
+/* Part of a face or a tetrahedron along its border where no vertex is, so that no vertices
+   coincide. */
 static const double END_OF_BODY = 0.02;
 
 void keep_inside(const double *weights, const double *inner, int count, double point[3],

@@ -1,11 +1,12 @@
 /*
- * around.c: the way from a point of the surface along which the distance grows ends where the bounds of some tetrahedron
- * tell on which side of the mesh it is (docs/math.md, section 8).
+ * around.c: a path from a point of the surface, along which the distance grows, ends where bounds
+ * of some tetrahedron tell on which side of the mesh it is (docs/math.md, section 8).
  *
- * It ends in one that has a corner with the first in common, if it is shorter than all around are wide.  Let some of the
- * corners be good: all that have one of them are bounded.  The sum of barycentric coordinates for good corners
- * is 0 where none has one, and along a way it falls by no more than its length over the least width.  So where it is
- * more than that in the beginning, the way ends where there are bounds.
+ * The path ends in a tetrahedron that has a corner in common with the first, if it is shorter than
+ * all around are wide.  Let some of the corners be good: all tetrahedra that have one of them are
+ * bounded.  The sum of barycentric coordinates for good corners is 0 in tetrahedra without good
+ * corners, and along a path it falls by no more than its length over the least width.  So where the
+ * sum is more than that at the beginning, the path ends where there are bounds.
  */
 #include "mesh/proof/around.h"
 
@@ -51,10 +52,10 @@ void arounds_find(Arounds *arounds, const Tets *tets, Arena *arena)
     }
 }
 
-/* How long the way is, at most, until no point around the corner is on the wrong side of the mesh.  Pieces have the sign of
-   the distance, but not its size.  So from one to another only the greatest distance to the surface tells, unless it is
-   the same one. */
-static double way_of(const Around *around, const Tet *tet, double error)
+/* Returns the length of path after which no point around the corner is on the wrong side of the
+   mesh.  Pieces have the sign of the distance, but not its size.  So between different pieces only
+   the largest distance to the surface counts. */
+static double path_length(const Around *around, const Tet *tet, double error)
 {
     double steep = tet->steep > 0 ? tet->steep : 1;
     if (!around->in_pieces || !around->mixed)
@@ -62,7 +63,7 @@ static double way_of(const Around *around, const Tet *tet, double error)
     return around->distance <= error ? steep * around->distance / tet->slope : INFINITY;
 }
 
-/* The linear function that is 1 at some corners and 0 at the others. */
+/* Finds the linear function that is 1 at good corners and 0 at the others. */
 static void find_sum(const double corners[4][3], const bool good[4], Sure *sure)
 {
     double edges[3][3], normals[3][3];
@@ -84,11 +85,11 @@ void sure_find(const Arounds *arounds, const Tets *tets, const Tet *tet, double 
     int    count = 0;
     for (int k = 0; k < 4; k++) {
         const Around *around = &arounds->items[tet->points[k]];
-        double        way    = ROUNDING * way_of(around, tet, error);
-        good[k]              = way <= error && way < around->width;
+        double        path   = ROUNDING * path_length(around, tet, error);
+        good[k]              = path <= error && path < around->width;
         if (!good[k])
             continue;
-        longest = max2(longest, way);
+        longest = max2(longest, path);
         width   = min2(width, around->width);
         count++;
     }

@@ -1,18 +1,19 @@
 /*
- * around.h: where bounds of a tetrahedron and of those around it prove that the surface is near to the mesh.
+ * around.h: finds where bounds of a tetrahedron and of those around it prove that the surface is
+ * near to the mesh.
  */
 #ifndef KRS_MESH_AROUND_H
 #define KRS_MESH_AROUND_H
 
 #include "mesh/contour/tets.h"
 
-/* What a point of the tetrahedra knows of those that have it: smooth.h. */
+/* Bounds of all tetrahedra that have a point (smooth.h). */
 typedef struct Around {
     float    deviation, width; /* the largest and the least */
     float    distance;         /* to the surface, at most: the largest deviation over the slope */
     uint32_t origin;           /* of the function that is bounded in one of them */
-    bool     in_pieces;        /* some are bounded by pieces, */
-    bool     mixed;            /* and perhaps not all by the same function */
+    bool     in_pieces;        /* some are bounded by pieces (pieces.h) */
+    bool     mixed;            /* perhaps not all by the same function */
 } Around;
 
 typedef struct Arounds {
@@ -20,15 +21,15 @@ typedef struct Arounds {
     size_t  count, capacity;
 } Arounds;
 
-/* The part of a tetrahedron in which the surface is proven to be near to the mesh: where dot(slope, p) + offset is above
-   `least`. */
+/* The part of a tetrahedron in which the surface is proven to be near to the mesh: where dot(slope,
+   p) + offset is above `least`. */
 typedef struct Sure {
     bool   anywhere, everywhere;
     double slope[3], offset, least;
 } Sure;
 
 void arounds_find(Arounds *arounds, const Tets *tets, Arena *arena);
-/* Finds what is sure of one that fits. */
+/* Finds the proven part of a tetrahedron that fits. */
 void sure_find(const Arounds *arounds, const Tets *tets, const Tet *tet, double error, Sure *sure);
 bool sure_has(const Sure *sure, const double corners[4][3]);
 

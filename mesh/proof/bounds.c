@@ -1,4 +1,4 @@
-/* bounds.c: tetrahedra in cells of a grid, each of which is bounded once. */
+/* bounds.c: bounds derivatives once for all tetrahedra in a cell of a grid. */
 #include "mesh/proof/bounds.h"
 
 #include <stdlib.h>
@@ -9,14 +9,16 @@
 
 /* The rest of the error is for rounding: files may have single precision. */
 static const double PROVEN_ERROR = 0.999;
-/* Edges, in errors, of the smallest tetrahedra that need not be tried by cells if pieces do not fit. */
+/* Edges, in errors, above which tetrahedra are bisected if pieces do not fit, and below which cells
+   are tried. */
 static const double MIN_SHARP = 4;
-/* Edges, in errors, of the largest that are tried by cells where nothing else is known: cells are as many as squares of
-   the error, and are looked at again with each tetrahedron that is smaller. */
+/* Edges, in errors, of the largest that are tried by cells where nothing else is known: cells are
+   as many as squares of the error, and are verified again with each smaller tetrahedron. */
 static const double MIN_KNOWN = 6;
 /* Edges, in errors, below which what curves too much for second derivatives is left to cells. */
 static const double MIN_SMOOTH = 12;
-/* Deviations, in those that fit, up to which parts of such a one fit so often that they are looked at before cells are. */
+/* Deviations, over the one that fits, up to which parts fit so often that bisection comes before
+   cells. */
 static const double NEARLY = 2;
 
 double proven_error(const Mesher *m) { return PROVEN_ERROR * m->error; }
@@ -44,7 +46,7 @@ Tet *tet_of_group(Mesher *m, const Group *group, uint32_t i)
     return &m->tets.list.items[m->groups.order.items[group->first + i]];
 }
 
-/* A tetrahedron, and the cell of a grid that has it: the finest one whose cells are no smaller. */
+/* A tetrahedron and its cell in the finest grid whose cells are no smaller. */
 typedef struct Placed {
     uint64_t cell;
     uint32_t tet;
@@ -53,7 +55,7 @@ typedef struct Placed {
 static uint64_t cell_of(const Tets *tets, const Tet *tet)
 {
     uint32_t low[3], most = 0;
-    uint64_t cell = 1, size = 1, bits = 20; /* the first bit tells sizes apart */
+    uint64_t cell = 1, size = 1, bits = 20; /* the first bit distinguishes sizes */
     for (int k = 0; k < 3; k++) {
         uint32_t high = 0;
         low[k]        = UINT32_MAX;
@@ -100,7 +102,8 @@ static void measure_in_cell(Mesher *m, const Verifier *verifier, const SmoothCel
     }
 }
 
-/* Tells whether one that does not fit would by a share of the error, were bounds what they are at best. */
+/* Tells whether a tetrahedron that does not fit would, by a share of the error, with the best
+   bounds possible. */
 static bool one_may_fit(Mesher *m, const SmoothCell *middle, double share, const Placed *placed,
                         size_t count)
 {
@@ -115,21 +118,22 @@ static bool one_may_fit(Mesher *m, const SmoothCell *middle, double share, const
     return false;
 }
 
-/* Narrower bounds cost more, so they are found only where they may tell. */
-static void look_closer(Mesher *m, Verifier *verifier, SmoothCell *cell, const Placed *placed,
-                        size_t count)
+/* Finds narrower bounds, which cost more, where they may decide. */
+static void narrow_bounds(Mesher *m, Verifier *verifier, SmoothCell *cell, const Placed *placed,
+                          size_t count)
 {
-    static const double AT_BEST = 0.85, MAX_TURN = 3.5;
+    static const double AT_BEST = 0.85, MAX_CHANGE = 3.5;
     SmoothCell          middle;
-    if (!cell->empty && smooth_turn(cell) < MAX_TURN &&
-        smooth_look_at_middle(verifier->field, cell, &middle) &&
+    if (!cell->empty && smooth_gradient_change(cell) < MAX_CHANGE &&
+        smooth_bound_at_middle(verifier->field, cell, &middle) &&
         one_may_fit(m, &middle, AT_BEST, placed, count)) {
-        smooth_look_closer(verifier->field, m->error, cell);
+        smooth_narrow(verifier->field, m->error, cell);
         measure_in_cell(m, verifier, cell, placed, count);
     }
 }
 
-/* Large ones whose parts need not be looked at until they lie in cells half as large: in this one bounds are far too wide. */
+/* Marks large tetrahedra whose bounds are far too wide: their parts need no bounds until they lie
+   in cells half as large. */
 static void mark_hopeless(Mesher *m, const Placed *placed, size_t count)
 {
     static const double FAR_TOO_WIDE = 6;
@@ -141,12 +145,13 @@ static void mark_hopeless(Mesher *m, const Placed *placed, size_t count)
     }
 }
 
-/* The surface has edges there.  False: it is made of no pieces. */
+/* Measures tetrahedra where the surface has edges, by its smooth pieces; returns false where no
+   pieces are known. */
 static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed *placed,
                            size_t count)
 {
     PieceCell cell;
-    pieces_look(verifier->field, box, &cell);
+    pieces_bound(verifier->field, box, &cell);
     for (size_t i = 0; i < count && cell.known; i++) {
         Tet *tet = &m->tets.list.items[placed[i].tet];
         if (tet->state == TET_EMPTY)
@@ -167,14 +172,14 @@ static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed 
     return cell.known;
 }
 
-/* What all of a cell lacks some of its tetrahedra may have: those so large that this pays are looked at one by one. */
-static bool is_worth_another_look(const Mesher *m, const Placed *placed, size_t count)
+/* Tells whether tetrahedra without bounds are so large that it pays to bound them one by one. */
+static bool is_worth_bounding_singly(const Mesher *m, const Placed *placed, size_t count)
 {
     const Tet *tet = &m->tets.list.items[placed[0].tet];
     return count > 1 && tets_longest_edge(&m->tets, tet) > MIN_SMOOTH * m->error;
 }
 
-static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, size_t count)
+static void bound_cell(Mesher *m, Verifier *verifier, const Placed *placed, size_t count)
 {
     double     low[3], high[3], least[3], most[3];
     SmoothCell cell = {0};
@@ -193,23 +198,23 @@ static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, si
             m->tets.list.items[placed[i].tet].state = TET_EMPTY;
         return;
     }
-    smooth_look(verifier->field, box, m->error, &cell);
+    smooth_bound(verifier->field, box, m->error, &cell);
     if (!cell.known && !cell.empty) {
         field_leave(verifier->field);
         field_focus(verifier->field, wide);
-        smooth_look(verifier->field, box, m->error, &cell);
+        smooth_bound(verifier->field, box, m->error, &cell);
     }
     measure_in_cell(m, verifier, &cell, placed, count);
     if (cell.known) {
-        look_closer(m, verifier, &cell, placed, count);
+        narrow_bounds(m, verifier, &cell, placed, count);
         mark_hopeless(m, placed, count);
     } else if (!cell.empty)
         known = measure_pieces(m, verifier, wide, placed, count);
     field_leave(verifier->field);
-    if (!known && is_worth_another_look(m, placed, count))
+    if (!known && is_worth_bounding_singly(m, placed, count))
         for (size_t i = 0; i < count; i++)
             if (m->tets.list.items[placed[i].tet].state != TET_EMPTY)
-                look_at_cell(m, verifier, &placed[i], 1);
+                bound_cell(m, verifier, &placed[i], 1);
 }
 
 void bound_group(Mesher *m, Verifier *verifier, const Group *group)
@@ -231,6 +236,6 @@ void bound_group(Mesher *m, Verifier *verifier, const Group *group)
     for (size_t i = 0; i < count; i = end) {
         for (end = i + 1; end < count && placed[end].cell == placed[i].cell;)
             end++;
-        look_at_cell(m, verifier, &placed[i], end - i);
+        bound_cell(m, verifier, &placed[i], end - i);
     }
 }

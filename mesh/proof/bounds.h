@@ -1,5 +1,5 @@
 /*
- * bounds.h: which tetrahedra fit by bounds of derivatives.
+ * bounds.h: finds which tetrahedra fit, by bounds of derivatives.
  */
 #ifndef KRS_MESH_BOUNDS_H
 #define KRS_MESH_BOUNDS_H
@@ -11,9 +11,9 @@ void   tet_box(const Mesher *m, const Tet *tet, double low[3], double high[3]);
 Box    box_and_margin(double margin, const double low[3], const double high[3]);
 Tet   *tet_of_group(Mesher *m, const Group *group, uint32_t i);
 
-/* That of one whose deviation and slope are known. */
+/* Returns the state of a tetrahedron whose deviation and slope are known. */
 TetState state_by_bounds(const Mesher *m, const Tet *tet);
-/* Finds the states of a group that is new. */
+/* Finds the states of the tetrahedra of a group. */
 void bound_group(Mesher *m, Verifier *verifier, const Group *group);
 
 #endif

@@ -1,7 +1,7 @@
 /*
- * draft.c: tetrahedra by points.
+ * draft.c: tests tetrahedra at points.
  *
- * From some points in a tetrahedron one goes along the gradient to the surface.  If the surface there is in the
+ * Some points in a tetrahedron move along the gradient to the surface.  If they end in the
  * tetrahedron, its triangles must be near; if it has none, something was missed.
  */
 #include "mesh/proof/draft.h"
@@ -13,8 +13,9 @@
 #include "mesh/proof/bounds.h"
 
 enum { PROBES = 5, STEPS = 3 };
-/* Parts of the error: a point that is so near to 0 is on the surface; triangles are off by more if they are farther from it;
-   and so deep in a tetrahedron without triangles none is. */
+/* Parts of the error: the distance at which a point is on the surface, the distance of triangles
+   that are too far from it, and the depth in a tetrahedron without triangles at which a point
+   counts. */
 static const double ON_SURFACE = 0.1, OFF = 0.5, DEEP = 0.6;
 /* Edges, in errors, of the smallest that are bisected, with triangles and without. */
 static const double MIN_OFF_SURFACE = 1, MIN_MISSED = 2;
@@ -25,7 +26,7 @@ typedef struct Probe {
     bool   found; /* it is on the surface */
 } Probe;
 
-/* The centre, and a point nearer to each corner. */
+/* Sets the centre, and a point nearer to each corner. */
 static void place_probes(const double corners[4][3], Probe probes[PROBES])
 {
     static const double NEARER = 0.55, OTHERS = 0.15;
@@ -52,7 +53,7 @@ static void step_probe(Probe *probe, const double values[4], double step)
         add_scaled3(probe->at, probe->at, -values[0] / square, gradient);
 }
 
-/* Newton's steps, of all at once. */
+/* Makes one of Newton's steps for all probes. */
 static void step_probes(const MeshField *field, double error, Probe probes[PROBES])
 {
     double       points[4 * PROBES][3], values[4 * PROBES];
@@ -70,7 +71,8 @@ static void step_probes(const MeshField *field, double error, Probe probes[PROBE
     }
 }
 
-/* Tells whether a point is nearer than that to the polygon `loop`, or to the fan between it and `apex`. */
+/* Tells whether a point is within the distance of the polygon `loop`, or of the fan between it and
+   `apex`. */
 static bool is_near_loop(const double *const *loop, size_t count, const double *apex,
                          const double point[3], double distance)
 {
@@ -91,9 +93,9 @@ static bool is_near_patch(const Contour *contour, const Patch *patch, const doub
 {
     const double *loop[8];
     size_t        count = 0;
-    uint32_t      turn  = patch->fan ? 0 : patch_turn(contour, patch);
+    uint32_t      first = patch->fan ? 0 : patch_diagonal(contour, patch);
     for (uint32_t i = 0; i < patch->corner_count; i++) {
-        uint32_t        corner = (i + turn) % patch->corner_count;
+        uint32_t        corner = (i + first) % patch->corner_count;
         const FaceLine *line   = &contour->lines.items[patch->lines[corner]];
         loop[count++]          = contour->crossings.items[patch->crossings[corner]].at;
         if (line->bent)
@@ -102,7 +104,7 @@ static bool is_near_patch(const Contour *contour, const Patch *patch, const doub
     return is_near_loop(loop, count, patch->fan ? patch->apex : NULL, point, distance);
 }
 
-/* Tells whether the surface is in it where it has no triangles. */
+/* Tells whether a tetrahedron has surface where it has no triangles. */
 static bool misses_surface(const Mesher *m, const MeshField *field, const Tet *tet,
                            const Patch *patch)
 {
@@ -125,7 +127,7 @@ static bool misses_surface(const Mesher *m, const MeshField *field, const Tet *t
     return false;
 }
 
-/* Points of edges whose ends are on one side, and between which the surface may be. */
+/* Points on edges whose ends are on one side, between which the surface may be. */
 enum { EDGES = 6, INNER = 3 };
 typedef struct Edges {
     double points[EDGES * INNER][3], ends[EDGES][2];
@@ -152,8 +154,8 @@ static void find_edges(const Mesher *m, const Tet *tet, Edges *edges)
         }
 }
 
-/* Tells whether an edge goes through the surface and back, as through a wall.  Beside a plane the distance is
-   linear, so it does also where that is much less than between the ends. */
+/* Tells whether an edge goes through the surface and back, as through a wall.  Beside a plane the
+   distance is linear, so a distance that is much less than between the ends counts, too. */
 static bool goes_through(const Mesher *m, const MeshField *field, const Tet *tet)
 {
     static const double BENT = 1, BENT_PART = 0.3;

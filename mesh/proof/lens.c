@@ -1,18 +1,19 @@
-/* lens.c: thin parts of space that have the surface in them. */
+/* lens.c: bounds heights of the surface above a disc by balls and by slopes. */
 #include "mesh/proof/lens.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 
-/* How high above the disc the surface may be, if the ball around a point above it has no surface. */
+/* Returns how high above the disc the surface may be, if a ball around a point above it has no
+   surface. */
 static double height_under_ball(double height, double ball, double radius)
 {
     return ball > ROUNDING * radius ? height - sqrt(ball * ball - ROUNDING * radius * radius)
                                     : INFINITY;
 }
 
-/* So far that a lens under flat surfaces has half of the error. */
+/* Returns the distance of balls by which a lens at a flat surface has half of the error. */
 static double lens_distance(const Verifier *verifier, double radius)
 {
     return max2(radius * radius / verifier->error, 2 * radius);
@@ -30,7 +31,7 @@ bool find_lens_by_balls(const Verifier *verifier, Lens *lens)
     return lens->above < verifier->error && lens->below < verifier->error;
 }
 
-/* How high above a point the value becomes 0 that is `value` there. */
+/* Returns how high above a point with this value 0 may be. */
 static double height_of_zero(const Gradient *gradient, double value)
 {
     return -value / (value < 0 ? gradient->least : gradient->most);
@@ -60,18 +61,18 @@ typedef struct LensMesh {
 
 static bool axis_meets(const Lens *lens, const double corners[3][3])
 {
-    double turns[3];
+    double sides[3];
     for (int i = 0; i < 3; i++) {
         double from[3], to[3], cross[3];
         add_scaled3(from, corners[i], -1, lens->center);
         add_scaled3(to, corners[(i + 1) % 3], -1, lens->center);
         cross3(from, to, cross);
-        turns[i] = dot3(cross, lens->normal);
+        sides[i] = dot3(cross, lens->normal);
     }
-    return turns[0] >= 0 && turns[1] >= 0 && turns[2] >= 0;
+    return sides[0] >= 0 && sides[1] >= 0 && sides[2] >= 0;
 }
 
-/* That is the dearest question, and most triangles fit. */
+/* Tells whether a triangle is farther away than counts; asked last, since it costs most. */
 static bool is_beyond_reach(const LensMesh *mesh, const double corners[3][3])
 {
     double nearest[3];
@@ -79,8 +80,8 @@ static bool is_beyond_reach(const LensMesh *mesh, const double corners[3][3])
     return distance3(nearest, mesh->lens->center) > mesh->reach;
 }
 
-/* A triangle must face as the lens does and be within the error of all that is in the lens, or be
-   farther away than that. */
+/* Tells whether a triangle faces as the lens does and is within the error of all that is in the
+   lens, or is too far away to count. */
 static bool fits_lens(void *user, uint32_t triangle, const double corners[3][3])
 {
     static const double STEEPEST = 0.3; /* least cosine between the normals */
@@ -117,8 +118,8 @@ double lens_reach(const Verifier *verifier, const Lens *lens)
     return hypot(lens->radius, 2 * verifier->error);
 }
 
-/* Around the disc of the lens, and twice the error to both sides of it.  Where the normal is about an axis its cosine is
-   rounded, so that the disc is a little larger. */
+/* Finds the box around the disc of the lens and twice the error to both sides of it.  It is a
+   little larger, since the cosine of a normal that is about an axis is rounded. */
 static void box_of_lens(const Verifier *verifier, const Lens *lens, double low[3], double high[3])
 {
     for (int k = 0; k < 3; k++) {

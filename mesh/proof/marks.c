@@ -5,13 +5,14 @@
 #include <string.h>
 
 #include "compiler/base/minmax.h"
+
 void marks_clear(Marks *marks)
 {
     if (marks->any)
         memset(marks, 0, sizeof *marks);
 }
 
-/* The bits of a word that are in the box. */
+/* Returns the bits of a word that are in the box. */
 static uint64_t bits_of(const MarkBox *box, unsigned word)
 {
     unsigned first = word * MARKS_IN_WORD, last = first + MARKS_IN_WORD - 1;

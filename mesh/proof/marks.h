@@ -1,5 +1,6 @@
 /*
- * marks.h: where the mesh is new, by the cells of a grid, and where the proof of a tetrahedron asks for the mesh.
+ * marks.h: marks cells of a grid where the mesh is new, and compares them with those that a proof
+ * uses.
  */
 #ifndef KRS_MESH_MARKS_H
 #define KRS_MESH_MARKS_H
@@ -18,7 +19,7 @@ void marks_set(Marks *marks, const MarkBox *box);
 /* Tells whether a cell of the box is marked. */
 bool marks_touch(const Marks *marks, const MarkBox *box);
 
-/* Nowhere, and a box that has another as well. */
+/* Return a box without cells; and add the cells of a box of space to one. */
 MarkBox mark_box_none(void);
 void    mark_box_add(const Tets *tets, const double low[3], const double high[3], MarkBox *box);
 

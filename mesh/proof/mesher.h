@@ -1,5 +1,5 @@
 /*
- * mesher.h: what a mesh is made with.
+ * mesher.h: the state of a run of the mesher.
  */
 #ifndef KRS_MESH_MESHER_H
 #define KRS_MESH_MESHER_H
@@ -17,29 +17,29 @@ typedef struct Mesher {
     const KrsMeshOptions *options;
     const MeshSolid      *solid;
     double                low[3], high[3], error, side;
-    double                spared; /* of the error, for leaving out triangles */
+    double                reserved; /* of the error, for simplification */
     MeshField             fields[MAX_PARTS];
     Verifier              verifiers[MAX_PARTS];
     Tets                  tets;
     Contour               contour;
     Bvh                   bvh;
     Marks                 marks;      /* where the mesh is new since proofs were found */
-    bool                  has_proofs; /* some were looked for */
+    bool                  has_proofs; /* proofs have been searched */
     Arounds               around;
     struct {
         uint32_t *items;
         size_t    count, capacity;
     } last;               /* tetrahedra that were fresh before the last refinement */
-    Groups        groups; /* of tetrahedra to be looked at */
+    Groups        groups; /* of tetrahedra to be worked on */
     atomic_size_t next_group;
     size_t        unresolved; /* tetrahedra */
     double        sharp;      /* as of Verifier */
-    int           tidied;     /* how often sides of points were (sides.h) */
-    size_t        handles;    /* places in a mesh that is thought to be right (handles.h) */
+    int           tidied;     /* how often sides of points were changed (sides.h) */
+    size_t        handles;    /* in a mesh where nothing else is unresolved (handles.h) */
     double        unresolved_at[3];
-    double        fraction;    /* of the work, as was last said, */
-    double        begun, goal; /* where the round began, and will end */
-    double        looked;      /* tetrahedra that were looked at by bounds */
+    double        fraction;    /* of the work, as reported last */
+    double        begun, goal; /* where the present step began, and will end */
+    double        bounded;     /* tetrahedra that were bounded */
     atomic_bool   stopped;
 } Mesher;
 

@@ -1,4 +1,5 @@
-/* pieces.c: how far inside and outside of the mesh are from those of the surface, where it has edges. */
+/* pieces.c: bounds how far inside and outside of the mesh are from those of the surface, where it
+   has edges. */
 #include "mesh/proof/pieces.h"
 
 #include <string.h>
@@ -9,7 +10,7 @@ static const double ROUNDING = 1 + 1e-9;
 
 /* ---- cells ---- */
 
-/* How fast a piece grows along a direction, at least. */
+/* Returns the least that a piece grows along a direction. */
 static double growth(const FieldPieces *pieces, size_t i, const double direction[3])
 {
     double sum = 0;
@@ -21,7 +22,8 @@ static double growth(const FieldPieces *pieces, size_t i, const double direction
     return sum;
 }
 
-/* A direction in which all grow, from that of their mean, turned to the one that grows least. */
+/* Searches for a direction in which all pieces grow, from that of their mean, step by step towards
+   the one that grows least; returns by how much all grow at least. */
 static double find_slope(const FieldPieces *pieces)
 {
     enum { ROUNDS = 24 };
@@ -50,7 +52,7 @@ static double find_slope(const FieldPieces *pieces)
     return best / ROUNDING;
 }
 
-void pieces_look(MeshField *field, Box box, PieceCell *cell)
+void pieces_bound(MeshField *field, Box box, PieceCell *cell)
 {
     cell->known = field_pieces(field, box, &cell->pieces);
     if (!cell->known || cell->pieces.side != 0)
@@ -59,21 +61,22 @@ void pieces_look(MeshField *field, Box box, PieceCell *cell)
     cell->known = cell->slope > 0;
     cell->steep = 0;
     for (size_t i = 0; i < cell->pieces.count && cell->known; i++) {
-        bool   turned = cell->pieces.signs[i] < 0;
-        double square = 0;
+        bool   negated = cell->pieces.signs[i] < 0;
+        double square  = 0;
         for (int k = 0; k < 3; k++) {
             double most = range_largest(cell->pieces.slopes[i].by[k]);
             square += most * most;
         }
         cell->steep = max2(cell->steep, ROUNDING * sqrt(square));
-        smooth_forms(&cell->pieces.hessians[i], turned ? cell->below[i] : cell->above[i],
-                     turned ? cell->above[i] : cell->below[i]);
+        smooth_forms(&cell->pieces.hessians[i], negated ? cell->below[i] : cell->above[i],
+                     negated ? cell->above[i] : cell->below[i]);
     }
 }
 
 /* ---- parts ---- */
 
-/* Values are those of pieces with the sign of the side: what is asked for is how far above 0 they may be. */
+/* A point and the values of pieces there, with the sign of the side, so that bounds are sought
+   above 0. */
 typedef struct PartPoint {
     double at[3], values[MAX_PIECES];
 } PartPoint;
@@ -84,7 +87,7 @@ typedef struct Part {
 
 typedef struct Measure {
     const PieceCell *cell;
-    double           side; /* 1: values, -1: their complements */
+    double           side; /* 1: values, -1: their negatives */
     double           enough;
     int              budget;
 } Measure;
@@ -94,8 +97,8 @@ static double bend(const Measure *m, size_t piece, const double a[3], const doub
     return smooth_bend(m->side > 0 ? m->cell->below[piece] : m->cell->above[piece], a, b);
 }
 
-/* The most that a piece may be in a part.  Points are taken in the order of their values: those so low that pairs with
-   them add nothing leave what the others permit. */
+/* Returns a bound of a piece in a part.  Points are taken in the order of their values: those so
+   low that pairs with them add nothing leave what the others permit. */
 static double max_of_piece(const Measure *m, size_t piece, const Part *part)
 {
     double q[4][4], values[4], least = INFINITY, low = -INFINITY;
@@ -152,7 +155,8 @@ static double max_of_part(const Measure *m, const Part *part)
     return stack[0];
 }
 
-/* The two halves at the longest edge; pieces in its middle are no more than the mean and what they bend. */
+/* Halves a part at its longest edge; pieces in its middle are no more than the mean plus what they
+   bend. */
 static void halve_part(const Measure *m, const Part *part, Part halves[2])
 {
     int       from = 0, to = 1;
@@ -194,7 +198,7 @@ static double measure_part(Measure *m, const Part *part, int halvings)
 
 /* ---- cones ---- */
 
-/* Points of a tetrahedron: its corners, then the mesh's vertices there. */
+/* Numbers of points of a tetrahedron: its corners, then the mesh's vertices there. */
 enum { CROSSINGS = 4, BENDS = 8, APEX = 12, POINTS = 13, NONE = -1 };
 
 typedef struct Points {
@@ -223,9 +227,9 @@ static void add_cone(Cones *c, int p, int q, int r)
     c->most = max2(c->most, measure_part(&c->m, &part, 0));
 }
 
-/* A face of three corners, and where the mesh cuts it, from an edge of `single` and `a` to one of `single` and `b`. */
+/* How the mesh cuts a face: from the edge of `single` and `a` to that of `single` and `b`. */
 typedef struct FaceCut {
-    int single, a, b, at_a, at_b, bend; /* `single` NONE: it does not */
+    int single, a, b, at_a, at_b, bend; /* `single` is NONE where it does not */
 } FaceCut;
 
 static void add_face_side(Cones *c, const FaceCut *cut, const int corners[3], bool inside)
@@ -319,7 +323,7 @@ static double deviation_of_side(const Contour *contour, const Tet *tet, const Po
     bool             inside      = m->side > 0;
     if (tet->triangle_count > 0) {
         const Patch *patch = &contour->patches.items[tet->patch];
-        c.apex             = patch->fan ? APEX : CROSSINGS + (int)patch_turn(contour, patch);
+        c.apex             = patch->fan ? APEX : CROSSINGS + (int)patch_diagonal(contour, patch);
     }
     for (int i = 0; i < 4; i++) {
         FaceCut cut = find_cut(contour, tet, points, FACES[i]);
@@ -348,7 +352,7 @@ bool pieces_measure(const Contour *contour, const MeshField *field, const PieceC
         m.side    = -1;
         deviation = max2(deviation, deviation_of_side(contour, tet, &points, &m));
     }
-    /* what is more was not looked at to the end */
+    /* A larger deviation was not bounded to the end. */
     tet->deviation = deviation > m.enough ? INFINITY
                                           : (float)(deviation * (1 + copysign(1e-6, deviation)));
     return deviation < 0;

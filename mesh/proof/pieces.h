@@ -1,10 +1,11 @@
 /*
- * pieces.h: as smooth.h, where the surface has edges: the sign of the distance is that of minima and maxima of
- * pieces whose derivatives do not jump.
+ * pieces.h: does as smooth.h where the surface has edges: the sign of the distance is that of
+ * minima and maxima of pieces whose derivatives do not jump.
  *
- * A tetrahedron is cut into smaller ones, cones from a vertex of the mesh over the parts of its boundary on
- * both sides.  In each of them every piece is bounded by its values at the corners and its second derivatives,
- * and minima and maxima of the bounds are bounds.  Where that is not enough a part is halved.
+ * A tetrahedron is cut into smaller ones, cones from a vertex of the mesh over the parts of its
+ * boundary on both sides.  In each of them every piece is bounded by its values at the corners and
+ * its second derivatives, and minima and maxima of the bounds are bounds.  Where that is not enough
+ * a part is halved.
  */
 #ifndef KRS_MESH_PIECES_H
 #define KRS_MESH_PIECES_H
@@ -15,13 +16,13 @@ typedef struct PieceCell {
     bool        known;
     FieldPieces pieces;
     double      above[MAX_PIECES][6], below[MAX_PIECES][6]; /* as of SmoothCell */
-    double      slope,
-        steep; /* all pieces grow by that along one direction, and none by more along any */
+    /* All pieces grow by `slope` along one direction, and none by more than `steep` along any. */
+    double slope, steep;
 } PieceCell;
 
-/* The field has entered the box last. */
-void pieces_look(MeshField *field, Box box, PieceCell *cell);
-/* As smooth_measure; a deviation that fits the error is not looked at more closely. */
+/* Bounds the pieces in a box, which the field has entered last. */
+void pieces_bound(MeshField *field, Box box, PieceCell *cell);
+/* Does as smooth_measure, but stops as soon as the deviation fits the error. */
 bool pieces_measure(const Contour *contour, const MeshField *field, const PieceCell *cell,
                     double error, Tet *tet);
 

@@ -1,4 +1,5 @@
-/* smooth.c: how far inside and outside of the mesh are from those of the surface, in one tetrahedron. */
+/* smooth.c: bounds how far inside and outside of the mesh are from those of the surface, in one
+   tetrahedron. */
 #include "mesh/proof/smooth.h"
 
 #include <string.h>
@@ -10,8 +11,9 @@ static const int    ROW[6] = {0, 1, 2, 1, 0, 0}, COLUMN[6] = {0, 1, 2, 2, 2, 1};
 
 /* ---- cells ---- */
 
-/* Those in the middle of the ranges, and what is added to the diagonal for the rest of them: |u_j u_k| is at
-   most (u_j^2 + u_k^2) / 2.  It is the same for all points around, though their second derivatives differ. */
+/* Takes the middles of the ranges, and adds the rest to the diagonal, since |u_j u_k| is at most
+   (u_j^2 + u_k^2) / 2.  The forms hold for all points of the box, though second derivatives
+   differ. */
 void smooth_forms(const LaneHessian *hessian, double above[6], double below[6])
 {
     double more[3] = {0, 0, 0}, size = 0;
@@ -32,7 +34,8 @@ void smooth_forms(const LaneHessian *hessian, double above[6], double below[6])
     }
 }
 
-/* Differences in the middle of the box; they are as wrong as second derivatives permit, at most by what is returned. */
+/* Finds the gradient in the middle of the box by differences; returns its largest error, which
+   second derivatives tell. */
 static double find_middle_gradient(const MeshField *field, Box box, double step,
                                    const LaneHessian *hessian, double gradient[3])
 {
@@ -49,8 +52,8 @@ static double find_middle_gradient(const MeshField *field, Box box, double step,
     return step * size;
 }
 
-/* By the mean value theorem: what the value grows by along a normal in the middle of the box, less what second
-   derivatives may change that by. */
+/* Returns the least slope along a normal: that in the middle of the box, less what second
+   derivatives may change it by (the mean value theorem). */
 static double slope_along(const double normal[3], const double gradient[3], double wrong, Box box,
                           const LaneHessian *hessian)
 {
@@ -73,7 +76,7 @@ static double find_slope(const MeshField *field, Box box, double step, const Lan
     return normalize3(normal) ? slope_along(normal, gradient, wrong, box, hessian) : 0;
 }
 
-void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell)
+void smooth_bound(const MeshField *field, Box box, double error, SmoothCell *cell)
 {
     LaneSlope   slope;
     LaneHessian hessian;
@@ -91,7 +94,7 @@ void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell
         cell->slope = max2(cell->slope, gradient.least / ROUNDING);
 }
 
-double smooth_turn(const SmoothCell *cell)
+double smooth_gradient_change(const SmoothCell *cell)
 {
     double most = 0;
     for (int k = 0; k < 3; k++)
@@ -104,7 +107,8 @@ double smooth_turn(const SmoothCell *cell)
 
 enum { MAX_CELL_PARTS = 1 << SMOOTH_HALVINGS };
 
-/* The parts of a box where the value may be as small as the error, and what second derivatives are in all. */
+/* The parts of a box where the value may be as small as the error, and the hull of all second
+   derivatives. */
 typedef struct CellParts {
     double      error;
     LaneHessian hull, hessians[MAX_CELL_PARTS];
@@ -112,7 +116,7 @@ typedef struct CellParts {
     int         count;
 } CellParts;
 
-static bool look_at_parts(const MeshField *field, Box box, int halvings, CellParts *parts)
+static bool bound_parts(const MeshField *field, Box box, int halvings, CellParts *parts)
 {
     Range       range;
     LaneSlope   slope;
@@ -122,8 +126,8 @@ static bool look_at_parts(const MeshField *field, Box box, int halvings, CellPar
         int    axis               = halvings % 3;
         double middle             = 0.5 * (box.axis[axis].low + box.axis[axis].high);
         halves[0].axis[axis].high = halves[1].axis[axis].low = middle;
-        return look_at_parts(field, halves[0], halvings - 1, parts) &&
-               look_at_parts(field, halves[1], halvings - 1, parts);
+        return bound_parts(field, halves[0], halvings - 1, parts) &&
+               bound_parts(field, halves[1], halvings - 1, parts);
     }
     if (!field_hessian(field, box, &range, &slope, &own))
         return false;
@@ -138,10 +142,10 @@ static bool look_at_parts(const MeshField *field, Box box, int halvings, CellPar
     return true;
 }
 
-/* Ways begin in one of the parts, and are no longer than the error: along them the slope changes by what is known of the
-   whole box. */
-static double slope_of_ways(const MeshField *field, const CellParts *parts, const SmoothCell *cell,
-                            const double normal[3])
+/* Returns the least slope of paths that begin in one of the parts and are no longer than the error:
+   along them it changes by what is known of the whole box. */
+static double slope_of_paths(const MeshField *field, const CellParts *parts, const SmoothCell *cell,
+                             const double normal[3])
 {
     double gradient[3], zero[3] = {0, 0, 0}, least = 1;
     for (int i = 0; i < parts->count; i++) {
@@ -154,7 +158,7 @@ static double slope_of_ways(const MeshField *field, const CellParts *parts, cons
                                        smooth_bend(cell->below, normal, zero));
 }
 
-void smooth_look_closer(const MeshField *field, double error, SmoothCell *cell)
+void smooth_narrow(const MeshField *field, double error, SmoothCell *cell)
 {
     CellParts parts = {.error = error};
     Box       box   = cell->box;
@@ -164,14 +168,14 @@ void smooth_look_closer(const MeshField *field, double error, SmoothCell *cell)
         box.axis[k].low += error;
         box.axis[k].high -= error;
     }
-    if (!look_at_parts(field, box, SMOOTH_HALVINGS, &parts) ||
+    if (!bound_parts(field, box, SMOOTH_HALVINGS, &parts) ||
         !field_normal(field, middle, 1e-2 * error, normal))
         return;
-    cell->slope = max2(cell->slope, slope_of_ways(field, &parts, cell, normal));
+    cell->slope = max2(cell->slope, slope_of_paths(field, &parts, cell, normal));
     smooth_forms(&parts.hull, cell->above, cell->below);
 }
 
-bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, SmoothCell *middle)
+bool smooth_bound_at_middle(const MeshField *field, const SmoothCell *cell, SmoothCell *middle)
 {
     Range       range;
     LaneSlope   slope;
@@ -193,7 +197,7 @@ bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, Smoot
 
 /* ---- points ---- */
 
-/* Points of which those within the mesh's part of the tetrahedron are a mean: its vertices first. */
+/* Points whose convex hull has one side of the tetrahedron: vertices of the mesh first. */
 enum { MAX_MESH_POINTS = 9, MAX_POINTS = 12 };
 
 typedef struct Side {
@@ -203,7 +207,7 @@ typedef struct Side {
     double        depths[4]; /* of its corners */
 } Side;
 
-/* The form between two points, which may be below 0. */
+/* Returns the form between two points, which may be below 0. */
 static double form_between(const double form[6], const double a[3], const double b[3])
 {
     double d[3];
@@ -212,14 +216,13 @@ static double form_between(const double form[6], const double a[3], const double
            2 * (form[3] * d[1] * d[2] + form[4] * d[0] * d[2] + form[5] * d[0] * d[1]);
 }
 
-/* How much the form permits between two points. */
 double smooth_bend(const double form[6], const double a[3], const double b[3])
 {
     return max2(form_between(form, a, b), 0) * ROUNDING;
 }
 
-/* The most that the sum of w_i w_j q_ij over all pairs is, for weights w >= 0 whose sum is 1.  With q the squares of lengths
-   it is that of the radius of the smallest ball around the points. */
+/* Returns the largest sum of w_i w_j q_ij over all pairs, for weights w >= 0 whose sum is 1.  With
+   q the squares of lengths it is the squared radius of the smallest ball around the points. */
 static double max_of_pair(double q) { return 0.25 * q; }
 
 double smooth_most_of_three(double a, double b, double c)
@@ -231,8 +234,9 @@ double smooth_most_of_three(double a, double b, double c)
     return ROUNDING * a * b * c / square;
 }
 
-/* The most for four points whose pairs that are not neighbours have `a` and `b`, and all others at most c: with
-   the share s of the first pair it is at most s^2 a / 4 + (1 - s)^2 b / 4 + s (1 - s) c. */
+/* Bounds that sum for four points in a ring, whose opposite pairs have `a` and `b`, and all others
+   at most c: with the share s of the first pair it is at most the sum of s^2 a / 4, (1 - s)^2 b / 4
+   and s (1 - s) c. */
 static double max_of_ring(double a, double b, double c)
 {
     double curve = 0.25 * (a + b) - c, best = max2(0.25 * a, 0.25 * b);
@@ -245,11 +249,11 @@ static double max_of_ring(double a, double b, double c)
 
 /* ---- the mesh in a tetrahedron ---- */
 
-/* Its vertices there: crossings, vertices of lines, apex. */
+/* The vertices of the mesh in a tetrahedron: crossings, vertices of lines, apex. */
 typedef struct MeshPart {
     const Patch  *patch;
     const double *crossings[4], *bends[4]; /* bends[i] follows crossings[i]; NULL: none */
-    double        value;                   /* the largest size of values at its vertices */
+    double        value;                   /* the largest absolute value at its vertices */
 } MeshPart;
 
 static MeshPart mesh_part(const Contour *contour, const Tet *tet)
@@ -273,8 +277,9 @@ static MeshPart mesh_part(const Contour *contour, const Tet *tet)
     return part;
 }
 
-/* A fan has a cone from its apex over each part of the tetrahedron's boundary, and cones have at most the vertices of
-   one line and the apex.  Two triangles are bounded by the hull of all four. */
+/* Returns the largest that the form permits on the mesh.  Each cone of a fan has at most the
+   vertices of one line and the apex.  Two triangles are bounded by the hull of all four
+   vertices. */
 static double max_on_mesh(const MeshPart *part, const double form[6])
 {
     const Patch *patch = part->patch;
@@ -321,10 +326,10 @@ static Side start_side(const MeshPart *part, const double form[6])
     return side;
 }
 
-/* The most that the value may have the wrong sign on one side of the mesh; below 0: it has not.
-   The signs of its corners are right.  A corner so deep that pairs with it add nothing
-   leaves what the others permit; those that are not count as the mesh does, four points at most at once.  `most` is
-   that on the mesh. */
+/* Returns the largest value of the wrong sign on one side of the mesh, where `most` is that on the
+   mesh; below 0 there is none.  The signs of corners are right.  A corner so deep that pairs with
+   it add nothing leaves what the others permit; other corners count as the mesh does, four points
+   at most at once. */
 static double deviation_of_side(const Side *side, const MeshPart *part, double most)
 {
     double deep = -INFINITY, pairs = 0, least = part->patch ? -part->value : INFINITY;
@@ -351,8 +356,8 @@ static double deviation_of_side(const Side *side, const MeshPart *part, double m
     return max2(deep, 0.5 * 0.375 * pairs - least);
 }
 
-/* How much a form permits between a corner and any point of the tetrahedron: of a mean of corners it is the mean, less the
-   sum of w_i w_j times the form between each pair. */
+/* Bounds a form between a corner and any point of the tetrahedron: of a mean of corners it is the
+   mean, less the sum of w_i w_j times the form between each pair. */
 static double max_from(const double form[6], const double (*corners)[3], int from)
 {
     double most = 0, least = 0;
@@ -379,7 +384,7 @@ double smooth_level(const SmoothCell *cell, const double (*corners)[3], const do
     return least;
 }
 
-/* The same of both sides: inside first. */
+/* Returns the deviation of both sides, inside first. */
 static double deviation_of(const SmoothCell *cell, const MeshPart *part, const Side *sides,
                            const double (*corners)[3], const double values[4])
 {

@@ -1,5 +1,5 @@
 /*
- * verifier.h: what a proof needs.
+ * verifier.h: what one thread needs for proofs.
  */
 #ifndef KRS_MESH_VERIFIER_H
 #define KRS_MESH_VERIFIER_H
@@ -8,22 +8,22 @@
 #include "mesh/contour/contour.h"
 #include "mesh/proof/around.h"
 
-/* For one thread. */
 typedef struct Verifier {
     MeshField  *field;
     const Tets *tets;
     const Bvh  *mesh;
     double      error;
-    double
-        sharp; /* edges, in errors, of the smallest that are bisected where it is not decided; 0: none is */
+    /* Edges, in errors, of the smallest tetrahedra that are bisected rather than unresolved; 0:
+       none is. */
+    double   sharp;
     Tet     *tet;
-    Sure     sure; /* where in it the surface is near without cells */
+    Sure     sure; /* where in it bounds prove that the surface is near */
     double   center[3];
-    double   budget;        /* cells that the proof may still look at */
-    uint32_t last;          /* the triangle that was found to be near to a place */
-    uint32_t unresolved;    /* places of the tetrahedron where it has not been decided, */
-    double   place[3];      /* and one of them; else its centre */
-    uint32_t asked_in_vain; /* cells of it whose pieces did not tell on which side they are */
+    double   budget;        /* cells that the proof may still try */
+    uint32_t last;          /* the triangle that was last found to be near */
+    uint32_t unresolved;    /* points of the tetrahedron where nothing is decided, */
+    double   location[3];   /* and one of them; else its centre */
+    uint32_t asked_in_vain; /* cells whose pieces did not tell on which side they are */
 } Verifier;
 
 #endif

@@ -1,12 +1,12 @@
 /*
- * verify.c: proofs by balls and by slopes: where the distance at a point is d, the ball of radius |d| around
- * it has no surface in it; and where all derivatives in a box are about the same, the surface there is
- * about a plane.
+ * verify.c: proofs by balls and by slopes: where the distance at a point is d, the ball of radius
+ * |d| around it has no surface in it; and where all derivatives in a box are about the same, the
+ * surface there is about a plane.
  *
  * A part of space is near enough to the mesh if it is within the error of it.  That takes as many
  * parts as there are squares of the error on the surface, so flat places have a shorter proof: the
- * surface is in a thin lens.  Derivatives tell that; where they have no bounds, a large ball outside and
- * one inside that nearly touch leave a lens between them.
+ * surface is in a thin lens.  Derivatives tell that; where they have no bounds, a large ball
+ * outside and one inside that nearly touch leave a lens between them.
  */
 #include "mesh/proof/verify.h"
 
@@ -18,12 +18,13 @@
 #include "mesh/proof/marks.h"
 
 enum { MAX_UNRESOLVED = 16, MAX_HALVINGS = 80 };
-/* Parts of a cell's radius from where on a lens is worth another try: the last was too thick; or the surface had
-   an edge, or derivatives no bounds, which parts share with the whole more often. */
+/* Parts of a cell's radius at which a lens is tried again: if the last was too thick; or if the
+   surface had an edge, or derivatives no bounds, which parts share with the whole more often. */
 static const double LESS_FLAT = 0.7, LESS_STEEP = 0.35;
-/* Parts of the error: what is smaller is not divided further. */
+/* Parts of the error: smaller cells and triangles are not divided. */
 static const double TINY_CELL = 0.25, TINY_TRIANGLE = 0.125;
-/* How deep, in errors, a side is that is not thinner than the error: a right angle leaves about as much. */
+/* The depth, in errors, of a side that is not thinner than the error: a right angle leaves about as
+   much. */
 static const double DEEP = 0.2;
 
 bool verify_is_far(const Tets *tets, const Tet *tet)
@@ -52,33 +53,34 @@ bool verify_is_empty(const Verifier *verifier, const Tet *tet)
 
 /* ---- from the surface to the mesh ---- */
 
-/* The proof asks for the mesh so far around a place. */
-static void note_need(Verifier *verifier, const double place[3], double around)
+/* Notes that the proof uses the mesh so far around a point. */
+static void note_need(Verifier *verifier, const double point[3], double around)
 {
     double low[3], high[3];
     for (int k = 0; k < 3; k++) {
-        low[k]  = place[k] - around;
-        high[k] = place[k] + around;
+        low[k]  = point[k] - around;
+        high[k] = point[k] + around;
     }
     mark_box_add(verifier->tets, low, high, &verifier->tet->needs);
 }
 
-/* Its own triangles are there as long as the tetrahedron; of others the proof needs that triangle. */
-static bool is_near_mesh(Verifier *verifier, const double place[3], double radius)
+/* Tells whether the mesh is within a radius.  The tetrahedron's own triangles exist as long as it
+   does; another triangle is noted. */
+static bool is_near_mesh(Verifier *verifier, const double point[3], double radius)
 {
     const Tet *tet = verifier->tet;
     double     nearest[3];
     for (uint32_t i = 0; i < tet->triangle_count; i++)
-        if (bvh_triangle_is_near(verifier->mesh, tet->first_triangle + i, place, radius, nearest))
+        if (bvh_triangle_is_near(verifier->mesh, tet->first_triangle + i, point, radius, nearest))
             return true;
-    if (!bvh_is_near(verifier->mesh, place, radius, &verifier->last))
+    if (!bvh_is_near(verifier->mesh, point, radius, &verifier->last))
         return false;
-    bvh_triangle_is_near(verifier->mesh, verifier->last, place, radius, nearest);
+    bvh_triangle_is_near(verifier->mesh, verifier->last, point, radius, nearest);
     note_need(verifier, nearest, 0);
     return true;
 }
 
-/* Tells whether the mesh fills a lens that a proof needs. */
+/* Tells whether the mesh fills a lens, and notes what that uses. */
 static bool fills_lens(Verifier *verifier, const Lens *lens)
 {
     note_need(verifier, lens->center, ROUNDING * lens_reach(verifier, lens));
@@ -114,20 +116,20 @@ static bool is_flat_by_slope(Verifier *verifier, const double corners[4][3], con
            (lens.above < verifier->error && fills_lens(verifier, &lens));
 }
 
-/* Whether, so far from a place, there is another side that is at least so deep: at an edge it may be in none of the
-   directions of its faces, but between them. */
+/* Tells whether the other side is at least `deep` at some point around a centre: at an edge it may
+   be in none of the directions of its faces, but between them. */
 static bool is_other_side_around(const Verifier *verifier, const double center[3], double distance,
                                  double step, double deep)
 {
     enum { AROUND = 27, MIDDLE = 13 };
-    double places[AROUND][3], distances[AROUND];
+    double points[AROUND][3], distances[AROUND];
     for (int i = 0; i < AROUND; i++) {
         double direction[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
         if (i != MIDDLE)
             normalize3(direction);
-        add_scaled3(places[i], center, step, direction);
+        add_scaled3(points[i], center, step, direction);
     }
-    field_distances(verifier->field, (const double(*)[3])places, AROUND, distances);
+    field_distances(verifier->field, (const double(*)[3])points, AROUND, distances);
     for (int i = 0; i < AROUND; i++)
         if ((distances[i] < 0) != (distance < 0) && fabs(distances[i]) >= deep)
             return true;
@@ -140,8 +142,8 @@ static bool may_be_sharper(const Verifier *verifier, const Tet *tet)
            tets_longest_edge(verifier->tets, tet) > verifier->sharp * verifier->error;
 }
 
-/* At a place that is farther from the mesh than permitted, and nearer to the surface: goes on through
-   the surface.  False: there is another side, so the mesh is wrong. */
+/* Counts a point as unresolved that is near to the surface and too far from the mesh; returns false
+   if the other side is behind the surface, so that the mesh is wrong. */
 static bool leave_unresolved(Verifier *verifier, const double center[3], double distance)
 {
     double normal[3], beyond[3];
@@ -156,7 +158,7 @@ static bool leave_unresolved(Verifier *verifier, const double center[3], double 
         return false;
     note_need(verifier, center, verifier->error);
     verifier->unresolved++;
-    memcpy(verifier->place, center, sizeof verifier->place);
+    memcpy(verifier->location, center, sizeof verifier->location);
     return true;
 }
 
@@ -169,15 +171,15 @@ typedef struct Cell {
     double lens; /* largest radius for which a lens is worth a try */
 } Cell;
 
-/* What is known of a cell. */
+/* The numbers that are found for a cell. */
 typedef struct CellView {
     double center[3], radius, distance;
     bool   near_mesh, may_be_flat;
-    double direction[3]; /* in which the distance grows, if it may be flat; it need not be exact */
-    bool   has_gradient; /* there are bounds of derivatives, as far as they were asked for */
+    double direction[3]; /* in which the distance grows, about, if it may be flat */
+    bool   has_gradient; /* bounds of derivatives were asked for, and known */
 } CellView;
 
-/* Cells that are still to be looked at, the smallest last. */
+/* Cells that are left, the smallest last. */
 typedef struct Cells {
     Cell   items[MAX_CELLS];
     size_t count;
@@ -194,21 +196,21 @@ static CellView cell_view(Verifier *verifier, const Cell *cell)
     return view;
 }
 
-/* Finds distances and directions of all at once. */
-static void look_at_cells(const Verifier *verifier, CellView *views, size_t count)
+/* Finds distances and directions of some cells at once. */
+static void measure_cells(const Verifier *verifier, CellView *views, size_t count)
 {
-    double places[4 * CELLS_AT_ONCE][3], distances[4 * CELLS_AT_ONCE];
+    double points[4 * CELLS_AT_ONCE][3], distances[4 * CELLS_AT_ONCE];
     size_t first[CELLS_AT_ONCE], used = 0;
     for (size_t i = 0; i < count; i++) {
         first[i] = used;
         for (int k = 0; !views[i].near_mesh && k < (views[i].may_be_flat ? 4 : 1); k++) {
-            memcpy(places[used], views[i].center, sizeof places[used]);
+            memcpy(points[used], views[i].center, sizeof points[used]);
             if (k > 0)
-                places[used][k - 1] += 1e-3 * verifier->error;
+                points[used][k - 1] += 1e-3 * verifier->error;
             used++;
         }
     }
-    field_distances(verifier->field, (const double(*)[3])places, used, distances);
+    field_distances(verifier->field, (const double(*)[3])points, used, distances);
     for (size_t i = 0; i < count; i++) {
         const double *found = &distances[first[i]];
         if (views[i].near_mesh)
@@ -228,7 +230,7 @@ static void halve_cell(Cells *cells, const Cell *cell, double lens)
                                               second->corners);
 }
 
-/* Balls cost less than slopes, and tell where distances are exact. */
+/* Tells whether a lens proves a cell: by balls, which cost less, or else by slopes. */
 static bool is_flat(Verifier *verifier, const Cell *cell, CellView *view)
 {
     return (normalize3(view->direction) &&
@@ -238,8 +240,8 @@ static bool is_flat(Verifier *verifier, const Cell *cell, CellView *view)
                             &view->has_gradient);
 }
 
-/* Tells whether there is no surface, since solids overlap there by less than cells are large, or gaps do.  Where
-   pieces did not tell that so often they are not asked any more. */
+/* Tells whether a cell has no surface, by its pieces, as where solids overlap by less than cells
+   are large.  After many failures pieces are not asked any more. */
 static bool is_on_one_side(Verifier *verifier, const Cell *cell, const CellView *view)
 {
     enum { MAX_IN_VAIN = 32 };
@@ -252,7 +254,7 @@ static bool is_on_one_side(Verifier *verifier, const Cell *cell, const CellView 
     return told;
 }
 
-/* False: the mesh is refuted. */
+/* Proves a cell, or halves it; returns false if the mesh is refuted. */
 static bool cell_is_near_mesh(Verifier *verifier, Cells *cells, const Cell *cell, CellView *view)
 {
     double error = verifier->error, lens = cell->lens;
@@ -277,7 +279,7 @@ static bool cell_is_near_mesh(Verifier *verifier, Cells *cells, const Cell *cell
     return true;
 }
 
-/* By bounds, which ask for the mesh as far as the error around. */
+/* Tells whether bounds prove a cell; they use the mesh within the error of it. */
 static bool is_sure(Verifier *verifier, const Cell *cell)
 {
     if (!verifier->sure.anywhere || !sure_has(&verifier->sure, (const double(*)[3])cell->corners))
@@ -307,7 +309,7 @@ static bool surface_is_near_mesh(Verifier *verifier, const Cell *whole, int side
         verifier->budget -= (double)count;
         if (verifier->budget < 0)
             return false;
-        look_at_cells(verifier, views, count);
+        measure_cells(verifier, views, count);
         for (size_t i = 0; i < count; i++)
             if (!cell_is_near_mesh(verifier, &cells, &now[i], &views[i]))
                 return false;
@@ -317,7 +319,7 @@ static bool surface_is_near_mesh(Verifier *verifier, const Cell *whole, int side
 
 /* ---- from the mesh to the surface ---- */
 
-/* Tells whether the surface is between two points on both sides of a third. */
+/* Tells whether the surface is between two points on both sides of a centre. */
 static bool is_crossed(const Verifier *verifier, const double center[3], double far,
                        const double direction[3])
 {
@@ -357,8 +359,8 @@ static bool parts_are_near_surface(Verifier *verifier, const double corners[3][3
 
 typedef enum Nearness { FAR_FROM_SURFACE, NEAR_SURFACE, NOT_KNOWN } Nearness;
 
-/* By derivatives up to the error around a triangle: along their direction the surface is as far away as the value
-   over the least of them.  Without bounds of them, by balls. */
+/* Finds by derivatives within the error of a triangle whether the surface is near: along their
+   direction it is no farther than the value over the least of them. */
 static Nearness find_nearness(const Verifier *verifier, const double corners[3][3],
                               const double center[3], double radius, double distance)
 {
@@ -382,7 +384,8 @@ static Nearness find_nearness(const Verifier *verifier, const double corners[3][
                : NOT_KNOWN;
 }
 
-/* Near a sharp edge both directions may leave the solid on both sides. */
+/* Tells whether the surface is near a small triangle; near a sharp edge both directions may leave
+   the solid on both sides. */
 static bool is_crossed_nearby(const Verifier *verifier, const double center[3], double radius,
                               double distance, const double normal[3])
 {
@@ -436,7 +439,7 @@ static bool triangles_are_near_surface(Verifier *verifier, const Tet *tet)
     return true;
 }
 
-/* 1: the mesh has all corners outside; -1: inside; 0: it goes through. */
+/* Returns 1 if the mesh has all corners outside, -1 if inside, 0 if it goes through. */
 static int find_side(const Tets *tets, const Tet *tet)
 {
     int inside = 0;
@@ -445,8 +448,8 @@ static int find_side(const Tets *tets, const Tet *tet)
     return inside == 0 ? 1 : inside == 4 ? -1 : 0;
 }
 
-/* Enough to cover a surface that goes through by cells of the error; who needs more is better off with
-   a finer mesh. */
+/* Returns how many cells a proof may try: enough to cover a surface by cells of the error.  What
+   needs more is better bisected. */
 static double proof_budget(const Verifier *verifier, const Tet *tet)
 {
     static const double CELLS = 64, CELLS_OF_SQUARE = 32;
@@ -455,7 +458,7 @@ static double proof_budget(const Verifier *verifier, const Tet *tet)
     return squares < 4 ? INFINITY : CELLS + CELLS_OF_SQUARE * squares;
 }
 
-/* Within the box of a tetrahedron, which has surface. */
+/* Verifies a tetrahedron whose box has surface, which the field has entered. */
 static TetState verify_parts(Verifier *verifier, const Tet *tet, const Cell *whole, int side)
 {
     verifier->asked_in_vain = 0;
@@ -469,7 +472,7 @@ static TetState verify_parts(Verifier *verifier, const Tet *tet, const Cell *who
     return !near || verifier->unresolved > 0 ? TET_UNRESOLVED : TET_PROVEN;
 }
 
-/* Small ones need no proof where the mesh goes through: so does the surface.  They are not made smaller. */
+/* Small tetrahedra need no proof where the mesh goes through, for so does the surface. */
 TetState verify_tet(Verifier *verifier, Tet *tet)
 {
     int  side  = find_side(verifier->tets, tet);
@@ -484,7 +487,7 @@ TetState verify_tet(Verifier *verifier, Tet *tet)
     tet->needs    = mark_box_none();
     verifier->tet = tet;
     corners_ball((const double(*)[3])whole.corners, verifier->center);
-    memcpy(verifier->place, verifier->center, sizeof verifier->place);
+    memcpy(verifier->location, verifier->center, sizeof verifier->location);
     TetState state = verify_parts(verifier, tet, &whole, side);
     field_leave(verifier->field);
     return state;

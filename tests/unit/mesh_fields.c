@@ -392,11 +392,11 @@ static double slope_share(MeshField *field, Box inner, double error)
     double     middle[3], normal[3], least;
     for (int k = 0; k < 3; k++)
         middle[k] = 0.5 * (inner.axis[k].low + inner.axis[k].high);
-    smooth_look(field, wider(inner, error), error, &cell);
+    smooth_bound(field, wider(inner, error), error, &cell);
     if (!cell.known || cell.empty || !field_normal(field, middle, 1e-2 * error, normal))
         return 0;
     cell.slope = 0; /* it is that along another normal */
-    smooth_look_closer(field, error, &cell);
+    smooth_narrow(field, error, &cell);
     least = min_growth(field, inner, error, normal);
     return cell.slope > 0 && least < INFINITY ? cell.slope / least : 0;
 }

@@ -149,12 +149,12 @@ static void rods_that_end_are_none(void **state)
     double         place[3], places[4][3];
     make_spindle(&spindle, ball_with_needle);
     assert_int_equal(handles_count(&spindle.contour, 0.4, place), 0);
-    assert_int_equal(handles_places(&spindle.contour, 0.4, places, 4), 0);
+    assert_int_equal(handles_find(&spindle.contour, 0.4, places, 4), 0);
     arena_free(&spindle.arena);
     make_spindle(&spindle, two_balls);
     assert_true(handles_count(&spindle.contour, 0.4, place) > 0);
     assert_true(place[2] > 0.6 && place[2] < 2.4);
-    assert_int_equal(handles_places(&spindle.contour, 0.4, places, 4), 0);
+    assert_int_equal(handles_find(&spindle.contour, 0.4, places, 4), 0);
     arena_free(&spindle.arena);
 }
 
@@ -166,16 +166,16 @@ static void places_have_a_handle_or_are_all(void **state)
     static Spindle spindle;
     double         places[4][3];
     make_ring(&ring, 3, 0.5, 1);
-    assert_int_equal(handles_places(&ring.contour, 2, places, 4), 0);
-    assert_true(handles_places(&ring.contour, 8, places, 4) > 0);
+    assert_int_equal(handles_find(&ring.contour, 2, places, 4), 0);
+    assert_true(handles_find(&ring.contour, 8, places, 4) > 0);
     arena_free(&ring.arena);
     make_ring(&ring, 1, 0.8, 1);
-    assert_int_equal(handles_places(&ring.contour, 0.5, places, 4), 0);
-    assert_true(handles_places(&ring.contour, 1.9, places, 4) > 0);
+    assert_int_equal(handles_find(&ring.contour, 0.5, places, 4), 0);
+    assert_true(handles_find(&ring.contour, 1.9, places, 4) > 0);
     arena_free(&ring.arena);
     make_spindle(&spindle, two_balls);
-    assert_int_equal(handles_places(&spindle.contour, 2, places, 4), 0);
-    assert_true(handles_places(&spindle.contour, 5, places, 4) > 0);
+    assert_int_equal(handles_find(&spindle.contour, 2, places, 4), 0);
+    assert_true(handles_find(&spindle.contour, 5, places, 4) > 0);
     assert_true(handles_count(&spindle.contour, 5, places[0]) > 0);
     arena_free(&spindle.arena);
 }

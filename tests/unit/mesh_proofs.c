@@ -116,7 +116,7 @@ static void open_trial(Trial *t, const Subject *subject, const double focus[3], 
     if (poked)
         poke_edge(t);
     contour_distances(&t->contour);
-    contour_look(&t->contour);
+    contour_find_patches(&t->contour);
     contour_find(&t->contour);
 }
 
@@ -369,7 +369,7 @@ static void try_smooth(const Trial *t, SmoothCell *cell, Box own, Tet *tet, Boun
     for (int closer = 0; closer < 2; closer++) {
         Shares *shares = closer ? &bounds->closer : &bounds->smooth;
         if (closer)
-            smooth_look_closer(&t->fields[0], t->error, cell);
+            smooth_narrow(&t->fields[0], t->error, cell);
         if (exact) {
             if (closer)
                 check_slope_of_ways(t, own, cell->slope, shares);
@@ -404,7 +404,7 @@ static void check_steep(const Trial *t, const PieceCell *cell, Box wide, Shares 
 static void try_pieces(Trial *t, Box wide, Tet *tet, Bounds *bounds)
 {
     PieceCell cell;
-    pieces_look(&t->fields[0], wide, &cell);
+    pieces_bound(&t->fields[0], wide, &cell);
     for (double error = t->error; cell.known && error > 1e-3 * t->error;) {
         bool empty = pieces_measure(&t->contour, &t->fields[0], &cell, error, tet);
         check_tet(t, tet, empty, false, &bounds->pieces);
@@ -430,7 +430,7 @@ static void try_tet(Trial *t, size_t number, Bounds *bounds)
         assert_true(tet.triangle_count == 0 && worst_in(t, &tet) == 0);
         return;
     }
-    smooth_look(&t->fields[0], wider(own, t->error), t->error, &cell);
+    smooth_bound(&t->fields[0], wider(own, t->error), t->error, &cell);
     if (cell.known && !cell.empty)
         try_smooth(t, &cell, own, &tet, bounds);
     else if (!cell.empty)

@@ -1,5 +1,5 @@
 /*
- * mesh_sides.c: plates, crumbs and balls in tetrahedra, whose parts and holes are counted by simplices.
+ * mesh_sides.c: plates, islands and balls in tetrahedra, whose parts and holes are counted by simplices.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -47,8 +47,11 @@ static double hole_off_rim(const double at[3])
     return max2(plate(at), -rod(at, 0.58, 0.5, 0.05));
 }
 static double wide_hole(const double at[3]) { return max2(plate(at), -rod(at, 0.5, 0.5, 0.12)); }
-static double crumb(const double at[3]) { return min2(plate(at), ball(at, 0.78, 0.5, 0.49, 0.04)); }
-static double large_crumb(const double at[3])
+static double island(const double at[3])
+{
+    return min2(plate(at), ball(at, 0.78, 0.5, 0.49, 0.04));
+}
+static double large_island(const double at[3])
 {
     return min2(plate(at), ball(at, 0.86, 0.5, 0.49, 0.1));
 }
@@ -185,7 +188,7 @@ static void check_moved(const Tets *tets, const double center[3], double radius,
             assert_true(tets->list.items[i].fresh && tets->list.items[i].state == TET_UNPROVEN);
 }
 
-/* What is shallow at an edge loses its hole where tetrahedra are small, and a crumb goes.  Holes in what is as thin on all sides, what is deep and what
+/* What is shallow at an edge loses its hole where tetrahedra are small, and an island goes.  Holes in what is as thin on all sides, what is deep and what
    would join parts stay. */
 static void handles_at_edges_go(void **state)
 {
@@ -201,10 +204,10 @@ static void handles_at_edges_go(void **state)
         {"one whose rim is deep", hole_off_rim, {0.58, 0.5, 0.5}, 0.18, 0.01, 1, 0, false},
         {"a hole in a plate", hole_in_plate, {0.4, 0.5, 0.5}, 0.18, 0.06, 1, 0, false},
         {"a wide hole", wide_hole, {0.5, 0.5, 0.5}, 0.18, 0.06, 1, 0, false},
-        {"a crumb", crumb, {0.77, 0.5, 0.5}, 0.18, 0.06, 1, 1, true},
-        {"a crumb in large tetrahedra", crumb, {0.78, 0.5, 0.49}, 0.1, 0.06, 1, 1, true},
+        {"an island", island, {0.77, 0.5, 0.5}, 0.18, 0.06, 1, 1, true},
+        {"an island in large tetrahedra", island, {0.78, 0.5, 0.49}, 0.1, 0.06, 1, 1, true},
         {"a hole in such", hole_at_rim, {0.65, 0.5, 0.5}, 0.1, 0.06, 1, 0, false},
-        {"a large one", large_crumb, {0.8, 0.5, 0.5}, 0.18, 0.06, 2, 2, false},
+        {"a large one", large_island, {0.8, 0.5, 0.5}, 0.18, 0.06, 2, 2, false},
         {"two balls", two_balls, {0.5, 0.5, 0.5}, 0.18, 0.06, 2, 2, false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
