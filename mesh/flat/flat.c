@@ -1,10 +1,10 @@
 /*
- * flat.c: boxes that are halved until each has few planes.
+ * flat.c: halves boxes until each has few planes.
  *
- * Where no surface is comes from ranges, and where one is, from its planes.  Circles are polygons, of as many sides as the
- * error needs: a first pass finds how large they are, and flat_near.c whether they are near enough.  In the end
- * each triangle is looked at once: the surface must be in its middle, or within the error of it.  Solids
- * that are made of other things are given up as soon as some boxes have been looked at.
+ * Ranges tell where no surface is, and planes where one is.  Circles are polygons, of as many sides
+ * as the error needs: a first pass finds how large they are, and flat_near.c whether they are near
+ * enough.  In the end each triangle is tested once: the surface must be in its middle, or within
+ * the error of it.  Solids that are made of other things are given up after some boxes.
  */
 #include "mesh/flat/flat.h"
 
@@ -19,12 +19,14 @@ enum {
     HALVINGS_OF_REGION = 3,
     ASK_EVERY          = 256
 };
-/* Boxes that were looked at when more than a part of them must have been flat. */
+/* Boxes after which a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
-/* At each attempt planes are moved otherwise; at the last ones short edges stay, so that solids that touch stay apart. */
+/* At each attempt planes are moved otherwise; from SEPARATE_FROM on short edges stay, so that
+   solids that touch stay separate. */
 enum { ATTEMPTS = 4, SEPARATE_FROM = 2 };
 static const double MIN_KNOWN = 0.02;
-/* Parts of the size: how far faces are moved so that no four meet, about. */
+/* Parts of the size: how far the surface may be from a face, the length of the shortest edges that
+   stay, and how deep triangles that touch may cross. */
 static const double ROUNDING_OF_FACES = 1e-6, MIN_SHORT = 1e-9, TOUCHING = 1e-8;
 
 typedef struct Halving {
@@ -70,13 +72,14 @@ static bool is_given_up(Halving *h, int halvings)
            (h->boxes > FIRST_BOXES && (double)h->known < MIN_KNOWN * (double)h->boxes);
 }
 
-/* Tells whether faces will be found once more, with the right numbers of sides. */
-static bool is_only_looked_at(const Halving *h)
+/* Tells whether this pass only finds circles; another will find faces. */
+static bool is_first_pass(const Halving *h)
 {
     return !h->rounds.counted && h->rounds.list.count > 0;
 }
 
-/* Many planes take long, so they are cut only where boxes are small, as at the tips of cones. */
+/* Finds the planes in a box; returns false if it should be halved: many planes take long, so they
+   are cut only in small boxes, as at the tips of cones. */
 static bool find_few_pieces(Halving *h, Box box, int halvings)
 {
     enum { FEW = 40, SMALL_FROM = 20 };
@@ -97,7 +100,7 @@ static bool halve(Halving *h, Box box, int halvings)
     if (find_few_pieces(h, box, halvings)) {
         h->known++;
         h->boxes++;
-        done = is_only_looked_at(h) || flat_faces_add(&h->faces, box, &h->pieces);
+        done = is_first_pass(h) || flat_faces_add(&h->faces, box, &h->pieces);
         if (h->pieces.round)
             array_push_large(&h->m->arena, &h->round_boxes, box);
     } else
@@ -107,7 +110,8 @@ static bool halve(Halving *h, Box box, int halvings)
     return done;
 }
 
-/* Tells whether the surface is in the middle of each triangle: so all that was taken for a face is one. */
+/* Tells whether the surface is in the middle of each triangle, so that each face is one of the
+   solid. */
 static bool is_on_surface(Mesher *m, const FlatVertices *vertices, const Triangles *triangles,
                           double near)
 {
@@ -121,14 +125,14 @@ static bool is_on_surface(Mesher *m, const FlatVertices *vertices, const Triangl
     return true;
 }
 
-/* What of the error is for moved planes, and for edges that become points. */
-static double spare_of(const Mesher *m)
+/* Returns the part of the error for moved planes, and for edges that become points. */
+static double reserve_of(const Mesher *m)
 {
     static const double SHORT = 1e-5, PART = 0.2;
     return min2(SHORT * m->side, PART * m->error);
 }
 
-/* Looks at all boxes. */
+/* Finds the faces in all boxes. */
 static bool halve_all(Halving *h)
 {
     Mesher *m = h->m;
@@ -140,7 +144,7 @@ static bool halve_all(Halving *h)
     }
     h->faces       = (FlatFaces){.arena    = &m->arena,
                                  .size     = m->side,
-                                 .shortest = h->attempt < SEPARATE_FROM ? spare_of(m)
+                                 .shortest = h->attempt < SEPARATE_FROM ? reserve_of(m)
                                                                         : MIN_SHORT * m->side,
                                  .attempt  = h->attempt};
     h->round_boxes = (FlatBoxes){NULL, 0, 0};
@@ -152,30 +156,31 @@ static bool halve_all(Halving *h)
     return done;
 }
 
-/* More sides, until they are enough in the boxes in which they were not.  Where they never are, as few as leave fewest boxes.
-   False: they are as they were. */
+/* Adds sides until they are enough in the boxes that are left, or else as few as leave the fewest
+   boxes; returns false if there were none to add. */
 static bool refine(Halving *h, double error, FlatVerdict *verdict)
 {
     size_t fewest = h->round_boxes.count;
     bool   any    = false;
     *verdict      = FLAT_REFUTED;
-    flat_rounds_keep(&h->rounds);
+    flat_rounds_save(&h->rounds);
     while (*verdict == FLAT_REFUTED && flat_rounds_refine(&h->rounds)) {
         *verdict = flat_near(h->m, &h->rounds, &h->round_boxes, error);
         if (*verdict != FLAT_STOPPED && h->round_boxes.count < fewest) {
             fewest = h->round_boxes.count;
-            flat_rounds_keep(&h->rounds);
+            flat_rounds_save(&h->rounds);
             any = true;
         }
     }
-    flat_rounds_go_back(&h->rounds);
+    flat_rounds_restore(&h->rounds);
     return any;
 }
 
-/* With as many sides as the error needs; where even many are not enough, places are left unresolved. */
+/* Finds faces with as many sides as the error needs; where even many are not enough, boxes are left
+   unresolved. */
 static bool make_round(Halving *h)
 {
-    double      error   = h->m->error - spare_of(h->m);
+    double      error   = h->m->error - reserve_of(h->m);
     FlatVerdict refined = FLAT_PROVEN, verdict;
     flat_rounds_count(&h->rounds);
     do {
@@ -193,8 +198,9 @@ static void note_open(void *user, uint32_t triangle)
     *(bool *)user = true;
 }
 
-/* Edges that become points take faces along, and that may be too far where others are near; those that are there as planes are moved
-   are shorter.  Solids may touch. */
+/* Tells whether the mesh is closed and does not cross itself; solids may touch.  Edges that become
+   points may pull a face through another, unless they only came of moved planes, which are
+   shorter. */
 static bool is_sound(const Halving *h, const FlatVertices *vertices, const Triangles *triangles)
 {
     Mesher *m = h->m;
@@ -213,7 +219,7 @@ static bool is_sound(const Halving *h, const FlatVertices *vertices, const Trian
     return !open && !crosses;
 }
 
-/* Planes that are moved otherwise are mostly cut where some are not. */
+/* Makes triangles of the faces; where that fails planes are moved otherwise, which mostly helps. */
 static bool finish(Halving *h, FlatVertices *vertices, Triangles *triangles)
 {
     while (!flat_faces_finish(&h->faces, vertices, triangles) ||
@@ -232,8 +238,7 @@ bool find_flat_mesh(Mesher *m, FlatVertices *vertices, Triangles *triangles)
     *h         = (Halving){.m = m, .field = &m->fields[0]};
     h->work    = flat_work_new(h->field, &m->arena);
     h->rounds  = flat_rounds_new(m->error, &m->arena);
-    if (!halve_all(h) || (is_only_looked_at(h) && !make_round(h)) ||
-        !finish(h, vertices, triangles))
+    if (!halve_all(h) || (is_first_pass(h) && !make_round(h)) || !finish(h, vertices, triangles))
         return false;
     double near = h->rounds.list.count > 0 ? m->error : ROUNDING_OF_FACES * m->side;
     return is_on_surface(m, vertices, triangles, near);

@@ -1,5 +1,5 @@
 /*
- * flat.h: meshes of solids between planes: their faces, as few triangles as they have.
+ * flat.h: meshes solids between planes, with as few triangles as their faces need.
  */
 #ifndef KRS_MESH_FLAT_H
 #define KRS_MESH_FLAT_H
@@ -7,7 +7,7 @@
 #include "mesh/flat/flat_edges.h"
 #include "mesh/proof/mesher.h"
 
-/* False: something in it is not flat, or is too fine; nothing is known. */
+/* Meshes the solid; returns false if something in it is not flat, or too fine. */
 bool find_flat_mesh(Mesher *m, FlatVertices *vertices, Triangles *triangles);
 
 #endif

@@ -1,14 +1,14 @@
 /*
- * flat_circles.c: lengths of pairs and triples, as the sides of polygons.
+ * flat_circles.c: makes sides of polygons of the lengths of pairs and triples.
  */
 #include "mesh/flat/flat_circles.h"
 
 #include "compiler/base/vec.h"
 
-/* The polygon that stands for a circle, and those of its sides that are the farthest ones in directions of a rectangle. */
+/* The polygon that approximates a circle, and those of its sides that a rectangle sees. */
 typedef struct Sides {
-    double angle,
-        wide; /* of a side; how far corners are that are not on the axes, where the circle has radius 1 */
+    double   angle; /* of a side */
+    double   wide;  /* radius of corners off the axes, of a circle of radius 1 */
     uint32_t count, used;
     int64_t  first;
 } Sides;
@@ -26,10 +26,10 @@ static void find_sides(Range a, Range b, uint32_t count, double wide, Sides *sid
         return;
     double middle = atan2(b.low + b.high, a.low + a.high), low = 0, high = 0;
     for (int i = 0; i < 4; i++) {
-        double turn = atan2(i / 2 ? b.high : b.low, i % 2 ? a.high : a.low) - middle;
-        turn -= around * round(turn / around);
-        low  = min2(low, turn);
-        high = max2(high, turn);
+        double offset = atan2(i / 2 ? b.high : b.low, i % 2 ? a.high : a.low) - middle;
+        offset -= around * round(offset / around);
+        low  = min2(low, offset);
+        high = max2(high, offset);
     }
     sides->first = (int64_t)floor((middle + low) / sides->angle - SLACK);
     double last  = floor((middle + high) / sides->angle + SLACK);
@@ -44,7 +44,7 @@ static void find_corner(const Sides *sides, int64_t number, double corner[2])
     corner[1]     = radius * sin(angle);
 }
 
-/* What a side tells of two numbers is 1 at both its corners: its factors of these numbers. */
+/* Finds the factors of the linear form of two numbers that is 1 on a side. */
 static void find_factors(const Sides *sides, uint32_t i, double factors[2])
 {
     double from[2], to[2];
@@ -62,8 +62,8 @@ static bool is_behind(const Sides *sides, uint32_t i)
     return factors[0] < 0;
 }
 
-/* Where the first number is a length, only sides to the right count. */
-static void leave_out_behind(Sides *sides)
+/* Drops sides on the left: the first number is a length, so it is not below 0. */
+static void drop_sides_behind(Sides *sides)
 {
     while (sides->used > 0 && is_behind(sides, 0)) {
         sides->first++;
@@ -112,7 +112,8 @@ typedef struct Rounded {
     uint32_t count;
 } Rounded;
 
-/* Its numbers that are not 0, the one up as the last, so that balls have their poles there. */
+/* Returns the operands of a length that are not 0, the vertical one last, so that balls have their
+   poles there. */
 static Rounded rounded_of(const Finding *f, const LaneStep *step)
 {
     static const uint32_t ORDER[3] = {0, 2, 1};
@@ -127,7 +128,8 @@ static Rounded rounded_of(const Finding *f, const LaneStep *step)
     return rounded;
 }
 
-/* How large the circle is where the form is 0, in lengths of the scene; what the rest is says that. */
+/* Notes how large the circle is where the form is 0, in lengths of the scene, by the range of the
+   rest. */
 static void note_round(Finding *f, const Form *rest, double factor, const LaneStep *step,
                        const Rounded *rounded, double slope)
 {
@@ -142,7 +144,7 @@ static void note_round(Finding *f, const Form *rest, double factor, const LaneSt
         flat_rounds_note(f->rounds, step->kin, radius / slope, shared);
 }
 
-/* What one side, or one side of a band, tells; `across` and `up` are the factors of the band. */
+/* Returns the solid of one side of a polygon, or of a band with these factors. */
 static int solid_of_side(Finding *f, const Form *rest, double factor, const Rounded *rounded,
                          const double band[2], const Sides *sides, uint32_t i)
 {
@@ -155,7 +157,8 @@ static int solid_of_side(Finding *f, const Form *rest, double factor, const Roun
     return flat_solid(f, &form);
 }
 
-/* The length of a pair is the largest distance that the sides of its polygon tell; of `part` of that. */
+/* Returns the solid of the length of a pair, times the first factor of the band: the largest form
+   of its sides. */
 static int solid_of_pair_length(Finding *f, const Form *rest, double factor, const Rounded *rounded,
                                 const double band[2], uint32_t count, double wide)
 {
@@ -175,8 +178,8 @@ static int solid_of_pair_length(Finding *f, const Form *rest, double factor, con
     return solid;
 }
 
-/* Half as many, or a quarter, where that is enough for a band whose radius is this part of the largest: where numbers of
-   neighbours differ edges have more corners. */
+/* Returns the sides of a band whose radius is this part of the largest: halved as often as is
+   enough, since edges have more corners where neighbours' numbers differ. */
 static uint32_t sides_of_band(uint32_t count, double part)
 {
     uint32_t sides = count;
@@ -189,14 +192,15 @@ static uint32_t sides_of_band(uint32_t count, double part)
     return sides;
 }
 
-/* A band of a ball: its factors, its number of sides, and how much longer and shorter lengths are by it. */
+/* A band of a ball: its factors, its number of sides, and by what part lengths become longer and
+   shorter. */
 typedef struct Band {
     double   factors[2], longer, shorter;
     uint32_t sides;
 } Band;
 
-/* That of three numbers is the length of a pair of which one is the length of a pair.  So balls have bands; those near
-   poles are shorter, and have fewer sides.  Where numbers of sides differ bands reach a bit farther. */
+/* Finds the bands of a ball that the box sees.  Those near poles are shorter and have fewer sides;
+   since numbers of sides differ, bands reach a bit farther. */
 static Sides find_bands(const Finding *f, const Rounded *rounded, uint32_t count)
 {
     Range pair = range_sqrt(range_add(range_square(form_range(f, &rounded->forms[0])),
@@ -205,7 +209,7 @@ static Sides find_bands(const Finding *f, const Rounded *rounded, uint32_t count
     find_sides(pair, form_range(f, &rounded->forms[2]), count, flat_corner_radius(count), &bands);
     bands.first--;
     bands.used = (uint32_t)min2(bands.used + 2, count);
-    leave_out_behind(&bands);
+    drop_sides_behind(&bands);
     return bands;
 }
 
@@ -258,7 +262,7 @@ typedef struct Polygon {
     double   wide, stretch;
 } Polygon;
 
-/* The direction of a side is about half its angle off at most. */
+/* Returns the solid of the length of a pair by a polygon, with the slack that its sides add. */
 static int solid_of_polygon(Finding *f, const Form *rest, double factor, const Rounded *rounded,
                             const Polygon *polygon, double reach)
 {
@@ -272,7 +276,8 @@ static int solid_of_polygon(Finding *f, const Form *rest, double factor, const R
     return solid;
 }
 
-/* The part of a solid where a half-space is; it is not looked for where that is not. */
+/* Returns the intersection of a polygon's solid with another, and does not make it where that is
+   empty. */
 static int polygon_where(Finding *f, int where, const Form *rest, double factor,
                          const Rounded *rounded, const Polygon *polygon, double reach)
 {
@@ -282,10 +287,12 @@ static int polygon_where(Finding *f, int where, const Form *rest, double factor,
 }
 
 /*
- * Where the radius changes along the axis, as that of a cone does, there may be a tip.  Where many sides meet in a
- * point, each pair of neighbours is near to parallel, and moved planes miss the point by far.  Circles near the tip are small, so
- * there a polygon of fewer sides is as near: it is off by the radius over the square of their number.  It is smaller by a
- * little, so that all of it is within the other polygon where they meet.
+ * Returns the solid of the length of a pair, with fewer sides at tips.  Where the radius changes
+ * along the axis, as that of a cone does, there may be a tip.  Where many sides meet in a point,
+ * each pair of neighbours is near to parallel, and moved planes miss the point by far.  Circles
+ * near the tip are small, so there a polygon of fewer sides is as near: it is off by the radius
+ * over the square of their number.  It is a little smaller, so that all of it is within the other
+ * polygon where they meet.
  */
 static int solid_of_pair(Finding *f, const Form *rest, double factor, const Rounded *rounded,
                          uint32_t count, double largest, double reach)

@@ -1,4 +1,5 @@
-/* flat_edges.c: whole edges of faces from the segments of all boxes, and the triangles between them. */
+/* flat_edges.c: joins the segments of all boxes to edges of faces, and fills these with
+   triangles. */
 #include "mesh/flat/flat_edges.h"
 
 #include <stdlib.h>
@@ -9,13 +10,14 @@
 #include "mesh/flat/flat_separate.h"
 #include "mesh/flat/flat_touches.h"
 
-/* Parts of the size, above rounding: what is one place on a line, and what is one place where planes meet. */
+/* Parts of the size, above rounding: what is one point on a line, and what is one point where
+   planes meet. */
 static const double SAME = 1e-13, TOUCHING = 1e-10;
 
 typedef struct Edge {
     uint32_t face, line, from, to; /* the line is the other plane, as of a segment */
     double   begin, end;           /* on the line; it may go backwards */
-    double   way[3];
+    double   direction[3];
     bool     walked;
 } Edge;
 
@@ -34,7 +36,7 @@ typedef struct Finishing {
         Edge  *items;
         size_t count, capacity;
     } edges;
-    uint32_t *one; /* of each vertex, another one at the same place; itself */
+    uint32_t *one; /* of each vertex, another one at the same point; itself */
 } Finishing;
 
 /* ---- edges ---- */
@@ -56,7 +58,8 @@ typedef struct Event {
     uint32_t plane;
 } Event;
 
-/* Returns the sine of the angle between two planes: the less it is, the less is known of where their line is. */
+/* Returns the sine of the angle between two planes: the less it is, the less is known of where
+   their line is. */
 static double sine_between(const FlatFaces *faces, uint32_t a, uint32_t b)
 {
     double product[3];
@@ -64,7 +67,7 @@ static double sine_between(const FlatFaces *faces, uint32_t a, uint32_t b)
     return max2(length3(product), 1e-6);
 }
 
-/* How near two ends on the line of two planes are one. */
+/* Returns the distance at which two ends on the line of two planes are one. */
 static double same_on(const FlatFaces *faces, uint32_t a, uint32_t b)
 {
     return SAME * faces->size / sine_between(faces, a, b);
@@ -92,7 +95,8 @@ static bool meeting_point(const HalfSpace *const planes[3], const double offsets
     return true;
 }
 
-/* Where three planes meet; those that were moved tell where it is if the others are near to parallel. */
+/* Returns the vertex of three planes, or NO_NUMBER; it is where the moved planes meet if the exact
+   ones are near to parallel. */
 static uint32_t find_vertex(Finishing *f, uint32_t a, uint32_t b, uint32_t c)
 {
     uint32_t fresh  = (uint32_t)f->vertices->count;
@@ -142,9 +146,9 @@ static bool walk_on(Finishing *f, Walk *walk, const Event *event, int change)
                       .to    = along ? vertex : walk->last,
                       .begin = along ? walk->last_at : event->at,
                       .end   = along ? event->at : walk->last_at};
-        flat_line_direction(f->faces, plane, walk->of->line, edge.way);
+        flat_line_direction(f->faces, plane, walk->of->line, edge.direction);
         for (int k = 0; k < 3; k++)
-            edge.way[k] *= walk->covered;
+            edge.direction[k] *= walk->covered;
         array_push_large(f->faces->arena, &f->edges, edge);
     }
     walk->covered += change;
@@ -153,8 +157,8 @@ static bool walk_on(Finishing *f, Walk *walk, const Event *event, int change)
     return walk->covered >= -1 && walk->covered <= 1;
 }
 
-/* Edges of one face on one line, from the ends of segments in order.  Ends at one place cancel out where a box ends, and where
-   two planes end the line there it has a short edge. */
+/* Finds the edges of one face on one line, from the ends of segments in order.  Ends at one point
+   cancel out where a box ends; where two planes end the line there it has a short edge. */
 static bool find_edges_between(Finishing *f, const FlatSegment *of, Event *events, size_t count)
 {
     Walk   walk = {of, NO_NUMBER, 0, 0};
@@ -195,8 +199,8 @@ static bool find_edges(Finishing *f)
                        segments[next].line == segments[i].line;
              next++) {
             const FlatSegment *s = &segments[next];
-            events[found++]      = (Event){s->begin, s->way, s->ends[0]};
-            events[found++]      = (Event){s->end, -s->way, s->ends[1]};
+            events[found++]      = (Event){s->begin, s->direction, s->ends[0]};
+            events[found++]      = (Event){s->end, -s->direction, s->ends[1]};
         }
         qsort(events, found, sizeof *events, compare_events);
         if (!find_edges_between(f, &segments[i], events, found))
@@ -237,7 +241,7 @@ static size_t first_behind(const Stop *stops, size_t count, const Stop *stop)
     return low;
 }
 
-/* The first part of an edge ends at the vertex; the rest becomes an edge of its own. */
+/* Cuts an edge at a vertex; the rest becomes an edge of its own, whose number is returned. */
 static size_t cut_edge(Finishing *f, size_t number, const Stop *stop, bool along)
 {
     Edge *edge = &f->edges.items[number], rest = *edge;
@@ -252,7 +256,7 @@ static size_t cut_edge(Finishing *f, size_t number, const Stop *stop, bool along
     return f->edges.count - 1;
 }
 
-/* Vertices at one place become one; finds those on edges that do not end there. */
+/* Joins vertices at one point, and finds those on edges that do not end there. */
 static void join_touching(Finishing *f, FlatTouches *touches)
 {
     Arena    *arena    = f->faces->arena;
@@ -280,9 +284,9 @@ static Stop stop_at_touch(const Finishing *f, const FlatTouch *touch)
 }
 
 /*
- * An edge of one face may go on where the faces at its other side change: where a floor ends that is level with the underside of
- * what is beside it, the wall below both has no corner.  So each edge gets the vertices of all others on its line, and those
- * that touch it.
+ * Cuts each edge at the vertices of all others on its line, and at those that touch it.  An edge of
+ * one face may continue where the faces at its other side change: where a floor ends that is level
+ * with the underside of what is beside it, the wall below both has no corner.
  */
 static void cut_edges(Finishing *f, const FlatTouches *touches)
 {
@@ -309,7 +313,7 @@ static void cut_edges(Finishing *f, const FlatTouches *touches)
     }
 }
 
-/* ---- vertices at the same place ---- */
+/* ---- vertices at the same point ---- */
 
 static uint32_t one_of(Finishing *f, uint32_t vertex)
 {
@@ -345,17 +349,18 @@ static int compare_edges(const void *first, const void *second)
     return (a->from > b->from) - (a->from < b->from);
 }
 
-/* By how much a way turns to the left into another one; a way back is a turn to the left. */
-static double turn_to_left(const double way[3], const double next[3], const double normal[3])
+/* Returns the angle by which one direction turns left into the next; a turn back is a left turn. */
+static double turn_to_left(const double direction[3], const double next[3], const double normal[3])
 {
     static const double NONE = 1e-9;
     double              product[3];
-    cross3(way, next, product);
-    double left = dot3(product, normal), on = dot3(way, next);
+    cross3(direction, next, product);
+    double left = dot3(product, normal), on = dot3(direction, next);
     return on < 0 && fabs(left) < NONE ? acos(-1) : atan2(left, on);
 }
 
-/* The edge that follows: at a corner that parts of a face share, the one most to the left. */
+/* Returns the edge that follows: at a corner that parts of a face share, the one most to the
+   left. */
 static Edge *edge_behind(Edge *edges, size_t count, const Edge *edge, const double normal[3])
 {
     size_t low = 0, high = count;
@@ -369,7 +374,7 @@ static Edge *edge_behind(Edge *edges, size_t count, const Edge *edge, const doub
     Edge  *found = NULL;
     double most  = -HUGE_VAL;
     for (; low < count && edges[low].from == edge->to; low++) {
-        double turn = turn_to_left(edge->way, edges[low].way, normal);
+        double turn = turn_to_left(edge->direction, edges[low].direction, normal);
         if (!edges[low].walked && turn > most) {
             found = &edges[low];
             most  = turn;
@@ -378,7 +383,7 @@ static Edge *edge_behind(Edge *edges, size_t count, const Edge *edge, const doub
     return found;
 }
 
-/* Without vertices that are at the same place, and without lines that go back at once. */
+/* Adds a loop without repeated vertices, and without edges that go back at once. */
 static void add_loop(Finishing *f, const uint32_t *walked, size_t count, Loops *loops)
 {
     Arena *arena = f->faces->arena;
@@ -458,9 +463,9 @@ static bool cut_faces(Finishing *f, Triangles *triangles)
     return true;
 }
 
-/* ---- all ---- */
+/* ---- entry point ---- */
 
-/* Leaves out vertices that no triangle has. */
+/* Drops vertices that no triangle has. */
 static void number_vertices(Finishing *f, Triangles *triangles)
 {
     uint32_t *numbers = arena_new_array(f->faces->arena, uint32_t, f->vertices->count + 1);

@@ -1,16 +1,18 @@
-/* flat_faces.c: polygons of planes in boxes, and the segments of edges between them. */
+/* flat_faces.c: cuts planes into polygons in boxes, and finds the segments of edges between
+   them. */
 #include "mesh/flat/flat_faces.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 
-/* Parts of the size: by how much planes are moved at most; and how near to a plane a corner must not be. */
+/* Parts of the size: the most that planes are moved, and the least distance of a corner to a
+   plane. */
 static const double MOVE = 1e-7, NARROW = 1e-14;
 
 /* ---- planes ---- */
 
-/* A number from -1 to 1 for each plane, another one at each attempt. */
+/* Returns a pseudorandom number from -1 to 1 for a plane, another one at each attempt. */
 static double jitter(uint32_t number, uint32_t attempt)
 {
     uint32_t h = (number + 1) * 2654435761u + attempt * 3266489917u;
@@ -22,7 +24,7 @@ static double jitter(uint32_t number, uint32_t attempt)
     return (double)h / 2147483648.0 - 1;
 }
 
-/* A number that planes have in common with themselves turned over, and other ones seldom. */
+/* Returns a number that opposite half-spaces of a plane share, and different planes seldom. */
 static double plane_mark(const FlatFaces *faces, const HalfSpace *plane)
 {
     static const double MIXED[3] = {0.7548776662, 0.5698402910, 0.3819660113};
@@ -71,7 +73,8 @@ static double above(const FlatPlane *plane, const double point[3])
 
 enum { MAX_CORNERS = 96 };
 
-/* In the positive order around the normal of its plane; labels[i] is the plane at the edge from corner i. */
+/* A polygon in positive order around the normal of its plane; labels[i] is the plane at the edge
+   from corner i. */
 typedef struct Polygon {
     int      count;
     double   at[MAX_CORNERS][3];
@@ -100,7 +103,7 @@ static void add_corner(Polygon *polygon, const double at[3], uint32_t label)
     polygon->count++;
 }
 
-/* The part where values are below 0, whose new edge has the label. */
+/* Finds the part of a polygon where sign times value is below 0, whose new edge has the label. */
 static void cut_polygon(Cell *cell, const Polygon *polygon, const double *values, double sign,
                         uint32_t label, Polygon *part)
 {
@@ -120,7 +123,7 @@ static void cut_polygon(Cell *cell, const Polygon *polygon, const double *values
     cell->failed |= part->count > MAX_CORNERS;
 }
 
-/* The whole plane in the box. */
+/* Makes a polygon of the whole plane in the box. */
 static void begin_polygon(Cell *cell, const FlatPlane *plane, Polygon *polygon)
 {
     const double *normal = plane->exact.normal;
@@ -162,7 +165,8 @@ void flat_line_direction(const FlatFaces *faces, uint32_t a, uint32_t b, double 
     normalize3(along);
 }
 
-/* `outward`: the solid is below the plane, 1, or above it, -1. */
+/* Adds the edges of a part of a face; `outward` is 1 if the solid is below the plane, -1 if
+   above. */
 static void add_part(Cell *cell, const Polygon *polygon, int outward)
 {
     FlatFaces *faces = cell->faces;
@@ -171,7 +175,7 @@ static void add_part(Cell *cell, const Polygon *polygon, int outward)
         int         next   = (i + 1) % polygon->count;
         uint32_t    before = polygon->labels[(i + polygon->count - 1) % polygon->count];
         FlatSegment s      = {
-                 .face = 2 * plane + (outward < 0), .line = polygon->labels[i], .way = outward};
+                 .face = 2 * plane + (outward < 0), .line = polygon->labels[i], .direction = outward};
         double along[3];
         if (s.line == FLAT_WALL)
             continue;
@@ -187,13 +191,13 @@ static void add_part(Cell *cell, const Polygon *polygon, int outward)
             s.end          = begin;
             s.ends[0]      = s.ends[1];
             s.ends[1]      = end;
-            s.way          = -s.way;
+            s.direction    = -s.direction;
         }
         array_push_large(faces->arena, &faces->segments, s);
     }
 }
 
-/* What is left to be known of a solid where the sides of some half-spaces are: 1, -1, or 0. */
+/* Simplifies a solid where the sides of some half-spaces are known: 1, -1, or 0 if not. */
 static int rest_of(Cell *cell, int solid, const signed char *sides)
 {
     if (solid < 0)
@@ -220,7 +224,7 @@ static int rest_of(Cell *cell, int solid, const signed char *sides)
     return cell->node_count++;
 }
 
-/* One of those that a solid depends on. */
+/* Returns a half-space that a solid depends on. */
 static int half_space_of(const Cell *cell, int solid)
 {
     while (cell->nodes[solid].kind != FLAT_HALF_SPACE)
@@ -228,7 +232,8 @@ static int half_space_of(const Cell *cell, int solid)
     return cell->nodes[solid].first;
 }
 
-/* `within`, `beyond`: what is left of the solid below the plane that is cut, and above it. */
+/* Cuts a polygon by all half-spaces that decide between `within` and `beyond`, the rests of the
+   solid below and above its plane, and adds those parts that are faces. */
 static void cut_part(Cell *cell, const Polygon *polygon, int within, int beyond, signed char *sides)
 {
     if (polygon->count < 3 || cell->failed)

@@ -1,5 +1,5 @@
 /*
- * flat_forms.c: linear steps of a lane tape, as sums of coordinates and kinks.
+ * flat_forms.c: makes forms of the steps of a lane tape.
  */
 #include "mesh/flat/flat_forms.h"
 
@@ -59,7 +59,7 @@ static void add_kink(Form *form, uint32_t kink, double factor)
     form->factors[i] = factor;
 }
 
-/* The same number, whose linear part is a constant, over a divisor. */
+/* Returns the same number, whose linear part is a constant, over a divisor. */
 static Form level_over(const Divisor *divisor, Form form)
 {
     for (int k = 0; k < 3; k++)
@@ -76,22 +76,22 @@ static bool same_divisor(const Form *a, const Form *b)
            memcmp(a->divisor.by, b->divisor.by, sizeof a->divisor.by) == 0;
 }
 
-/* Divides the plain one by what the other is divided by, where it has no slope but what the rounding of a rotation leaves. */
-static void divide_alike(Form *plain, const Form *divided, double factor)
+/* Divides a plain form by another's divisor, if it has no slope but what the rounding of a rotation
+   leaves. */
+static void divide_plain(Form *plain, const Form *divided, double factor)
 {
     static const double NEGLIGIBLE = 1e-14;
     if (length3(plain->by) <= NEGLIGIBLE * factor * length3(divided->by))
         *plain = level_over(&divided->divisor, *plain);
 }
 
-/* a + factor b */
 Form form_sum(Form a, double factor, const Form *b)
 {
     Form other = *b;
     if (b->divided && !a.divided)
-        divide_alike(&a, b, fabs(factor));
+        divide_plain(&a, b, fabs(factor));
     if (a.divided && !b->divided)
-        divide_alike(&other, &a, factor != 0 ? 1 / fabs(factor) : INFINITY);
+        divide_plain(&other, &a, factor != 0 ? 1 / fabs(factor) : INFINITY);
     b       = &other;
     a.known = a.known && b->known && isfinite(factor) && same_divisor(&a, b);
     for (int k = 0; k < 3; k++)
@@ -139,7 +139,6 @@ double form_slope(const Finding *f, const Form *form)
     return (slope + size * length3(form->divisor.by)) / form_divisor(f, form).low;
 }
 
-/* The values of a form in the box, by the ranges of its kinks. */
 Range form_range(const Finding *f, const Form *form)
 {
     Range  linear = range_of_linear(f, form);
@@ -172,7 +171,8 @@ static bool is_kink(const Form *form, uint32_t value)
     return form->kink_count == 1 && form->kinks[0] == value;
 }
 
-/* One of two forms that is the lesser, or the greater, all over the box; else a kink. */
+/* Returns the one of two forms that is the lesser, or the greater, all over the box; else a
+   kink. */
 static Form chosen(const Finding *f, const Form *a, const Form *b, bool greater, uint32_t value)
 {
     if (!a->known || !b->known)
@@ -192,7 +192,8 @@ static Form size_form(const Finding *f, const Form *a, uint32_t value)
     return chosen(f, a, &negative, true, value);
 }
 
-/* A number between two others where it is one of them, or itself, all over the box. */
+/* Returns the form of a clamped number, if it is one of the operands all over the box; else a
+   kink. */
 static Form clamped_form(const Finding *f, const LaneStep *step, uint32_t value)
 {
     Form number = form_of_operand(f, step->operands[0]);
@@ -205,7 +206,7 @@ static Form clamped_form(const Finding *f, const LaneStep *step, uint32_t value)
     return number;
 }
 
-/* A form over a linear number that is above 0 in the box. */
+/* Returns a form over a linear number that is above 0 in the box. */
 static Form quotient_of(const Finding *f, const Form *a, const Form *b)
 {
     if (!a->known || !b->known || a->divided || b->divided || a->kink_count + b->kink_count > 0 ||
@@ -218,7 +219,7 @@ static Form quotient_of(const Finding *f, const Form *a, const Form *b)
     return form;
 }
 
-/* Tells whether it is a number over a divisor. */
+/* Tells whether a form is a constant over a divisor. */
 static bool is_reciprocal(const Form *form)
 {
     return form->divided && form->kink_count == 0 && is_level(form);
@@ -240,7 +241,7 @@ static Form product_of(const Form *a, const Form *b)
     return product;
 }
 
-/* One of two numbers, by a condition that holds all over the box, or nowhere in it. */
+/* Returns one of two numbers by a condition that is true all over the box, or nowhere in it. */
 static Form select_form(const Finding *f, const LaneStep *step)
 {
     Range condition = range_of_operand(f, step->operands[0]);
@@ -249,7 +250,7 @@ static Form select_form(const Finding *f, const LaneStep *step)
     return (Form){.known = false};
 }
 
-/* The length of one number is its size. */
+/* Returns the length of a vector; that of one number is its absolute value. */
 static Form length_form(const Finding *f, const LaneStep *step, uint32_t value)
 {
     int one = -1;
@@ -265,7 +266,7 @@ static Form length_form(const Finding *f, const LaneStep *step, uint32_t value)
     return size_form(f, &form, value);
 }
 
-/* Tells whether it is what a distance to a box is the sum of. */
+/* Tells whether a step is the sum that is a distance to a box. */
 static bool is_box_distance(const Finding *f, const LaneStep *step)
 {
     for (int k = 0; k < 2; k++) {
@@ -278,7 +279,7 @@ static bool is_box_distance(const Finding *f, const LaneStep *step)
     return false;
 }
 
-/* What is not linear is a kink: its sign may be known. */
+/* Returns the form of a step; a step that is not linear is a kink. */
 static Form form_of_step(const Finding *f, size_t i)
 {
     const LaneStep *step  = &f->tape->steps[i];
@@ -330,5 +331,4 @@ void find_forms(Finding *f)
         f->forms[LANE_INPUTS + i] = form_of_step(f, i);
 }
 
-/* Tells whether a form is a kink and what is added to it. */
 bool form_is_kink_alone(const Form *form) { return form->kink_count == 1 && is_level(form); }

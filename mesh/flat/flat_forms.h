@@ -1,8 +1,9 @@
 /*
- * flat_forms.h: linear numbers in a box, as sums of coordinates and of kinks.
+ * flat_forms.h: represents numbers in a box as sums of coordinates and of kinks.
  *
- * Each linear step of a lane tape is a form: a sum of coordinates, and of kinks, which are minima, maxima, absolute values and lengths of
- * forms.  A taper divides coordinates by a linear number: the sign of such a form is that of its numerator.
+ * Each linear step of a lane tape is a form: a sum of coordinates, and of kinks, which are minima,
+ * maxima, absolute values and lengths of forms.  A taper divides coordinates by a linear number:
+ * the sign of such a form is that of its numerator.
  */
 #ifndef KRS_MESH_FLAT_FORMS_H
 #define KRS_MESH_FLAT_FORMS_H
@@ -18,7 +19,8 @@ typedef struct Divisor {
     double by[3], at;
 } Divisor;
 
-/* by . p + at, which may be divided, and kinks: results of steps, by their numbers as operands, the last ones first. */
+/* The sum of by . p + at, which may be divided, and of kinks: results of steps, by their numbers as
+   operands, the last ones first. */
 typedef struct Form {
     bool     known, divided;
     double   by[3], at;
@@ -35,17 +37,17 @@ typedef struct Finding {
     Box              box;
     double           size;
     Form            *forms;      /* of inputs and steps */
-    int             *conditions; /* of each operand, where it is true; UNKNOWN: not looked at */
+    int             *conditions; /* of each operand, where it is true; UNKNOWN: not asked yet */
     FlatRounds      *rounds;
     FlatPieces      *pieces;
     FlatUse          use;
-    FlatSlack        slack;                /* of what is being taken apart */
-    bool             chooses;              /* that is a condition */
+    FlatSlack        slack;                /* of the form that is split */
+    bool             chooses;              /* that form is a condition */
     uint32_t         max_used, max_around; /* of the sides of a polygon */
     bool             failed;
 } Finding;
 
-/* What is less apart than this part of the size is one. */
+/* Half-spaces that differ by less than this part of the size are one. */
 #define FLAT_ROUNDING 1e-11
 
 void find_forms(Finding *f);
@@ -53,17 +55,17 @@ Form form_of_operand(const Finding *f, uint32_t operand);
 
 Form form_constant(double number);
 bool form_is_constant(const Form *form);
-/* a + factor b */
+/* Returns a + factor b. */
 Form form_sum(Form a, double factor, const Form *b);
 Form form_scaled(double factor, const Form *form);
 void form_drop_kink(Form *form, int i);
-/* Tells whether it is a kink and a number that is added to it. */
+/* Tells whether a form is a kink plus a number. */
 bool form_is_kink_alone(const Form *form);
-/* The values of what it is divided by. */
+/* Returns the range of what a form is divided by. */
 Range form_divisor(const Finding *f, const Form *form);
-/* How steep its linear part is, at most. */
+/* Returns the largest slope of the linear part of a form. */
 double form_slope(const Finding *f, const Form *form);
-/* The values of a form in the box, by the ranges of its kinks. */
+/* Returns the range of a form in the box, by the ranges of its kinks. */
 Range form_range(const Finding *f, const Form *form);
 
 static inline bool is_greater(const LaneStep *step)

@@ -1,9 +1,9 @@
-/* flat_joins.c: half-spaces and how they are joined, without what makes no difference. */
+/* flat_joins.c: joins half-spaces, without what makes no difference. */
 #include "mesh/flat/flat_joins.h"
 
 #include "compiler/base/vec.h"
 
-int flat_node(Finding *f, FlatNode node)
+static int add_node(Finding *f, FlatNode node)
 {
     if (f->pieces->node_count == MAX_FLAT_NODES) {
         f->failed = true;
@@ -21,44 +21,45 @@ static int join(Finding *f, int kind, int a, int b)
         return none;
     if (a == all || b == all || a == b)
         return a == all ? b : a;
-    return flat_node(f, (FlatNode){kind, a, b});
+    return add_node(f, (FlatNode){kind, a, b});
 }
 
-/* How two half-spaces lie whose planes are parallel. */
-typedef enum Placing { APART, COVERING, WITHIN, AROUND, CROSSING } Placing;
+/* How two half-spaces with parallel planes are related. */
+typedef enum Relation { DISJOINT, COVERING, WITHIN, AROUND, CROSSING } Relation;
 
-static Placing find_placing(const Finding *f, const FlatNode *a, const FlatNode *b)
+static Relation find_relation(const Finding *f, const FlatNode *a, const FlatNode *b)
 {
     const HalfSpace *first = &f->pieces->list[a->first], *second = &f->pieces->list[b->first];
-    double           off[3], turned = a->second * b->second * dot3(first->normal, second->normal);
-    double           sign = turned < 0 ? -1 : 1, margin = FLAT_ROUNDING * f->size;
+    double           off[3], cosine = a->second * b->second * dot3(first->normal, second->normal);
+    double           sign = cosine < 0 ? -1 : 1, margin = FLAT_ROUNDING * f->size;
     for (int k = 0; k < 3; k++)
         off[k] = a->second * first->normal[k] - sign * b->second * second->normal[k];
     double depth = a->second * first->offset - sign * b->second * second->offset;
     if (!(largest3(off) < FLAT_ROUNDING) || !isfinite(depth))
         return CROSSING;
-    if (turned < 0)
-        return depth >= -margin ? APART : COVERING;
+    if (cosine < 0)
+        return depth >= -margin ? DISJOINT : COVERING;
     return depth >= -margin ? WITHIN : AROUND;
 }
 
-/* A solid where a half-space is, or else where it is not. */
+/* Simplifies a solid inside of a half-space, or outside of it. */
 static int given(Finding *f, const FlatNode *known, bool inside, int solid)
 {
     if (solid < 0 || f->failed)
         return solid;
     FlatNode node = f->pieces->nodes[solid];
     if (node.kind == FLAT_HALF_SPACE) {
-        Placing placing = find_placing(f, &node, known);
+        Relation relation = find_relation(f, &node, known);
         if (inside)
-            return placing == APART ? FLAT_NONE : placing == AROUND ? FLAT_ALL : solid;
-        return placing == WITHIN ? FLAT_NONE : placing == COVERING ? FLAT_ALL : solid;
+            return relation == DISJOINT ? FLAT_NONE : relation == AROUND ? FLAT_ALL : solid;
+        return relation == WITHIN ? FLAT_NONE : relation == COVERING ? FLAT_ALL : solid;
     }
     int first = given(f, known, inside, node.first), second = given(f, known, inside, node.second);
     return first == node.first && second == node.second ? solid : join(f, node.kind, first, second);
 }
 
-/* The second solid where the half-spaces are that the first is an intersection with, or not those of a union. */
+/* Simplifies a solid inside of the half-spaces that another intersects, or outside of those that it
+   unites. */
 static int given_solid(Finding *f, int kind, int known, int solid)
 {
     if (known < 0 || solid < 0)
@@ -71,7 +72,6 @@ static int given_solid(Finding *f, int kind, int known, int solid)
                : given_solid(f, kind, node.second, given_solid(f, kind, node.first, solid));
 }
 
-/* Leaves out what makes no difference: faces of parts within others, and where parts touch. */
 static int join_solids(Finding *f, int kind, int a, int b)
 {
     b = given_solid(f, kind, a, b);
@@ -83,7 +83,7 @@ int flat_both(Finding *f, int a, int b) { return join_solids(f, FLAT_BOTH, a, b)
 
 int flat_either(Finding *f, int a, int b) { return join_solids(f, FLAT_EITHER, a, b); }
 
-/* The number of a half-space, or of the one on its other side, whose sign is then -1. */
+/* Returns the number of a half-space, or of the opposite one; the sign is then -1. */
 static int find_half_space(Finding *f, const HalfSpace *plane, int *sign)
 {
     FlatPieces *pieces = f->pieces;
@@ -113,7 +113,6 @@ static void add_slack(Finding *f, int number, double below, double above, double
     slack->above     = max2(slack->above, above / length);
 }
 
-/* Where a form without kinks is below 0. */
 int flat_half_space(Finding *f, const Form *form)
 {
     Range     range  = form_range(f, form);
@@ -134,7 +133,7 @@ int flat_half_space(Finding *f, const Form *form)
     add_slack(f, number, sign > 0 ? f->slack.below : f->slack.above,
               sign > 0 ? f->slack.above : f->slack.below, length);
     f->pieces->chooses[number] |= f->chooses;
-    return flat_node(f, (FlatNode){FLAT_HALF_SPACE, number, sign});
+    return add_node(f, (FlatNode){FLAT_HALF_SPACE, number, sign});
 }
 
 int flat_complement(Finding *f, int solid)
@@ -143,7 +142,7 @@ int flat_complement(Finding *f, int solid)
         return solid == FLAT_ALL ? FLAT_NONE : FLAT_ALL;
     FlatNode node = f->pieces->nodes[solid];
     if (node.kind == FLAT_HALF_SPACE)
-        return flat_node(f, (FlatNode){FLAT_HALF_SPACE, node.first, -node.second});
+        return add_node(f, (FlatNode){FLAT_HALF_SPACE, node.first, -node.second});
     int first = flat_complement(f, node.first), second = flat_complement(f, node.second);
     return node.kind == FLAT_BOTH ? flat_either(f, first, second) : flat_both(f, first, second);
 }

@@ -1,4 +1,4 @@
-/* flat_near.c: boxes are halved until there is a proof in each. */
+/* flat_near.c: halves boxes until there is a proof in each. */
 #include "mesh/flat/flat_near.h"
 
 #include <string.h>
@@ -6,44 +6,44 @@
 #include "compiler/base/vec.h"
 
 enum {
-    MAX_THIN                 = 100,
-    MANY                     = 8,
-    MAX_SEAMS                = 50,
-    MAX_HARD                 = 10000,
-    MAX_LOOKS                = 600000,
-    MAX_LOOKS_WHERE_UNPROVEN = 100, /* for each box; all will be looked at again */
-    ASK_EVERY                = 256,
-    HALVINGS_OF_REGION       = 3
+    MAX_THIN                  = 100,
+    MANY                      = 8,
+    MAX_SEAMS                 = 50,
+    MAX_HARD                  = 10000,
+    MAX_CHECKS                = 600000,
+    MAX_CHECKS_WHERE_UNPROVEN = 100, /* for each box; all will be checked again */
+    ASK_EVERY                 = 256,
+    HALVINGS_OF_REGION        = 3
 };
-/* In errors: boxes that are not halved any more, first and after some have been left; and those in which ways may be shorter than
-   the error. */
-static const double SMALLEST = 0.02, SMALLEST_OF_MANY = 0.1, SMALL = 1.5, SHORT_WAY = 0.6;
+/* In errors: sides of boxes that are not halved any more, first and after some have been left; and
+   of those in which shifts are shorter than the error, and how long these are. */
+static const double SMALLEST = 0.02, SMALLEST_OF_MANY = 0.1, SMALL = 1.5, SHORT_SHIFT = 0.6;
 
 /* What one thread finds. */
 typedef struct NearPart {
     FlatPieces pieces;
     FlatWork   work;
-    size_t     looks, hard, thin, seams, unproven;
-    double     left_at[3]; /* where one is */
+    size_t     checks, hard, thin, seams, unproven;
+    double     left_at[3]; /* the middle of one that is left */
 } NearPart;
 
 typedef struct NearWork {
     Mesher          *m;
     FlatRounds      *rounds;
     const FlatBoxes *boxes;
-    bool            *is_unproven; /* of each box, whether planes are too rough somewhere in it */
+    bool            *is_unproven; /* of each box, whether planes are too coarse somewhere in it */
     Box             *unproven;    /* and where that is */
     double           error;
     NearPart        *parts;
 } NearWork;
 
-typedef struct Looking {
+typedef struct Checking {
     const NearWork *w;
     NearPart       *part;
     MeshField      *field;
     size_t          number; /* of the box */
-    bool            asks;   /* whether the mesh is still wanted */
-} Looking;
+    bool            asks;   /* reports progress */
+} Checking;
 
 static Box wider_box(Box box, double by)
 {
@@ -54,31 +54,31 @@ static Box wider_box(Box box, double by)
     return box;
 }
 
-static bool goes_on(Looking *l)
+static bool goes_on(Checking *l)
 {
     Mesher   *m    = l->w->m;
     NearPart *part = l->part;
-    if (++part->looks % ASK_EVERY == 0 && l->asks && m->options->progress &&
+    if (++part->checks % ASK_EVERY == 0 && l->asks && m->options->progress &&
         !m->options->progress(m->options->user, 0))
         atomic_store(&m->stopped, true);
-    return !atomic_load(&m->stopped) && part->looks < MAX_LOOKS &&
-           (part->unproven == 0 || part->looks < MAX_LOOKS_WHERE_UNPROVEN * l->w->boxes->count) &&
+    return !atomic_load(&m->stopped) && part->checks < MAX_CHECKS &&
+           (part->unproven == 0 || part->checks < MAX_CHECKS_WHERE_UNPROVEN * l->w->boxes->count) &&
            part->hard < MAX_HARD && part->thin < MAX_THIN && part->seams < MAX_SEAMS;
 }
 
-static void note_place(NearPart *part, const Box *box)
+static void note_location(NearPart *part, const Box *box)
 {
     for (int k = 0; k < 3; k++)
         part->left_at[k] = 0.5 * (box->axis[k].low + box->axis[k].high);
 }
 
-static void leave(Looking *l, FlatNearness nearness, Box box, double way)
+static void leave(Checking *l, FlatNearness nearness, Box box, double shift)
 {
     NearPart *part = l->part;
-    note_place(part, &box);
+    note_location(part, &box);
     if (nearness == FLAT_UNPROVEN) {
         l->w->is_unproven[l->number] = true;
-        l->w->unproven[l->number]    = wider_box(box, way);
+        l->w->unproven[l->number]    = wider_box(box, shift);
         part->unproven++;
     } else
         part->thin++;
@@ -90,18 +90,18 @@ static double smallest_of(const NearPart *part)
     return part->thin + part->unproven < MANY ? SMALLEST : SMALLEST_OF_MANY;
 }
 
-static void look(Looking *l, Box box, int halvings);
+static void check_box(Checking *l, Box box, int halvings);
 
-static void look_at_halves(Looking *l, Box box, int axis, int halvings)
+static void check_halves(Checking *l, Box box, int axis, int halvings)
 {
     Box    halves[2]          = {box, box};
     double middle             = 0.5 * (box.axis[axis].low + box.axis[axis].high);
     halves[0].axis[axis].high = halves[1].axis[axis].low = middle;
-    look(l, halves[0], halvings + 1);
-    look(l, halves[1], halvings + 1);
+    check_box(l, halves[0], halvings + 1);
+    check_box(l, halves[1], halvings + 1);
 }
 
-static void look(Looking *l, Box box, int halvings)
+static void check_box(Checking *l, Box box, int halvings)
 {
     NearPart *part  = l->part;
     double    error = l->w->error;
@@ -111,40 +111,40 @@ static void look(Looking *l, Box box, int halvings)
     if (range.low > 0 || range.high < 0)
         return;
     if (!goes_on(l)) {
-        if (part->looks == MAX_LOOKS || part->hard == MAX_HARD)
-            note_place(part, &box);
+        if (part->checks == MAX_CHECKS || part->hard == MAX_HARD)
+            note_location(part, &box);
         return;
     }
     int    axis    = box_longest_axis(&box);
     double size    = box.axis[axis].high - box.axis[axis].low;
-    double way     = size < SMALL * error ? SHORT_WAY * error : error;
+    double shift   = size < SMALL * error ? SHORT_SHIFT * error : error;
     bool   entered = halvings % HALVINGS_OF_REGION == 0 && l->field->region_count < MAX_REGIONS;
     if (entered)
         field_focus(l->field, wider_box(box, error));
     FlatNearness nearness = FLAT_UNKNOWN;
-    if (flat_pieces(l->field, wider_box(box, way), l->w->m->side, l->w->rounds, FLAT_PROVING,
+    if (flat_pieces(l->field, wider_box(box, shift), l->w->m->side, l->w->rounds, FLAT_PROVING,
                     &part->work, &part->pieces)) {
-        nearness = flat_nearness(&part->pieces, &box, way);
+        nearness = flat_nearness(&part->pieces, &box, shift);
         axis     = flat_widest_axis(&part->pieces, &box);
     }
     part->hard += nearness == FLAT_HARD;
     if (nearness > FLAT_HARD && size > smallest_of(part) * error)
-        look_at_halves(l, box, axis, halvings);
+        check_halves(l, box, axis, halvings);
     else if (nearness > FLAT_HARD)
-        leave(l, nearness, box, way);
+        leave(l, nearness, box, shift);
     if (entered)
         field_leave(l->field);
 }
 
-static void look_at_part(void *task, size_t part, size_t parts)
+static void check_part(void *task, size_t part, size_t parts)
 {
     const NearWork *w = task;
-    Looking         l = {w, &w->parts[part], &w->m->fields[part], 0, part == 0};
+    Checking        l = {w, &w->parts[part], &w->m->fields[part], 0, part == 0};
     for (l.number = part; l.number < w->boxes->count; l.number += parts)
-        look(&l, w->boxes->items[l.number], 0);
+        check_box(&l, w->boxes->items[l.number], 0);
 }
 
-/* Where the sides are too far.  Other boxes are left out. */
+/* Blames the rounds that are too coarse in unproven boxes, and drops the other boxes. */
 static void blame(const NearWork *w, FlatBoxes *boxes)
 {
     MeshField *field = &w->m->fields[0];
@@ -164,8 +164,9 @@ static void blame(const NearWork *w, FlatBoxes *boxes)
     w->rounds->blame = false;
 }
 
-/* More sides are of no use where much is thin anyway, or would take too long.  Solids with seams of surfaces that are not exact, as
-   hulls of balls, are better made otherwise, but for those with curves. */
+/* Judges by what the threads found.  More sides are of no use where much is thin anyway.  Solids
+   with seams of surfaces that are not exact, as hulls of balls, are better meshed by tetrahedra,
+   but for those with curves. */
 static FlatVerdict judge(const NearWork *w, size_t parts)
 {
     FlatVerdict verdict = FLAT_PROVEN;
@@ -174,7 +175,7 @@ static FlatVerdict judge(const NearWork *w, size_t parts)
     m->unresolved = 0;
     for (size_t i = 0; i < parts; i++) {
         const NearPart *part      = &w->parts[i];
-        bool            cut_short = part->looks >= MAX_LOOKS || part->hard >= MAX_HARD;
+        bool            cut_short = part->checks >= MAX_CHECKS || part->hard >= MAX_HARD;
         size_t          left      = part->thin + part->unproven + cut_short;
         in_vain |= part->thin >= MAX_THIN;
         by_seams |= part->seams >= MAX_SEAMS;
@@ -205,7 +206,7 @@ FlatVerdict flat_near(Mesher *m, FlatRounds *rounds, FlatBoxes *boxes, double er
         w.parts[i].work = flat_work_new(&m->fields[i], &m->arena);
         flat_rounds_open(rounds, &m->fields[i].ranges);
     }
-    run_in_parallel(look_at_part, &w);
+    run_in_parallel(check_part, &w);
     FlatVerdict verdict = judge(&w, parts);
     blame(&w, boxes);
     for (size_t i = 0; i < parts; i++)

@@ -1,12 +1,13 @@
 /*
- * flat_outlines.h: what is within an outline: its curves are chords, as many as the error needs.
+ * flat_outlines.h: makes the inside of an outline, whose curves become as many chords as the error
+ * needs.
  */
 #ifndef KRS_MESH_FLAT_OUTLINES_H
 #define KRS_MESH_FLAT_OUTLINES_H
 
 #include "mesh/flat/flat_joins.h"
 
-/* Where the distance to an outline, a step that is a call, is below 0. */
+/* Returns the solid where the distance to an outline, a step that is a call, is below 0. */
 int flat_solid_of_outline(Finding *f, uint32_t value);
 
 #endif

@@ -1,11 +1,12 @@
 /*
- * flat_pieces.c: half-spaces from the steps of a lane tape.
+ * flat_pieces.c: finds half-spaces from the steps of a lane tape.
  *
- * A sum with a kink is the minimum or the maximum of two sums without it, by the sign of its factor.  Lengths and outlines are
- * kinks, too (flat_circles.h, flat_outlines.h).
+ * A sum with a kink is the minimum or the maximum of two sums without it, by the sign of its
+ * factor.  Lengths and outlines are kinks, too (flat_circles.h, flat_outlines.h).
  *
- * One thing is taken for granted and not proven: that a distance to a box is 0 or less where none of its faces is above 0.  So
- * who uses the half-spaces looks whether the surface is on the faces that come out (flat.c: is_on_surface).
+ * One thing is assumed without a proof: that a distance to a box is 0 or less where none of its
+ * faces is above 0.  So flat.c checks that the surface is on the faces that come out
+ * (is_on_surface).
  */
 #include "mesh/flat/flat_pieces.h"
 
@@ -24,8 +25,9 @@ static void join_faces(FieldFaces *faces, const FieldFaces *others)
             faces->operands[faces->count++] = others->operands[i];
 }
 
-/* length(max(q, 0)) + min(greatest of some q, 0) is above 0 where one of the latter is, and else, as distances go, where one
-   of the former is.  What is added to it must not be below 0, unless there is one q alone. */
+/* Finds the faces of length(max(q, 0)) + min(greatest of some q, 0), a distance to a box: it is
+   above 0 where some q is.  What is added to it must not be below 0, unless there is one q
+   alone. */
 static bool find_box_faces(const Finding *f, uint32_t value, double added, FieldFaces *faces,
                            double *part)
 {
@@ -59,7 +61,8 @@ static int solid_of_faces(Finding *f, const FieldFaces *faces, double factor, do
 
 /* ---- conditions ---- */
 
-/* Where the first number is below the second one.  How far lengths around it are off says nothing of where that is. */
+/* Returns the solid where the first number is below the second; it has no slack of lengths around
+   it. */
 static int solid_of_less(Finding *f, uint32_t first, uint32_t second)
 {
     Form a = form_of_operand(f, first), b = form_of_operand(f, second),
@@ -74,7 +77,7 @@ static int solid_of_less(Finding *f, uint32_t first, uint32_t second)
     return solid;
 }
 
-/* Where a condition is true. */
+/* Returns the solid where a condition is true. */
 static int solid_of_condition(Finding *f, uint32_t operand)
 {
     const LaneStep *step  = lane_step_of(f->tape, operand);
@@ -104,7 +107,7 @@ static bool is_number(const Finding *f, uint32_t operand, double sign)
     return (operand & LANE_SCALAR) && sign * f->tape->scalars[operand & ~LANE_SCALAR] > 0;
 }
 
-/* Where one of two solids is, but not the other. */
+/* Returns the symmetric difference of two solids. */
 static int one_only(Finding *f, int a, int b)
 {
     if (a < 0 || b < 0)
@@ -117,7 +120,8 @@ static int one_only(Finding *f, int a, int b)
     return flat_either(f, first, flat_both(f, flat_complement(f, a), b));
 }
 
-/* Where a product is below 0 whose factors have known signs, or choose between two numbers: sizes times signs. */
+/* Finds the solid where a product is below 0 whose factors have known signs, or choose between a
+   positive and a negative number. */
 static bool find_sign(Finding *f, uint32_t operand, int *solid)
 {
     const LaneStep *step  = lane_step_of(f->tape, operand);
@@ -136,10 +140,10 @@ static bool find_sign(Finding *f, uint32_t operand, int *solid)
             *solid = one_only(f, first, second);
         return found;
     }
-    for (int way = -1; step && step->op == OP_select && way <= 1; way += 2)
-        if (is_number(f, step->operands[1], way) && is_number(f, step->operands[2], -way)) {
+    for (int sign = -1; step && step->op == OP_select && sign <= 1; sign += 2)
+        if (is_number(f, step->operands[1], sign) && is_number(f, step->operands[2], -sign)) {
             *solid = solid_of_condition(f, step->operands[0]);
-            if (way > 0)
+            if (sign > 0)
                 *solid = flat_complement(f, *solid);
             return true;
         }
@@ -156,7 +160,7 @@ static int solid_of_pair(Finding *f, const Form *rest, double factor, const Form
     return greater == (factor > 0) ? flat_both(f, first, second) : flat_either(f, first, second);
 }
 
-/* One of two forms, by a condition. */
+/* Returns the solid of one of two forms, chosen by a condition. */
 static int solid_of_choice(Finding *f, const Form *rest, double factor, const LaneStep *step)
 {
     Form first  = form_of_operand(f, step->operands[1]),
@@ -167,7 +171,8 @@ static int solid_of_choice(Finding *f, const Form *rest, double factor, const La
     return flat_either(f, where, flat_both(f, flat_complement(f, condition), flat_solid(f, &b)));
 }
 
-/* The greater of the least, and of the lesser of a number and the most. */
+/* Returns the solid of a clamped number: the greater of the lower limit, and of the lesser of the
+   number and the upper limit. */
 static int solid_of_clamped(Finding *f, const Form *rest, double factor, const LaneStep *step)
 {
     int solids[3];
@@ -180,7 +185,7 @@ static int solid_of_clamped(Finding *f, const Form *rest, double factor, const L
                       : flat_either(f, flat_both(f, solids[0], solids[2]), solids[1]);
 }
 
-/* A distance to a box that is not the sum of its faces' kinks. */
+/* Returns the solid of a distance to a box, as the sum of both its terms. */
 static int solid_of_sum(Finding *f, const Form *rest, double factor, const LaneStep *step)
 {
     Form first   = form_of_operand(f, step->operands[0]),
@@ -190,7 +195,7 @@ static int solid_of_sum(Finding *f, const Form *rest, double factor, const LaneS
     return flat_solid(f, &both_of);
 }
 
-/* Takes the last kink apart: no other depends on it. */
+/* Splits a form at its last kink, on which no other depends. */
 static int solid_of_kink(Finding *f, const Form *form)
 {
     uint32_t   value  = form->kinks[0];
@@ -236,7 +241,6 @@ static int solid_of_kink(Finding *f, const Form *form)
     return FLAT_NONE;
 }
 
-/* Where a form is below 0. */
 int flat_solid(Finding *f, const Form *form)
 {
     Range range = form_range(f, form);
@@ -249,7 +253,7 @@ int flat_solid(Finding *f, const Form *form)
     return form->kink_count == 0 ? flat_half_space(f, form) : solid_of_kink(f, form);
 }
 
-/* What the field is cut by. */
+/* Intersects a solid with the box to which the field is cut. */
 static int cut(Finding *f, int solid)
 {
     for (int i = 0; f->field->cut && i < 6; i++) {

@@ -1,5 +1,5 @@
 /*
- * flat_planes.h: half-spaces, and solids that are made of them.
+ * flat_planes.h: half-spaces, and solids as trees of intersections and unions of them.
  */
 #ifndef KRS_MESH_FLAT_PLANES_H
 #define KRS_MESH_FLAT_PLANES_H
@@ -7,12 +7,12 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* normal . p + offset, below 0 inside; the normal has length 1. */
+/* The points where normal . p + offset is below 0; the normal has length 1. */
 typedef struct HalfSpace {
     double normal[3], offset;
 } HalfSpace;
 
-/* By how much less, or more, the number may be that a half-space stands for. */
+/* By how much less, or more, the number may be that a half-space approximates. */
 typedef struct FlatSlack {
     double below, above;
 } FlatSlack;
@@ -31,13 +31,13 @@ typedef struct FlatPieces {
     size_t    count, node_count;
     HalfSpace list[MAX_FLATS];
     FlatSlack slack[MAX_FLATS];
-    bool     chooses[MAX_FLATS]; /* its side is a condition by which one of two surfaces is taken */
-    FlatNode nodes[MAX_FLAT_NODES];
-    int      root;
-    bool     round; /* some stand for what is round */
+    bool      chooses[MAX_FLATS]; /* its side is a condition that chooses one of two surfaces */
+    FlatNode  nodes[MAX_FLAT_NODES];
+    int       root;
+    bool      round; /* some approximate what is round */
 } FlatPieces;
 
-/* Faces are made in boxes of few planes.  A proof looks a way around its box, where there are more. */
+/* Faces are made in boxes of few planes.  Proofs are made in wider boxes, with more planes. */
 typedef enum FlatUse { FLAT_MAKING, FLAT_PROVING } FlatUse;
 
 #endif

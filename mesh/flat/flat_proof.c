@@ -1,21 +1,23 @@
 /*
- * flat_proof.c: looks for ways on which half-spaces change by more than they are off.
+ * flat_proof.c: searches for shifts by which half-spaces change by more than they are off.
  *
- * Let each be off by no more than its slack.  A solid is made of them by intersections and unions alone, so if each
- * that is entered at one end of a way, slack and all, is also entered at the other, so is the solid.
+ * Let each be off by no more than its slack.  A solid is made of them by intersections and unions
+ * alone.  So if each half-space that has one end of a shift, slack included, also has the other
+ * end, the same is true of the solid.
  */
 #include "mesh/flat/flat_proof.h"
 
 #include <string.h>
 
 #include "compiler/base/minmax.h"
-#include "mesh/flat/flat_ways.h"
+#include "mesh/flat/flat_shifts.h"
 
-/* What is looked at: a box, ways that are so long at most, and a part of the slack, but where that is less than the least. */
+/* What is to be proven: a box, the length of shifts, and the part of the slack that counts, with
+   its least value. */
 typedef struct Proof {
     const FlatPieces *pieces;
     const Box        *box;
-    double            way, part, least;
+    double            shift, part, least;
 } Proof;
 
 static double slack_of(const Proof *proof, double slack)
@@ -33,13 +35,13 @@ static FlatGrowth growth_of(const Proof *proof, size_t plane, int sign)
 
 static double largest_of(FlatSlack slack) { return max2(slack.below, slack.above); }
 
-/* ---- one way for all ---- */
+/* ---- one shift for all ---- */
 
 typedef struct Seen {
     bool by_sign[2][MAX_FLATS];
 } Seen;
 
-/* 1: all of the box is outside, -1: all is inside, each by its slack. */
+/* Returns 1 if all of the box is outside, -1 if all is inside, by more than the slack; else 0. */
 static int side_of(const FlatGrowth *growth)
 {
     return growth->low - growth->slack.below > 0    ? 1
@@ -47,7 +49,7 @@ static int side_of(const FlatGrowth *growth)
                                                     : 0;
 }
 
-/* By the sides of its parts: 1, -1, or 0 where that is not known. */
+/* Returns the side of a node by those of its parts: 1, -1, or 0 if it is not known. */
 static signed char side_of_node(const FlatNode *node, const signed char *sides,
                                 const signed char *known)
 {
@@ -60,7 +62,8 @@ static signed char side_of_node(const FlatNode *node, const signed char *sides,
     return first == second ? first : 0;
 }
 
-/* Those whose side makes a difference where some sides are known; NULL: none is.  Parts of a node are before it. */
+/* Collects the half-spaces whose side makes a difference where some sides are known; NULL: none is.
+   Parts of a node come before it. */
 static void collect(const FlatPieces *pieces, const signed char *sides, Seen *seen)
 {
     signed char known[MAX_FLAT_NODES];
@@ -84,7 +87,8 @@ static void collect(const FlatPieces *pieces, const signed char *sides, Seen *se
     }
 }
 
-/* On one side of all of the box it may become less, until it is not. */
+/* Returns how much a number must grow; one that has the same sign in all of the box may even
+   fall. */
 static double need_of(const FlatGrowth *growth)
 {
     int side = side_of(growth);
@@ -93,20 +97,20 @@ static double need_of(const FlatGrowth *growth)
                       : growth->slack.above + growth->high;
 }
 
-typedef enum OneWay { ONE_WAY, NO_WAY, SEAM } OneWay;
+typedef enum OneShift { ONE_SHIFT, NO_SHIFT, SEAM } OneShift;
 
-static OneWay find_one_way(const Proof *proof, const signed char *sides)
+static OneShift find_one_shift(const Proof *proof, const signed char *sides)
 {
     Seen        seen = {{{false}}};
     FlatGrowths growths;
     growths.count = 0;
-    growths.level = (FlatWay){{0, 0, 0}, {{0}}, 0};
+    growths.level = (FlatShift){{0, 0, 0}, {{0}}, 0};
     collect(proof->pieces, sides, &seen);
     for (size_t i = 0; i < proof->pieces->count; i++) {
         bool below = seen.by_sign[1][i], above = seen.by_sign[0][i];
         if (below && above) {
             if (largest_of(proof->pieces->slack[i]) > 0)
-                return proof->pieces->chooses[i] ? SEAM : NO_WAY;
+                return proof->pieces->chooses[i] ? SEAM : NO_SHIFT;
             flat_growths_level(&growths, proof->pieces->list[i].normal);
         } else if (below || above) {
             FlatGrowth *growth = &growths.list[growths.count++];
@@ -114,24 +118,28 @@ static OneWay find_one_way(const Proof *proof, const signed char *sides)
             growth->need       = need_of(growth);
         }
     }
-    return flat_has_way(&growths, proof->way) ? ONE_WAY : NO_WAY;
+    return flat_has_shift(&growths, proof->shift) ? ONE_SHIFT : NO_SHIFT;
 }
 
-/* All that is in the box or beside it. */
-static bool all_have_one_way(const Proof *proof) { return find_one_way(proof, NULL) == ONE_WAY; }
+/* Tells whether all half-spaces in the box or beside it have one shift. */
+static bool all_have_one_shift(const Proof *proof)
+{
+    return find_one_shift(proof, NULL) == ONE_SHIFT;
+}
 
-/* What makes a difference in the box: so no two parts of the surface come together there, nor does a hole close. */
-static OneWay find_one_sheet(const Proof *proof)
+/* Finds one shift for what makes a difference in the box: then no two parts of the surface meet
+   there, nor does a hole close. */
+static OneShift find_local_shift(const Proof *proof)
 {
     signed char sides[MAX_FLATS];
     for (size_t i = 0; i < proof->pieces->count; i++) {
         FlatGrowth growth = growth_of(proof, i, 1);
         sides[i]          = (signed char)side_of(&growth);
     }
-    return find_one_way(proof, sides);
+    return find_one_shift(proof, sides);
 }
 
-/* ---- a way for each set ---- */
+/* ---- a shift for each set ---- */
 
 enum { MAX_MEMBERS = 64, MAX_SETS = 128 };
 
@@ -145,12 +153,12 @@ typedef struct Sets {
 typedef struct Members {
     const Proof *proof;
     FlatGrowths  growths;
-    int          numbers[2][MAX_FLATS]; /* of growths, by sign; or one of those below */
+    int          numbers[2][MAX_FLATS]; /* of growths, by sign; or UNSEEN, NEVER, ALWAYS */
 } Members;
 
 enum { UNSEEN = -1, NEVER = -2, ALWAYS = -3 };
 
-/* Leaves out what has another one within it. */
+/* Adds a set, and drops sets that contain another. */
 static void add_set(Sets *sets, uint64_t set)
 {
     size_t kept = 0;
@@ -166,7 +174,8 @@ static void add_set(Sets *sets, uint64_t set)
         sets->items[sets->count++] = set;
 }
 
-/* What is above 0 on all ways need not grow. */
+/* Returns the number of a growth; NEVER if it is below 0 in the box, ALWAYS if it is above 0 for
+   all shifts. */
 static int member_of(Members *members, size_t plane, int sign)
 {
     int *number = &members->numbers[sign > 0][plane];
@@ -177,7 +186,7 @@ static int member_of(Members *members, size_t plane, int sign)
     growth->need       = min2(growth->slack.below - growth->low, largest_of(growth->slack));
     if (growth->high + growth->slack.above < 0)
         return *number = NEVER;
-    if (growth->need <= -members->proof->way)
+    if (growth->need <= -members->proof->shift)
         return *number = ALWAYS;
     return *number = (int)members->growths.count++;
 }
@@ -195,8 +204,8 @@ static void add_common(const Sets *first, const Sets *second, Sets *to)
             add_set(to, first->items[i] | second->items[k]);
 }
 
-/* Finds sets of numbers that are above 0 together where a place is outside of the solid; `inside`: of which
-   each is less than 0 where it is inside. */
+/* Finds the sets of numbers such that a point is outside of the solid if all numbers of one set are
+   above 0; with `inside`, such that it is inside. */
 static void find_sets(Members *members, int root, bool inside, Sets *sets)
 {
     sets->count  = 0;
@@ -226,18 +235,18 @@ static void find_sets(Members *members, int root, bool inside, Sets *sets)
     }
 }
 
-static bool set_has_way(const Members *members, uint64_t set)
+static bool set_has_shift(const Members *members, uint64_t set)
 {
     FlatGrowths growths;
     growths.count = 0;
-    growths.level = (FlatWay){{0, 0, 0}, {{0}}, 0};
+    growths.level = (FlatShift){{0, 0, 0}, {{0}}, 0};
     for (size_t i = 0; i < members->growths.count; i++)
         if (set >> i & 1)
             growths.list[growths.count++] = members->growths.list[i];
-    return flat_has_way(&growths, members->proof->way);
+    return flat_has_shift(&growths, members->proof->shift);
 }
 
-static bool sets_have_ways(const Proof *proof)
+static bool sets_have_shifts(const Proof *proof)
 {
     Members members;
     members.proof         = proof;
@@ -249,7 +258,7 @@ static bool sets_have_ways(const Proof *proof)
         Sets sets;
         find_sets(&members, proof->pieces->root, inside, &sets);
         for (size_t i = 0; i < sets.count && !sets.failed; i++)
-            sets.failed = !set_has_way(&members, sets.items[i]);
+            sets.failed = !set_has_shift(&members, sets.items[i]);
         if (sets.failed)
             return false;
     }
@@ -258,20 +267,20 @@ static bool sets_have_ways(const Proof *proof)
 
 /* ---- boxes ---- */
 
-/* In sharp wedges no planes are near enough, for their number has an end. */
+/* In sharp wedges no planes are near enough, since their number is limited. */
 FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double error)
 {
     Proof now = {pieces, box, error, 1, 0}, finer = {pieces, box, 0.3 * error, 0.1, 0.02 * error};
-    if (all_have_one_way(&now))
+    if (all_have_one_shift(&now))
         return FLAT_NEAR;
-    if (find_one_sheet(&now) == ONE_WAY && sets_have_ways(&now))
+    if (find_local_shift(&now) == ONE_SHIFT && sets_have_shifts(&now))
         return FLAT_HARD;
-    if (all_have_one_way(&finer))
+    if (all_have_one_shift(&finer))
         return FLAT_UNPROVEN;
-    OneWay sheet = find_one_sheet(&finer);
-    if (sheet == ONE_WAY && sets_have_ways(&finer))
+    OneShift local = find_local_shift(&finer);
+    if (local == ONE_SHIFT && sets_have_shifts(&finer))
         return FLAT_UNPROVEN;
-    return sheet == SEAM ? FLAT_SEAM : FLAT_THIN;
+    return local == SEAM ? FLAT_SEAM : FLAT_THIN;
 }
 
 int flat_widest_axis(const FlatPieces *pieces, const Box *box)

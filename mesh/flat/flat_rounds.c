@@ -1,4 +1,4 @@
-/* flat_rounds.c: how many sides the polygons have that stand for circles. */
+/* flat_rounds.c: counts the sides of polygons that approximate circles. */
 #include "mesh/flat/flat_rounds.h"
 
 #include <math.h>
@@ -10,12 +10,14 @@ enum { FEWEST_SIDES = 8, MAX_SIDES = 4096 };
 
 static const double PI = 3.14159265358979323846;
 
-/* What is left over is for edges, at which faces are farther from the surface than beside them. */
+/* The part of the error that sides take first, which leaves some for edges, where faces are farther
+   from the surface; and the least part. */
 static const double LARGEST_PART = 0.85, MIN_PART = 0.04;
 
 /*
- * A side between two corners that are w outside of a unit circle comes within it by a^2 / 8 - w, where a is its angle; one
- * between such a corner and one on the circle by (a^2 / 2 - w)^2 / (2 a^2).  That is w as well if w = (3 - sqrt(8)) a^2 / 2.
+ * A side between two corners that are w outside of a unit circle comes within it by a^2 / 8 - w,
+ * where a is its angle; one between such a corner and one on the circle by (a^2 / 2 - w)^2 / (2
+ * a^2).  That is w as well if w = (3 - sqrt(8)) a^2 / 2.
  */
 double flat_corner_radius(uint32_t sides)
 {
@@ -23,7 +25,8 @@ double flat_corner_radius(uint32_t sides)
     return sides > 4 ? 1 + 0.5 * (3 - sqrt(8)) * angle * angle : 1;
 }
 
-/* The distance of the origin from the line through (1, 0) and (wide cos angle, wide sin angle). */
+/* Returns the lesser distance from the origin to the line through (1, 0) and (wide cos angle, wide
+   sin angle), and to that through two corners of radius `wide`. */
 double flat_side_distance(uint32_t sides, double wide)
 {
     double angle = 2 * PI / sides, across = wide * sin(angle), along = wide * cos(angle) - 1;
@@ -48,7 +51,8 @@ FlatRounds flat_rounds_new(double error, Arena *arena)
         .arena = arena, .numbers = {.arena = arena}, .error = error, .stretch = 1, .longest = 1};
 }
 
-/* NULL: all are known, and this one is blamed if one is looked for; what is only near the surface is none of them. */
+/* Returns the round of a key, to note what it has.  When sides have been counted it returns NULL,
+   but blames the round if asked to. */
 static FlatRound *note(FlatRounds *rounds, NumberKey key)
 {
     uint32_t fresh = (uint32_t)rounds->list.count;
@@ -90,7 +94,7 @@ void flat_rounds_note_curves(FlatRounds *rounds, uint32_t table, double length, 
     }
 }
 
-/* What of the error a round may take, as a part of its radius. */
+/* Returns the part of the error that a round may take, over its radius. */
 static double part_of(const FlatRound *round, double error)
 {
     return error * round->part * (round->shared ? 0.45 : 1) / round->radius;
@@ -155,7 +159,7 @@ double flat_rounds_chord(const FlatRounds *rounds, uint32_t table)
     return rounds->counted && round ? round->chord : INFINITY;
 }
 
-/* Until it has more sides.  False: it is fine enough. */
+/* Makes a round finer until it has more sides; returns false if it is fine enough. */
 static bool make_finer(FlatRound *round, double error)
 {
     uint32_t sides = round->sides;
@@ -178,16 +182,16 @@ bool flat_rounds_refine(FlatRounds *rounds)
     return any;
 }
 
-void flat_rounds_keep(FlatRounds *rounds)
+void flat_rounds_save(FlatRounds *rounds)
 {
     for (size_t i = 0; i < rounds->list.count; i++)
-        rounds->list.items[i].kept = rounds->list.items[i].part;
+        rounds->list.items[i].saved = rounds->list.items[i].part;
 }
 
-void flat_rounds_go_back(FlatRounds *rounds)
+void flat_rounds_restore(FlatRounds *rounds)
 {
     for (size_t i = 0; i < rounds->list.count; i++)
-        rounds->list.items[i].part = rounds->list.items[i].kept;
+        rounds->list.items[i].part = rounds->list.items[i].saved;
     flat_rounds_count(rounds);
 }
 

@@ -1,4 +1,5 @@
-/* flat_separate.c: each edge finds the one that goes back along it, and each vertex the triangles around it. */
+/* flat_separate.c: pairs each edge with one that goes back along it, and splits vertices by the
+   triangles around them. */
 #include "mesh/flat/flat_separate.h"
 
 #include <string.h>
@@ -14,7 +15,7 @@ typedef struct Edges {
     Numbering           numbers; /* the first edge from one vertex to another */
     uint32_t           *next;    /* edges between the same vertices; NO_NUMBER ends them */
     uint32_t           *back;    /* the edge that goes back; NO_NUMBER: it has not been found */
-    uint32_t           *one;     /* corners that share a vertex: another one, or itself */
+    uint32_t           *one; /* union-find of corners that share a vertex: another one, or itself */
 } Edges;
 
 static uint32_t corner_of(const Edges *e, uint32_t edge, uint32_t behind)
@@ -41,7 +42,7 @@ static void list_edges(Edges *e)
     }
 }
 
-/* Along an edge, and from it into its triangle, at right angles. */
+/* Finds the direction of an edge, and the direction across it into its triangle. */
 static void frame_of(const Edges *e, uint32_t edge, double along[3], double into[3])
 {
     const double(*at)[3] = (const double(*)[3])e->vertices->items;
@@ -53,7 +54,7 @@ static void frame_of(const Edges *e, uint32_t edge, double along[3], double into
     normalize3(into);
 }
 
-/* By how much a triangle is turned, through the solid, into another one that has the edge, too. */
+/* Returns the angle through the solid from a triangle to another one with the same edge. */
 static double angle_through(const Edges *e, uint32_t edge, uint32_t other)
 {
     static const double NONE = 1e-9;
@@ -100,7 +101,8 @@ static void share(Edges *e, uint32_t first, uint32_t second)
 
 static uint32_t next_corner(uint32_t corner) { return corner - corner % 3 + (corner % 3 + 1) % 3; }
 
-/* The first triangles around a vertex keep it. */
+/* Gives a new vertex to each further group of triangles around a vertex; the first group keeps
+   it. */
 static void number_corners(Edges *e, FlatVertices *vertices, Triangles *triangles, Arena *arena)
 {
     size_t    count = vertices->count;
@@ -123,7 +125,7 @@ static void number_corners(Edges *e, FlatVertices *vertices, Triangles *triangle
         triangles->items[i / 3][i % 3] = takes[one_of(e, i)];
 }
 
-/* Gives an edge a corner in its middle, in one of its triangles. */
+/* Splits one triangle at the middle of an edge. */
 static void split_triangle(Triangles *triangles, uint32_t edge, uint32_t middle, Arena *arena)
 {
     array_reserve_large(arena, triangles);
@@ -134,8 +136,8 @@ static void split_triangle(Triangles *triangles, uint32_t edge, uint32_t middle,
     fresh[from] = middle;
 }
 
-/* Where two pairs of triangles share an edge still, since all are around the same vertices: one pair gets a corner in the middle.
-   Each triangle is split once; false: none was. */
+/* Splits an edge in its middle for one of two pairs of triangles that still share it, since all are
+   around the same vertices.  Splits each triangle once at most; returns whether any was split. */
 static bool split_edges(Edges *e, FlatVertices *vertices, Triangles *triangles, Arena *arena)
 {
     uint32_t count   = (uint32_t)(3 * triangles->count);
@@ -162,7 +164,8 @@ static bool split_edges(Edges *e, FlatVertices *vertices, Triangles *triangles, 
     return any;
 }
 
-/* Gives vertices to the triangles around each; false: they are not closed. */
+/* Pairs edges, and gives each group of triangles its vertex; returns false if the triangles are not
+   closed. */
 static bool pair_edges(Edges *e, FlatVertices *vertices, Triangles *triangles, Arena *arena)
 {
     size_t count = 3 * triangles->count;

@@ -1,4 +1,4 @@
-/* flat_touches.c: vertices in a grid of cells, edges in a tree of boxes. */
+/* flat_touches.c: searches vertices in a hashed grid, and edges in a tree of boxes. */
 #include "mesh/flat/flat_touches.h"
 
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "compiler/field/bvh.h"
 #include "mesh/common/numbering.h"
 
-/* ---- vertices at one place ---- */
+/* ---- vertices that coincide ---- */
 
 static NumberKey key_of_cell(const int64_t cell[3])
 {
@@ -15,7 +15,8 @@ static NumberKey key_of_cell(const int64_t cell[3])
     return (NumberKey){(uint64_t)cell[0] ^ mixed, (uint64_t)cell[2] + (mixed >> 32)};
 }
 
-/* Cells are twice as wide as what is near, so that a place has parts of at most eight. */
+/* Returns a vertex near a point, or NO_NUMBER. Cells are twice as wide as `near`, so that at most
+   eight are near. */
 static uint32_t find_first(const FlatVertices *vertices, const Numbering *cells, double near,
                            const double at[3])
 {

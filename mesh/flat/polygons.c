@@ -1,7 +1,8 @@
 /*
- * polygons.c: ears are cut off, one after the other.
+ * polygons.c: triangulates by ear clipping.
  *
- * A hole is joined to what is around it by a line that is walked in both directions (Eberly, "Triangulation by ear clipping", 2002).
+ * A hole is joined to the ring around it by a bridge, an edge in both directions (Eberly,
+ * "Triangulation by ear clipping", 2002).
  */
 #include "mesh/flat/polygons.h"
 
@@ -15,12 +16,12 @@ typedef struct Corner {
     uint32_t vertex;
 } Corner;
 
-/* A loop, and what was joined to it. */
+/* A loop, and holes that were joined to it. */
 typedef struct Ring {
     Corner *items;
     size_t  count, capacity;
     double  area;  /* twice */
-    double  thin;  /* twice the area that it has where it is hardly wider than a line */
+    double  thin;  /* twice the area that it has if it is as narrow as a line */
     size_t  outer; /* of a hole: the ring around it */
     bool    joined;
 } Ring;
@@ -34,7 +35,7 @@ typedef struct Cutting {
     double     narrow;
 } Cutting;
 
-/* Twice the area of a triangle; above 0 where c is on the left of a to b. */
+/* Returns twice the area of a triangle; above 0 where c is on the left of a to b. */
 static double area2(const double a[2], const double b[2], const double c[2])
 {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -76,7 +77,7 @@ static void read_rings(Cutting *c, const double (*at)[3], const double normal[3]
             ring->thin += c->narrow * hypot(ring->items[i].at[0] - ring->items[j].at[0],
                                             ring->items[i].at[1] - ring->items[j].at[1]);
         if (fabs(ring->area) < ring->thin)
-            ring->area = fabs(ring->area); /* it is no hole, whichever way it goes round */
+            ring->area = fabs(ring->area); /* it is no hole, whatever its orientation */
     }
 }
 
@@ -94,7 +95,7 @@ static bool ring_has(const Ring *ring, const double point[2])
     return inside;
 }
 
-/* The smallest ring around a hole; it may touch that at some of its corners. */
+/* Finds the smallest ring around a hole, which may touch it at some of its corners. */
 static bool find_outer(Cutting *c, Ring *hole)
 {
     bool found = false;
@@ -119,14 +120,15 @@ static bool line_parts(const double a[2], const double b[2], const double c[2], 
     return (first >= 0) != (second >= 0) || fabs(first) <= tiny || fabs(second) <= tiny;
 }
 
-/* Tells whether the lines a to b and c to d cross, or one has an end on the other, but for a common end. */
+/* Tells whether the lines a to b and c to d cross, or one has an end on the other, but for a common
+   end. */
 static bool lines_cross(const double a[2], const double b[2], const double c[2], const double d[2],
                         double tiny)
 {
     if (same(a, c) || same(a, d) || same(b, c) || same(b, d))
         return false;
     double margin = tiny > 0 ? sqrt(tiny) : 0;
-    for (int k = 0; k < 2; k++) /* far from each other, also where they are in one line */
+    for (int k = 0; k < 2; k++) /* they are far from each other, perhaps collinear */
         if (max2(a[k], b[k]) < min2(c[k], d[k]) - margin ||
             max2(c[k], d[k]) < min2(a[k], b[k]) - margin)
             return false;
@@ -141,7 +143,7 @@ static bool ring_blocks(const Ring *ring, const double a[2], const double b[2], 
     return false;
 }
 
-/* Tells whether a line from corner i of a ring to a point begins inside. */
+/* Tells whether the line from corner i of a ring to a point begins inside. */
 static bool goes_inside(const Ring *ring, size_t i, const double to[2])
 {
     const double *at     = ring->items[i].at;
@@ -160,7 +162,8 @@ static bool is_blocked(const Cutting *c, const double a[2], const double b[2])
     return false;
 }
 
-/* The shortest line from a hole to the ring around it that crosses nothing: mostly the first or second that is tried. */
+/* Finds the shortest bridge from a hole to the ring around it that crosses nothing: mostly the
+   first or second that is tried. */
 static bool find_bridge(const Cutting *c, const Ring *hole, size_t *from, size_t *to)
 {
     const Ring *outer = &c->rings[hole->outer];
@@ -218,7 +221,8 @@ static double right_end(const Ring *ring)
     return right;
 }
 
-/* Those that reach farthest to the right first: no other hole is between them and what is around. */
+/* Joins holes to the rings around them, from right to left: no other hole is between the rightmost
+   and its ring. */
 static bool join_holes(Cutting *c)
 {
     for (size_t r = 0; r < c->count; r++)
@@ -240,11 +244,12 @@ static bool join_holes(Cutting *c)
 
 /* ---- ears ---- */
 
-/* What counts as an ear.  First ears that no corner comes near; where there are none, those that corners may touch, then
-   those without area, since corners in a line are common, and last any that is narrow: corners are known to that. */
+/* What counts as an ear.  First ears that no corner comes near; where there are none, those that
+   corners may touch, then those without area, since collinear corners are common, and last any that
+   is as narrow as corners are inexact. */
 typedef struct EarRule {
-    double least,
-        touching; /* twice areas: of an ear, and of what a corner makes with each side of it */
+    /* Twice the areas of an ear, and of the triangles that a corner makes with each side of it. */
+    double least, touching;
 } EarRule;
 
 static bool triangle_has(const double *const corners[3], const double point[2], double touching)
@@ -341,13 +346,14 @@ static void cut_ear(Cutting *c, const Ring *ring, uint32_t *left, size_t *count,
     --*count;
 }
 
-/* The next ear is looked for behind the one beside, so that triangles fan less. */
+/* Clips the ears of a ring.  Each search begins two corners behind the last ear, so that triangles
+   fan less. */
 static bool cut_ring(Cutting *c, const Ring *ring)
 {
     const double  tiny    = c->tiny;
     const EarRule rules[] = {{tiny, -tiny}, {tiny, tiny}, {-tiny, tiny}, {-ring->thin, HUGE_VAL}};
     uint32_t     *left    = arena_new_array(c->arena, uint32_t, ring->count);
-    size_t        count = ring->count, at = 0, looked = 0, rule = 0;
+    size_t        count = ring->count, at = 0, tries = 0, rule = 0;
     Buckets       buckets;
     fill_buckets(&buckets, ring, c->arena);
     for (size_t i = 0; i < count; i++)
@@ -357,9 +363,9 @@ static bool cut_ring(Cutting *c, const Ring *ring)
         if (is_ear(ring, &buckets, left, count, at, rules[rule])) {
             buckets.cut[left[at]] = true;
             cut_ear(c, ring, left, &count, at);
-            looked = rule = 0;
-        } else if (++looked > count) {
-            looked = 0;
+            tries = rule = 0;
+        } else if (++tries > count) {
+            tries = 0;
             if (++rule == sizeof rules / sizeof *rules)
                 return false;
         }

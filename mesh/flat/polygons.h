@@ -1,5 +1,5 @@
 /*
- * polygons.h: flat polygons with holes, cut into triangles.
+ * polygons.h: triangulates flat polygons with holes.
  */
 #ifndef KRS_MESH_POLYGONS_H
 #define KRS_MESH_POLYGONS_H
@@ -8,14 +8,14 @@
 
 #include "compiler/base/arena.h"
 
-/* Closed lines, one behind the other; the inside is on the left. */
+/* Closed polygons, one after the other; the inside is on the left. */
 typedef struct Loops {
     struct {
         uint32_t *items; /* vertices */
         size_t    count, capacity;
     } vertices;
     struct {
-        size_t *items; /* behind the last vertex of each */
+        size_t *items; /* number behind the last vertex of each */
         size_t  count, capacity;
     } ends;
 } Loops;
@@ -30,9 +30,9 @@ typedef struct Triangles {
     size_t count, capacity;
 } Triangles;
 
-/* Triangles between vertices of loops in a plane with this unit normal, in the order of the loops, which do
-   not cross, but where they are closer than `narrow`.  Each edge is in one triangle, each line between two of them in two.
-   False: none were found. */
+/* Triangulates loops in a plane with this unit normal, in the order of the loops, which do not
+   cross but where they are closer than `narrow`.  Each edge is in one triangle, each diagonal in
+   two.  Returns false if no triangles are found. */
 bool polygons_cut(const double (*at)[3], const double normal[3], const Loops *loops, double narrow,
                   Triangles *triangles, Arena *arena);
 
