@@ -1,6 +1,6 @@
 /*
- * collapse.c: edges are collapsed in the order of what that costs, by the sum of squared distances to planes (Garland and
- * Heckbert 1997).
+ * collapse.c: collapses edges in the order of the cost, a sum of squared distances to planes
+ * (Garland and Heckbert 1997).
  */
 #include "mesh/simplify/collapse.h"
 
@@ -12,9 +12,10 @@
 
 enum { MAX_STAR = 48, ASK_EVERY = 32 };
 #define NO_VERTEX UINT32_MAX
-/* Height over the longest edge, of triangles that are made. */
+/* The least height over the longest edge, of triangles that are made. */
 static const double THIN = 1e-5;
-/* What the length of an edge counts beside distances, so that flat parts begin with short ones. */
+/* The weight of the length of an edge beside distances, so that flat parts begin with short
+   ones. */
 static const double LENGTH_PART = 1e-6;
 
 typedef struct Candidate {
@@ -30,18 +31,18 @@ typedef struct Quadric {
 typedef struct Collapse {
     const double (*at)[3];
     uint32_t (*triangles)[3];
-    bool     *dead;
-    uint32_t *first,
-        *next; /* of a vertex, its first corner + 1, and of a corner, the next of its vertex */
-    uint32_t *stamps; /* of a vertex: changes with its triangles */
+    bool *dead;
+    /* Of a vertex, its first corner + 1, and of a corner, the next of its vertex. */
+    uint32_t *first, *next;
+    uint32_t *stamps; /* of a vertex: counts changes of its triangles */
     uint32_t *marks, mark;
     bool     *fixed;
     Quadric  *quadrics;
-    double   *off,
-        *missed; /* of a triangle, how far it is from the mesh that was simplified, at most, and what it replaces of that
-                             mesh is from it */
-    uint32_t *points,
-        *other; /* of a triangle, the first vertex + 1 that is near to it, and of a vertex the next */
+    /* Of a triangle, bounds of how far it is from the mesh that is simplified, and of how far what
+       it replaces is from it. */
+    double *off, *missed;
+    /* Of a triangle, the first vertex + 1 that it replaced, and of a vertex the next. */
+    uint32_t *points, *other;
     struct {
         Candidate *items;
         size_t     count, capacity;
@@ -60,7 +61,7 @@ static void normal_of(const Collapse *c, const uint32_t triangle[3], double norm
     cross3(edges[0], edges[1], normal);
 }
 
-/* Distances are from the vertex, so that rounding is small. */
+/* Adds the plane of a triangle to the quadric of a vertex. */
 static void add_plane(Collapse *c, uint32_t vertex, const uint32_t triangle[3])
 {
     double normal[3];
@@ -116,10 +117,10 @@ static Candidate pop(Collapse *c)
     return least;
 }
 
-/* ---- what is around a vertex ---- */
+/* ---- stars of vertices ---- */
 
-/* Its triangles; more than MAX_STAR: there are too many.  Those that are dead leave its list, which would grow with each
-   collapse. */
+/* Lists the triangles of a vertex; returns more than MAX_STAR if there are too many.  Removes dead
+   ones from its list, which would grow with each collapse. */
 static size_t star_of(Collapse *c, uint32_t vertex, uint32_t star[MAX_STAR])
 {
     size_t    count = 0;
@@ -149,13 +150,15 @@ static bool has_corner(const uint32_t triangle[3], uint32_t vertex)
     return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
 
-/* The edges from a vertex go to the corner that follows it in each triangle, since the mesh is closed. */
+/* Returns the corner that follows a vertex in a triangle; these are all neighbours, since the mesh
+   is closed. */
 static uint32_t corner_after(const uint32_t triangle[3], uint32_t vertex)
 {
     return triangle[0] == vertex ? triangle[1] : triangle[1] == vertex ? triangle[2] : triangle[0];
 }
 
-/* The cheapest collapse of a vertex that comes after one that cannot be, if there is one. */
+/* Proposes the cheapest collapse of a vertex, or the next one after a collapse that was
+   rejected. */
 static void propose_vertex(Collapse *c, uint32_t vertex, const Candidate *after)
 {
     uint32_t  star[MAX_STAR];
@@ -179,7 +182,8 @@ static void propose_vertex(Collapse *c, uint32_t vertex, const Candidate *after)
 
 /* ---- collapses ---- */
 
-/* The two vertices have only the neighbours in common that are in triangles with both. */
+/* Tells whether two vertices have only the neighbours in common that are in triangles with both
+   (the link condition). */
 static bool stays_closed(Collapse *c, const uint32_t *star, size_t count, uint32_t from,
                          uint32_t to)
 {
@@ -220,7 +224,8 @@ typedef struct Made {
     double   off, missed; /* as of Collapse */
 } Made;
 
-/* The nearest of them, or the first that is much nearer than it must be; returns how far it is. */
+/* Finds the nearest new triangle to a vertex, or the first that is much nearer than it must be;
+   returns how far it is. */
 static double find_nearest(const Collapse *c, const Made *made, uint32_t vertex, size_t *found)
 {
     static const double NEAR_ENOUGH = 0.1; /* parts of the error */
@@ -239,7 +244,7 @@ static double find_nearest(const Collapse *c, const Made *made, uint32_t vertex,
     return least;
 }
 
-/* Tells whether all that is made is within the error of the mesh that is simplified. */
+/* Tells whether all new triangles are within the error of the mesh that is simplified. */
 static bool are_made_near(const Collapse *c, Made *made)
 {
     made->off = 0;
@@ -252,7 +257,7 @@ static bool are_made_near(const Collapse *c, Made *made)
     return true;
 }
 
-/* Tells whether vertices of that mesh are within the error of what is made. */
+/* Tells whether the vertices that new triangles replace are within the error of them. */
 static bool are_points_near(const Collapse *c, const uint32_t *star, size_t count, uint32_t from,
                             Made *made)
 {
@@ -267,7 +272,8 @@ static bool are_points_near(const Collapse *c, const uint32_t *star, size_t coun
     return made->missed <= c->rules->error;
 }
 
-/* What is little farther than what it replaces need not be looked for. */
+/* Tells whether a collapse stays within the error: by what it adds to the old bounds, if that is
+   enough, or else by tests. */
 static bool are_near(const Collapse *c, const uint32_t *star, size_t count, uint32_t from,
                      uint32_t to, Made *made)
 {
@@ -309,7 +315,7 @@ static void add_point(Collapse *c, uint32_t triangle, uint32_t vertex)
     c->points[triangle] = vertex + 1;
 }
 
-/* Points go over to the nearest triangles that are made, and distances to all. */
+/* Gives replaced vertices to the nearest new triangles, and new bounds to all. */
 static void move_over(Collapse *c, const uint32_t *star, size_t count, const Made *made,
                       uint32_t from)
 {
@@ -335,7 +341,7 @@ static void move_over(Collapse *c, const uint32_t *star, size_t count, const Mad
     }
 }
 
-/* What was proposed of vertices around is no longer so. */
+/* Proposes new collapses of a vertex and its neighbours, and makes the old ones stale. */
 static void propose_around(Collapse *c, uint32_t vertex)
 {
     uint32_t star[MAX_STAR];

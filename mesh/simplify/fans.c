@@ -1,9 +1,10 @@
 /*
- * fans.c: two fans over one border.
+ * fans.c: bounds the distance between two fans over one border.
  *
- * Where both can be projected to a plane one-to-one, each point of one has a point of the other above or below it.  How far
- * these are apart is linear where a triangle of one and a triangle of the other are above each other.  So it is greatest at
- * corners of such parts: at the vertex, or where an inner edge of one goes over an inner edge of the other.
+ * Where both can be projected to a plane one-to-one, each point of one has a point of the other
+ * above or below it.  Their distance is linear where a triangle of one is above a triangle of the
+ * other.  So it is greatest at corners of such parts: at the vertex, or where an inner edge of one
+ * goes over an inner edge of the other.
  */
 #include "mesh/simplify/fans.h"
 
@@ -33,7 +34,7 @@ static Above minus(const Above *p, const Above *q)
     return (Above){p->x - q->x, p->y - q->y, p->height - q->height};
 }
 
-/* Axes of a plane across the sum of all normals; false: there is none. */
+/* Finds axes whose third is along the sum of all normals; returns false if that is 0. */
 static bool find_axes(const double (*at)[3], const uint32_t (*triangles)[3], const uint32_t *star,
                       size_t count, double axes[3][3])
 {
@@ -65,8 +66,9 @@ static Above project(const double axes[3][3], const double origin[3], const doub
     return (Above){dot3(axes[0], offset), dot3(axes[1], offset), dot3(axes[2], offset)};
 }
 
-/* False: they are not one-to-one with their projections.  The border then goes once around `from`, and all triangles of both
-   face up, so both cover what is inside of the border once. */
+/* Projects both fans; returns false if this is not one-to-one.  It is if the border goes once
+   around `from`, and all triangles of both face up, so that both cover what is inside of the border
+   once. */
 static bool find_fans(const double (*at)[3], const uint32_t (*triangles)[3], const uint32_t *star,
                       size_t count, uint32_t from, uint32_t to, Fans *fans)
 {
@@ -92,7 +94,7 @@ static bool find_fans(const double (*at)[3], const uint32_t (*triangles)[3], con
     return rounds == 1;
 }
 
-/* Finds the distance of the vertex that was, over the new fan. */
+/* Returns the distance of the old vertex from the new fan. */
 static double distance_at_vertex(const Fans *fans)
 {
     static const double ROUNDING = 1e-9;
@@ -110,14 +112,15 @@ static double distance_at_vertex(const Fans *fans)
     return INFINITY;
 }
 
-/* Where the edge from `from` to p goes over that from `to` to q; 0: nowhere. */
+/* Returns the distance where the edge from `from` to p goes over that from `to` to q; 0 if it does
+   not. */
 static double distance_at_edges(const Above *to, const Above *p, const Above *q)
 {
-    Above  along = minus(q, to);
-    double turn  = cross_of(p, &along);
-    if (turn == 0)
+    Above  along       = minus(q, to);
+    double determinant = cross_of(p, &along);
+    if (determinant == 0)
         return 0;
-    double s = cross_of(to, &along) / turn, t = cross_of(to, p) / turn;
+    double s = cross_of(to, &along) / determinant, t = cross_of(to, p) / determinant;
     if (!(s >= 0 && s <= 1 && t >= 0 && t <= 1))
         return 0;
     return fabs(s * p->height - (to->height + t * along.height));

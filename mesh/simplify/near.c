@@ -1,17 +1,18 @@
 /*
- * near.c: triangles that are within an error of a mesh.
+ * near.c: proves that triangles are within an error of a mesh.
  *
- * What of a closed mesh is above or below a triangle is found from a part of it that is, over all edges that are so too.
- * The rest of the mesh meets this part only beyond the triangle's border.  So all inner points of the triangle have as
- * many layers of it above and below them, when those that face the other side are subtracted (the degree of a map).
- * Where one point has some, all have.  Heights are linear where the triangle and one of the mesh cover each other, so
- * the corners of that polygon tell the largest.
+ * The part of a closed mesh that is above or below a triangle is found from one of its triangles,
+ * over all edges that are above or below as well.  The rest of the mesh meets this part only beyond
+ * the triangle's border.  So all inner points of the triangle have equally many layers of it above
+ * and below them, when those that face the other side are subtracted (the degree of a map).  Where
+ * one point has some, all have.  Heights are linear where a triangle of the mesh covers the
+ * triangle, so the largest is at a corner of their intersection.
  *
- * Beside sharp edges heights are aslant, so that both their sides are seen from above.
+ * Beside sharp edges heights are oblique, so that both their sides are seen from above.
  *
- * Where that does not decide there is a slower test.  A triangle is within an
- * error of a mesh if its corners are within it of the same triangle of that mesh, since that is convex; if they
- * are not, it is cut into four.
+ * Where that does not decide there is a slower test.  A triangle is within an error of a mesh if
+ * all its corners are within it of one triangle of the mesh, which is convex; if they are not, it
+ * is cut into four.
  */
 #include "mesh/simplify/near.h"
 
@@ -47,12 +48,13 @@ void near_mesh_new(NearMesh *mesh, const double (*vertices)[3], const uint32_t (
         }
 }
 
-/* ---- by what it faces ---- */
+/* ---- by facing triangles ---- */
 
-/* Coordinates of a triangle: shares of its corners, and the height above its plane, along its normal or aslant. */
+/* Coordinates of a triangle: barycentric shares of its corners, and the height above its plane,
+   along its normal or oblique. */
 typedef struct Frame {
     double origin[3], first[3], second[3], height[3];
-    double rounding; /* more than what shares are off by it */
+    double rounding; /* bound of the rounding of shares */
     double error;
 } Frame;
 
@@ -60,8 +62,8 @@ typedef struct Seen {
     double shares[3], height;
 } Seen;
 
-/* Heights are along the normal, and as much as `aslant` says besides; NULL: that alone.  False: it is so thin that rounding
-   matters. */
+/* Makes the coordinates of a triangle, with heights along its normal plus `aslant`, if that is not
+   NULL; returns false if it is so thin that rounding matters. */
 static bool frame_new(const NearMesh *mesh, const double corners[3][3], double error,
                       const double *aslant, Frame *frame)
 {
@@ -90,7 +92,7 @@ static bool frame_new(const NearMesh *mesh, const double corners[3][3], double e
         longest = fmax(longest, distance3(corners[c], corners[(c + 1) % 3]));
     frame->rounding = fmax(least,
                            1e-14 * mesh->size * (length3(frame->first) + length3(frame->second)));
-    /* What is at the border is left out, and no farther than that from what is not. */
+    /* The border is left out; this bounds how far it is from what is not. */
     frame->error = error - 6 * frame->rounding * longest;
     return frame->rounding < most && frame->error > 0;
 }
@@ -105,7 +107,7 @@ static void see(const Frame *frame, const double point[3], Seen *seen)
     seen->height    = dot3(offset, frame->height);
 }
 
-/* Tells whether points between two are above or below the triangle. */
+/* Tells whether a segment has points above or below the triangle. */
 static bool is_edge_seen(const Frame *frame, const Seen *a, const Seen *b)
 {
     double low = 0, high = 1;
@@ -123,7 +125,8 @@ static bool is_edge_seen(const Frame *frame, const Seen *a, const Seen *b)
 
 enum { MAX_CORNERS = 6 };
 
-/* Leaves what has more than the least share of a corner; returns how many corners are left. */
+/* Clips a polygon to points with at least this share of a corner; returns how many corners it
+   has. */
 static int clip(Seen *corners, int count, int share, double least)
 {
     Seen left[MAX_CORNERS + 1];
@@ -154,7 +157,7 @@ static int clip_all(const Seen triangle[3], double least, Seen corners[MAX_CORNE
     return count;
 }
 
-/* Tells whether it surely faces the side that the given triangle faces. */
+/* Tells whether a triangle of the mesh surely faces the same side as the triangle. */
 static bool faces_same_side(const Frame *frame, const Seen corners[3])
 {
     double a      = corners[1].shares[1] - corners[0].shares[1],
@@ -165,7 +168,8 @@ static bool faces_same_side(const Frame *frame, const Seen corners[3])
     return a * d - b * c > 1e-6 * (fabs(a * d) + fabs(b * c)) + frame->rounding * spread;
 }
 
-/* Points of the triangle where layers are counted: some edges may be too near to one of them to tell. */
+/* Points of the triangle where layers are counted: some edges may be too near to one of them to
+   tell. */
 enum { POINTS = 3 };
 static const double points[POINTS][2] = {{0.3349, 0.3317}, {0.2713, 0.4139}, {0.4491, 0.2357}};
 
@@ -202,7 +206,8 @@ static bool has_layers(const Layers *layers)
     return false;
 }
 
-/* What a part is too high of is `*far`; `*highest` is at least the height of all parts. */
+/* Tells whether the part of a triangle over the other is within the error; otherwise `*far` becomes
+   a point that is not.  `*highest` is raised to its height. */
 static bool is_low(const Frame *frame, const Seen triangle[3], Seen *far, double *highest)
 {
     Seen   corners[MAX_CORNERS + 1];
@@ -223,29 +228,34 @@ static bool is_low(const Frame *frame, const Seen triangle[3], Seen *far, double
     return true;
 }
 
-/* False: there are too many. */
-static bool face(NearLook *look, uint32_t triangle)
+static uint32_t first_slot(uint32_t triangle)
 {
-    uint32_t slot = (triangle * 2654435761u >> 7) % FACED_SLOTS;
-    for (; look->slots[slot]; slot = (slot + 1) % FACED_SLOTS)
-        if (look->faced[look->slots[slot] - 1] == triangle)
+    return (triangle * 2654435761u >> 7) % FACED_SLOTS;
+}
+
+/* Adds a triangle to those that are faced; returns false if there are too many. */
+static bool face(NearQuery *query, uint32_t triangle)
+{
+    uint32_t slot = first_slot(triangle);
+    for (; query->slots[slot]; slot = (slot + 1) % FACED_SLOTS)
+        if (query->faced[query->slots[slot] - 1] == triangle)
             return true;
-    if (look->faced_count == MAX_FACED)
+    if (query->faced_count == MAX_FACED)
         return false;
-    look->faced[look->faced_count++] = triangle;
-    look->slots[slot]                = (uint32_t)look->faced_count;
+    query->faced[query->faced_count++] = triangle;
+    query->slots[slot]                 = (uint32_t)query->faced_count;
     return true;
 }
 
-/* The slots of all are in runs without gaps, so none is missed when the last are freed first. */
-static void forget_faced(NearLook *look)
+/* Empties the faced triangles, the last first, so that probing misses none. */
+static void forget_faced(NearQuery *query)
 {
-    while (look->faced_count > 0) {
-        uint32_t triangle = look->faced[--look->faced_count];
-        uint32_t slot     = (triangle * 2654435761u >> 7) % FACED_SLOTS;
-        while (look->slots[slot] != look->faced_count + 1)
+    while (query->faced_count > 0) {
+        uint32_t triangle = query->faced[--query->faced_count];
+        uint32_t slot     = first_slot(triangle);
+        while (query->slots[slot] != query->faced_count + 1)
             slot = (slot + 1) % FACED_SLOTS;
-        look->slots[slot] = 0;
+        query->slots[slot] = 0;
     }
 }
 
@@ -255,7 +265,8 @@ static void see_triangle(const NearMesh *mesh, const Frame *frame, uint32_t tria
         see(frame, mesh->bvh.vertices[mesh->bvh.triangles[triangle][c]], &seen[c]);
 }
 
-/* Tells whether it surely is above or below some of the triangle. */
+/* Tells whether a triangle of the mesh surely is above or below some of the triangle, and faces the
+   same side. */
 static bool is_faced(const NearMesh *mesh, const Frame *frame, uint32_t triangle)
 {
     Seen seen[3], corners[MAX_CORNERS + 1];
@@ -265,80 +276,82 @@ static bool is_faced(const NearMesh *mesh, const Frame *frame, uint32_t triangle
 
 typedef enum Verdict { IS_NEAR, IS_FAR, IS_UNDECIDED } Verdict;
 
-/* Tells whether a point of the triangle is surely farther away. */
+/* Tells whether a point of the triangle is surely farther than the error. */
 static bool is_far(const NearMesh *mesh, const double corners[3][3], double error, const Seen *seen,
-                   NearLook *look)
+                   NearQuery *query)
 {
     double at[3] = {0, 0, 0};
     for (int c = 0; c < 3; c++)
         add_scaled3(at, at, fmin(fmax(seen->shares[c], 0), 1), corners[c]);
-    return !bvh_is_near(&mesh->bvh, at, error, &look->last);
+    return !bvh_is_near(&mesh->bvh, at, error, &query->last);
 }
 
-/* Goes on from those that are faced already.  `*steep`: one that is too high, though what of the triangle is below it is near. */
+/* Finds all triangles that are faced from those that are known, and decides by their heights;
+   `*steep` becomes one that is too high. */
 static Verdict face_all(const NearMesh *mesh, const double corners[3][3], double error,
-                        const Frame *frame, NearLook *look, uint32_t *steep)
+                        const Frame *frame, NearQuery *query, uint32_t *steep)
 {
     Layers layers = {.count = {0}};
 
     double highest = 0;
-    for (size_t i = 0; i < look->faced_count; i++) {
-        uint32_t triangle = look->faced[i];
+    for (size_t i = 0; i < query->faced_count; i++) {
+        uint32_t triangle = query->faced[i];
         Seen     seen[3], high;
         see_triangle(mesh, frame, triangle, seen);
         if (!is_low(frame, seen, &high, &highest)) {
             *steep = triangle;
-            return is_far(mesh, corners, error, &high, look) ? IS_FAR : IS_UNDECIDED;
+            return is_far(mesh, corners, error, &high, query) ? IS_FAR : IS_UNDECIDED;
         }
         for (int point = 0; point < POINTS; point++)
             count_layer(frame, seen, point, &layers);
         for (int c = 0; c < 3; c++)
             if (is_edge_seen(frame, &seen[c], &seen[(c + 1) % 3])) {
                 uint32_t beyond = mesh->beyond[triangle][c];
-                if (beyond == NO_TRIANGLE || !face(look, beyond))
+                if (beyond == NO_TRIANGLE || !face(query, beyond))
                     return IS_UNDECIDED;
             }
     }
     if (!has_layers(&layers))
         return IS_UNDECIDED;
-    look->distance = fmin(error, highest + (error - frame->error));
+    query->distance = fmin(error, highest + (error - frame->error));
     return IS_NEAR;
 }
 
 typedef struct Start {
     const NearMesh *mesh;
     const Frame    *frame;
-    NearLook       *look;
+    NearQuery      *query;
 } Start;
 
-/* Stops at a triangle that is faced. */
-static bool look_for_start(void *user, uint32_t triangle, const double corners[3][3])
+/* Stops the visit at a triangle that is faced. */
+static bool find_start(void *user, uint32_t triangle, const double corners[3][3])
 {
     Start *start = user;
     (void)corners;
-    return !is_faced(start->mesh, start->frame, triangle) || !face(start->look, triangle);
+    return !is_faced(start->mesh, start->frame, triangle) || !face(start->query, triangle);
 }
 
-/* Begins with the first of `starts` that is faced, or without any with one that is near to the middle. */
+/* Decides by heights along a direction, beginning with the first of `starts` that is faced, or
+   without any with a triangle near the middle. */
 static Verdict face_along(const NearMesh *mesh, const double corners[3][3], double error,
                           const double *aslant, const uint32_t *starts, size_t start_count,
-                          NearLook *look, uint32_t *steep)
+                          NearQuery *query, uint32_t *steep)
 {
     Frame frame;
-    forget_faced(look);
+    forget_faced(query);
     if (!frame_new(mesh, corners, error, aslant, &frame))
         return IS_UNDECIDED;
-    for (size_t i = 0; i < start_count && look->faced_count == 0; i++)
+    for (size_t i = 0; i < start_count && query->faced_count == 0; i++)
         if (is_faced(mesh, &frame, starts[i]))
-            face(look, starts[i]);
+            face(query, starts[i]);
     if (start_count == 0) {
-        Start  start     = {mesh, &frame, look};
+        Start  start     = {mesh, &frame, query};
         double middle[3] = {0, 0, 0};
         for (int c = 0; c < 3; c++)
             add_scaled3(middle, middle, 1.0 / 3, corners[c]);
-        bvh_visit(&mesh->bvh, middle, error, look_for_start, &start);
+        bvh_visit(&mesh->bvh, middle, error, find_start, &start);
     }
-    return face_all(mesh, corners, error, &frame, look, steep);
+    return face_all(mesh, corners, error, &frame, query, steep);
 }
 
 static void unit_normal(const double corners[3][3], double normal[3])
@@ -350,14 +363,15 @@ static void unit_normal(const double corners[3][3], double normal[3])
     normalize3(normal);
 }
 
-/* Where a triangle goes a little beyond a sharp edge, the other side of that edge is above or below it as a high wall.  Seen
-   aslant, from where both sides are seen, it is not. */
+/* Decides by heights, oblique ones if needed: where a triangle goes a little beyond a sharp edge,
+   the other side of the edge is a high wall above or below it, but not from where both sides are
+   seen. */
 static Verdict face_from(const NearMesh *mesh, const double corners[3][3], double error,
-                         const uint32_t *starts, size_t start_count, NearLook *look)
+                         const uint32_t *starts, size_t start_count, NearQuery *query)
 {
     static const double ASLANT = 0.4, STEEPEST = -0.8;
     uint32_t            steep = NO_TRIANGLE;
-    Verdict verdict = face_along(mesh, corners, error, NULL, starts, start_count, look, &steep);
+    Verdict verdict = face_along(mesh, corners, error, NULL, starts, start_count, query, &steep);
     if (verdict != IS_UNDECIDED || steep == NO_TRIANGLE)
         return verdict;
     double wall[3][3], normals[2][3], aslant[3] = {0, 0, 0};
@@ -365,14 +379,14 @@ static Verdict face_from(const NearMesh *mesh, const double corners[3][3], doubl
         memcpy(wall[c], mesh->bvh.vertices[mesh->bvh.triangles[steep][c]], sizeof wall[c]);
     unit_normal((const double(*)[3])wall, normals[0]);
     unit_normal(corners, normals[1]);
-    double turn = dot3(normals[0], normals[1]);
-    if (turn < STEEPEST)
+    double cosine = dot3(normals[0], normals[1]);
+    if (cosine < STEEPEST)
         return IS_UNDECIDED;
-    add_scaled3(aslant, aslant, ASLANT + max2(0, -turn), normals[0]);
-    return face_along(mesh, corners, error, aslant, starts, start_count, look, &steep);
+    add_scaled3(aslant, aslant, ASLANT + max2(0, -cosine), normals[0]);
+    return face_along(mesh, corners, error, aslant, starts, start_count, query, &steep);
 }
 
-/* ---- by cutting ---- */
+/* ---- by subdivision ---- */
 
 static bool are_near(const Bvh *bvh, uint32_t triangle, const double corners[3][3], double error)
 {
@@ -390,8 +404,8 @@ typedef struct Nearness {
     uint32_t   found;
 } Nearness;
 
-/* Stops at a triangle to which all corners are near. */
-static bool look_on(void *user, uint32_t triangle, const double corners[3][3])
+/* Stops the visit at a triangle to which all corners are near. */
+static bool stop_if_near(void *user, uint32_t triangle, const double corners[3][3])
 {
     Nearness *nearness = user;
     (void)corners;
@@ -400,10 +414,10 @@ static bool look_on(void *user, uint32_t triangle, const double corners[3][3])
 }
 
 static bool is_near(const NearMesh *mesh, const double corners[3][3], double error,
-                    const uint32_t *starts, size_t start_count, int cuts, NearLook *look);
+                    const uint32_t *starts, size_t start_count, int cuts, NearQuery *query);
 
 static bool are_parts_near(const NearMesh *mesh, const double corners[3][3], double error, int cuts,
-                           NearLook *look)
+                           NearQuery *query)
 {
     double middles[3][3];
     for (int c = 0; c < 3; c++)
@@ -414,35 +428,33 @@ static bool are_parts_near(const NearMesh *mesh, const double corners[3][3], dou
         memcpy(corner[0], corners[c], sizeof corner[0]);
         memcpy(corner[1], middles[c], sizeof corner[1]);
         memcpy(corner[2], middles[(c + 2) % 3], sizeof corner[2]);
-        if (!bvh_is_near(&mesh->bvh, corner[0], error, &look->last) ||
-            !is_near(mesh, (const double(*)[3])corner, error, NULL, 0, cuts - 1, look))
+        if (!bvh_is_near(&mesh->bvh, corner[0], error, &query->last) ||
+            !is_near(mesh, (const double(*)[3])corner, error, NULL, 0, cuts - 1, query))
             return false;
     }
-    return is_near(mesh, (const double(*)[3])middles, error, NULL, 0, cuts - 1, look);
+    return is_near(mesh, (const double(*)[3])middles, error, NULL, 0, cuts - 1, query);
 }
 
-/* Only where all of a triangle is looked at it is noted what it faces, if that can be found. */
-
 static bool is_near(const NearMesh *mesh, const double corners[3][3], double error,
-                    const uint32_t *starts, size_t start_count, int cuts, NearLook *look)
+                    const uint32_t *starts, size_t start_count, int cuts, NearQuery *query)
 {
     const Bvh *bvh      = &mesh->bvh;
     Nearness   nearness = {corners, error, bvh, 0};
     bool       whole    = cuts == MAX_CUTS;
-    forget_faced(look);
-    if (!(whole && start_count > 0) && are_near(bvh, look->last, corners, error))
+    forget_faced(query);
+    if (!(whole && start_count > 0) && are_near(bvh, query->last, corners, error))
         return true;
-    Verdict verdict = face_from(mesh, corners, error, starts, start_count, look);
+    Verdict verdict = face_from(mesh, corners, error, starts, start_count, query);
     if (verdict != IS_UNDECIDED)
         return verdict == IS_NEAR;
-    if (!bvh_visit(bvh, corners[0], error, look_on, &nearness)) {
-        look->last = nearness.found;
+    if (!bvh_visit(bvh, corners[0], error, stop_if_near, &nearness)) {
+        query->last = nearness.found;
         return true;
     }
     if (cuts == 0)
         return false;
-    bool near      = are_parts_near(mesh, corners, error, cuts, look);
-    look->distance = error;
+    bool near       = are_parts_near(mesh, corners, error, cuts, query);
+    query->distance = error;
     return near;
 }
 
@@ -453,12 +465,12 @@ bool is_near_triangle(const NearMesh *mesh, uint32_t triangle, const double corn
 }
 
 bool is_near_mesh(const NearMesh *mesh, const double corners[3][3], double error,
-                  const uint32_t *starts, size_t start_count, NearLook *look)
+                  const uint32_t *starts, size_t start_count, NearQuery *query)
 {
-    /* What was looked at before must not matter: threads share work as it comes. */
-    look->last     = start_count > 0 ? starts[0] : 0;
-    look->distance = error;
+    /* Earlier queries must not matter, since threads share work in no order. */
+    query->last     = start_count > 0 ? starts[0] : 0;
+    query->distance = error;
     if (mesh->bvh.triangle_count == 0)
         return false;
-    return is_near(mesh, corners, error, starts, start_count, MAX_CUTS, look);
+    return is_near(mesh, corners, error, starts, start_count, MAX_CUTS, query);
 }

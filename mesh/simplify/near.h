@@ -1,5 +1,5 @@
 /*
- * near.h: whether triangles are within an error of a mesh.
+ * near.h: proves that triangles are within an error of a mesh.
  */
 #ifndef KRS_MESH_NEAR_H
 #define KRS_MESH_NEAR_H
@@ -8,12 +8,12 @@
 
 #define NO_TRIANGLE UINT32_MAX
 
-/* A mesh that triangles may be near to. */
+/* A mesh, prepared for questions of what is near to it. */
 typedef struct NearMesh {
     Bvh           bvh;
     TriangleEdges edges;
-    uint32_t (*beyond)
-        [3]; /* of each edge of a triangle, the other with that edge; NO_TRIANGLE: none, or several */
+    /* Of each edge of a triangle, the other with that edge; NO_TRIANGLE: none, or several. */
+    uint32_t (*beyond)[3];
     double size; /* the largest coordinate */
 } NearMesh;
 
@@ -22,21 +22,21 @@ void near_mesh_new(NearMesh *mesh, const double (*vertices)[3], const uint32_t (
 
 enum { MAX_FACED = 4096, FACED_SLOTS = 2 * MAX_FACED };
 
-/* What one thread looks with. */
-typedef struct NearLook {
+/* The working memory of one thread. */
+typedef struct NearQuery {
     uint32_t last;     /* a triangle that may be near */
-    double   distance; /* how far the last triangle that was near is from the mesh, at most */
+    double   distance; /* bound of how far the last triangle that was near is from the mesh */
     uint32_t faced[MAX_FACED];
     size_t   faced_count;
     uint32_t slots[FACED_SLOTS]; /* `faced` by hash: number + 1 */
-} NearLook;
+} NearQuery;
 
 /* Tells whether a triangle is within the error of one of a mesh. */
 bool is_near_triangle(const NearMesh *mesh, uint32_t triangle, const double corners[3][3],
                       double error);
-/* Tells whether all points of a triangle are within the error of a mesh.  `starts`: triangles of the mesh that it
-   may face.  Says also which those are that it was found to face. */
+/* Tells whether all points of a triangle are proven to be within the error of a mesh.  `starts` are
+   triangles of the mesh that it may face; the query then has those that it faces. */
 bool is_near_mesh(const NearMesh *mesh, const double corners[3][3], double error,
-                  const uint32_t *starts, size_t start_count, NearLook *look);
+                  const uint32_t *starts, size_t start_count, NearQuery *query);
 
 #endif

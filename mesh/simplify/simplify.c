@@ -1,8 +1,8 @@
 /*
- * simplify.c: krs_mesh_simplify: meshoptimizer proposes, and a proof accepts.
+ * simplify.c: krs_mesh_simplify lets meshoptimizer propose triangles, and proofs judge them.
  *
- * meshoptimizer's error is a mean of squares, so it may be exceeded.  So each trial is judged: open edges, triangles that
- * are far from the other mesh or that cross others.
+ * meshoptimizer's error is a mean of squares, so it may be exceeded.  So each trial is judged: its
+ * faults are open edges, and triangles that are far from the other mesh or cross others.
  */
 #include <meshoptimizer.h>
 #include <stdatomic.h>
@@ -19,14 +19,15 @@
 #include "mesh/simplify/slivers.h"
 
 enum { MAX_TRIALS = 14 };
-/* Proposals of meshoptimizer with more faults are given up: some, and a part of their triangles. */
+/* Proposals of meshoptimizer with more faults are given up: with this number, plus this part of
+   their triangles. */
 static const double MANY_FAULTS = 16, PART_OF_FAULTS = 0.005;
-/* From trial to trial triangles are kept so many times as far around faults. */
+/* The factor by which the radius of kept triangles around faults grows from trial to trial. */
 static const double GROWTH = 1.25;
-/* How far at first, in errors: around a collapse it is few triangles that matter. */
+/* The first radius, in errors: around a collapse few triangles matter. */
 static const double FIRST_RADIUS = 1, FIRST_RADIUS_OF_COLLAPSE = 0.25;
-/* The errors of meshoptimizer's mean, in errors.  With less it leaves out less, and with more it goes too far in many
-   places. */
+/* The errors of meshoptimizer's mean, in errors.  With less it simplifies less, and with more it
+   goes too far in many places. */
 static const double FIRST_ERROR = 0.25, LAST_ERROR = 0.5;
 
 typedef struct Simplifier {
@@ -37,27 +38,28 @@ typedef struct Simplifier {
     double                error;
     float (*positions)[3];
     uint32_t (*triangles)[3]; /* of the mesh's vertices */
-    bool  *kept;              /* of the best triangles: to stay as they are */
+    bool  *kept;              /* of the best triangles: they stay as they are */
     size_t triangle_count;
-    uint32_t (*best)[3]; /* triangles that have been good */
+    uint32_t (*best)[3]; /* the best triangles without faults */
     size_t    best_count;
-    Numbering judged; /* new triangles, by how far they are from the mesh, at most, in steps */
-    Numbering noted;  /* those that are, and of which `facing` was written down */
+    Numbering judged; /* of new triangles, bounds of how far they are from the mesh, in steps */
+    Numbering noted;  /* new triangles that are near, and in `facing` */
     NearMesh  original;
-    /* For each triangle of the mesh, one above or below it, by its vertices: in the last trial, and in the
-       best; all 0: none. */
+    /* For each triangle of the mesh, the vertices of one above or below it, in the last trial and
+       in the best; all 0: none. */
     uint32_t (*facing)[3], (*best_facing)[3];
-    NearLook *looks;              /* of each part */
-    double fraction, begun, goal; /* of the work: done, and before and after what is being done */
+    NearQuery *queries;               /* of each part */
+    double     fraction, begun, goal; /* of the work: done, and before and after the present step */
     atomic_bool stopped;
 } Simplifier;
 
 /* Distances are kept in so many steps of the error; one more step: it is more than the error. */
 enum { STEPS = 1 << 16, FAR_STEP = STEPS + 1 };
 
-/* ---- what is proposed ---- */
+/* ---- proposals ---- */
 
-/* Those that are kept stay as they are; the others are simplified up to their border. */
+/* Proposes triangles by meshoptimizer: kept ones stay, the others are simplified up to their
+   border. */
 static void propose(Simplifier *s, double error, double goal)
 {
     (void)goal;
@@ -82,12 +84,12 @@ static void propose(Simplifier *s, double error, double goal)
     flip_slivers((const double(*)[3])mesh->vertices, s->triangles, s->triangle_count, &s->arena);
 }
 
-/* ---- what is wrong with it ---- */
+/* ---- faults ---- */
 
 typedef struct Judgement {
     Simplifier *s;
     const Bvh  *now;  /* whose triangles are reported */
-    Bvh         best; /* what was simplified, made when the first is reported */
+    Bvh         best; /* of what was simplified; made at the first fault */
     double      radius;
     size_t      faults;
 } Judgement;
@@ -106,7 +108,7 @@ static bool keep_triangle(void *user, uint32_t triangle, const double corners[3]
     return true;
 }
 
-/* Triangles of the mesh near to the corners of one that is wrong are kept, and more of them in each trial. */
+/* Counts a fault, and keeps triangles near to its corners. */
 static void note_fault(void *user, uint32_t triangle)
 {
     Judgement  *judgement = user;
@@ -121,9 +123,9 @@ static void note_fault(void *user, uint32_t triangle)
     judgement->faults++;
 }
 
-/* All triangles of one mesh. */
+/* A test of all triangles of one mesh. */
 typedef struct Check Check;
-typedef bool         IsWrong(const Check *check, uint32_t triangle, NearLook *look);
+typedef bool         IsWrong(const Check *check, uint32_t triangle, NearQuery *query);
 struct Check {
     Simplifier *s;
     const Bvh  *triangles;
@@ -140,13 +142,13 @@ static NumberKey key_of(const uint32_t triangle[3])
     return face_key(triangle[0], triangle[1], triangle[2]);
 }
 
-static bool crosses(const Check *check, uint32_t triangle, NearLook *look)
+static bool crosses(const Check *check, uint32_t triangle, NearQuery *query)
 {
-    (void)look;
+    (void)query;
     return triangle_crosses(check->triangles, triangle, 0);
 }
 
-/* The first, whatever the threads do. */
+/* Lowers a number atomically, so that the least remains, whatever the order of threads. */
 static void take_least(atomic_uint *least, uint32_t number)
 {
     unsigned now = atomic_load_explicit(least, memory_order_relaxed);
@@ -155,8 +157,8 @@ static void take_least(atomic_uint *least, uint32_t number)
         ;
 }
 
-/* New triangles have corners of the mesh. */
-static bool is_near_original(const Simplifier *s, const uint32_t triangle[3], NearLook *look)
+/* Tells whether a new triangle is near the mesh, whose triangles at its corners are starts. */
+static bool is_near_original(const Simplifier *s, const uint32_t triangle[3], NearQuery *query)
 {
     enum { MAX_AROUND = 32 };
     const TriangleEdges *edges = &s->original.edges;
@@ -169,22 +171,22 @@ static bool is_near_original(const Simplifier *s, const uint32_t triangle[3], Ne
             if (count < MAX_AROUND)
                 starts[count++] = edges->items[i].triangle;
     }
-    return is_near_mesh(&s->original, (const double(*)[3])corners, s->error, starts, count, look);
+    return is_near_mesh(&s->original, (const double(*)[3])corners, s->error, starts, count, query);
 }
 
-static bool is_far_from_original(const Check *check, uint32_t triangle, NearLook *look)
+static bool is_far_from_original(const Check *check, uint32_t triangle, NearQuery *query)
 {
     const Simplifier *s   = check->s;
     const uint32_t   *own = check->triangles->triangles[triangle];
     if (numbering_find(&s->noted, key_of(own)) != NO_NUMBER)
         return false;
-    bool near = is_near_original(s, own, look);
-    for (size_t i = 0; i < look->faced_count; i++)
-        take_least(&check->found_facing[look->faced[i]], triangle);
+    bool near = is_near_original(s, own, query);
+    for (size_t i = 0; i < query->faced_count; i++)
+        take_least(&check->found_facing[query->faced[i]], triangle);
     return !near;
 }
 
-static bool is_far_from_new(const Check *check, uint32_t triangle, NearLook *look)
+static bool is_far_from_new(const Check *check, uint32_t triangle, NearQuery *query)
 {
     const Simplifier *s      = check->s;
     uint32_t          facing = check->facing[triangle], starts[4];
@@ -199,7 +201,7 @@ static bool is_far_from_new(const Check *check, uint32_t triangle, NearLook *loo
             if (check->new->beyond[facing][c] != NO_TRIANGLE)
                 starts[count++] = check->new->beyond[facing][c];
     }
-    return !is_near_mesh(check->new, (const double(*)[3])corners, s->error, starts, count, look);
+    return !is_near_mesh(check->new, (const double(*)[3])corners, s->error, starts, count, query);
 }
 
 static void ask(Simplifier *s, double part)
@@ -210,7 +212,8 @@ static void ask(Simplifier *s, double part)
         atomic_store(&s->stopped, true);
 }
 
-/* The first part runs in the thread of the caller, so it asks. */
+/* Tests triangles until none is left; the first part reports progress, since it runs in the
+   caller's thread. */
 static void check_some(void *task, size_t part, size_t parts)
 {
     enum { SOME = 64 };
@@ -224,11 +227,11 @@ static void check_some(void *task, size_t part, size_t parts)
         if (part == 0)
             ask(check->s, (double)begin / (double)count);
         for (size_t i = begin; i < begin + SOME && i < count; i++)
-            check->wrong[i] = check->is_wrong(check, (uint32_t)i, &check->s->looks[part]);
+            check->wrong[i] = check->is_wrong(check, (uint32_t)i, &check->s->queries[part]);
     }
 }
 
-/* `goal`: the part of the work that is done then. */
+/* Tests all triangles and notes faults; `goal` is the part of the work that is done then. */
 static void check_all(Judgement *judgement, Check *check, double goal)
 {
     Simplifier *s     = judgement->s;
@@ -244,7 +247,7 @@ static void check_all(Judgement *judgement, Check *check, double goal)
             note_fault(judgement, i);
 }
 
-/* New triangles: within the error of the mesh. */
+/* Tests whether new triangles are within the error of the mesh. */
 static void check_new(Judgement *judgement, const NearMesh *new, double goal)
 {
     Simplifier *s     = judgement->s;
@@ -271,7 +274,7 @@ static void check_crossings(Judgement *judgement, const NearMesh *new, double go
     check_all(judgement, &check, goal);
 }
 
-/* Those of the mesh: within the error of the new ones. */
+/* Tests whether triangles of the mesh are within the error of the new ones. */
 static void check_original(Judgement *judgement, const NearMesh *new, double goal)
 {
     Simplifier *s       = judgement->s;
@@ -290,7 +293,7 @@ static void check_original(Judgement *judgement, const NearMesh *new, double goa
     check_all(judgement, &check, goal);
 }
 
-/* Vertices at which two sheets meet that do not so in the mesh. */
+/* Notes vertices at which several rings of triangles meet, but not in the mesh. */
 static void check_rings(Judgement *judgement, const NearMesh *new)
 {
     const TriangleEdges *edges = &new->edges, *original = &judgement->s->original.edges;
@@ -300,7 +303,7 @@ static void check_rings(Judgement *judgement, const NearMesh *new)
             note_fault(judgement, edges->items[edges->begins[i]].triangle);
 }
 
-/* `most`: when there are more, they need not be counted. */
+/* Counts the faults of a trial, not all of them if there are more than `most`. */
 static size_t count_faults(Simplifier *s, double radius, size_t most, double goal)
 {
     const double(*at)[3] = (const double(*)[3])s->mesh->vertices;
@@ -320,10 +323,10 @@ static size_t count_faults(Simplifier *s, double radius, size_t most, double goa
     return judgement.faults;
 }
 
-/* ---- one vertex after the other ---- */
+/* ---- collapses ---- */
 
-/* What is not is told so in little time. */
-static bool are_middles_near(const Simplifier *s, const uint32_t triangle[3], NearLook *look)
+/* Tells whether some points of a triangle are near, which rejects most bad ones in little time. */
+static bool are_middles_near(const Simplifier *s, const uint32_t triangle[3], NearQuery *query)
 {
     for (int c = 0; c < 4; c++) {
         double middle[3] = {0, 0, 0};
@@ -333,22 +336,22 @@ static bool are_middles_near(const Simplifier *s, const uint32_t triangle[3], Ne
                         : k == c ? 0
                                  : 0.5,
                         s->mesh->vertices[triangle[k]]);
-        if (!bvh_is_near(&s->original.bvh, middle, s->error, &look->last))
+        if (!bvh_is_near(&s->original.bvh, middle, s->error, &query->last))
             return false;
     }
     return true;
 }
 
-/* `*distance`: how far it is, at most. */
+/* Judges a triangle, or finds what was judged before; `*distance` bounds how far it is. */
 static bool is_good(void *user, const uint32_t triangle[3], double *distance)
 {
-    Simplifier *s    = user;
-    NearLook   *look = &s->looks[0];
-    uint32_t    step = numbering_find(&s->judged, key_of(triangle));
+    Simplifier *s     = user;
+    NearQuery  *query = &s->queries[0];
+    uint32_t    step  = numbering_find(&s->judged, key_of(triangle));
     if (step == NO_NUMBER) {
         step = FAR_STEP;
-        if (are_middles_near(s, triangle, look) && is_near_original(s, triangle, look))
-            step = (uint32_t)ceil(STEPS * look->distance / s->error);
+        if (are_middles_near(s, triangle, query) && is_near_original(s, triangle, query))
+            step = (uint32_t)ceil(STEPS * query->distance / s->error);
         numbering_take(&s->judged, key_of(triangle), step);
     }
     *distance = s->error * step / STEPS;
@@ -363,7 +366,7 @@ static bool is_wanted(void *user, double part)
     return !atomic_load(&s->stopped);
 }
 
-/* Finds the nearest triangle for each vertex of the mesh that the best has not. */
+/* Finds the nearest triangle for each vertex of the mesh that the best triangles do not use. */
 static void find_below(Simplifier *s, uint32_t *below)
 {
     const double(*at)[3] = (const double(*)[3])s->mesh->vertices;
@@ -404,7 +407,7 @@ typedef struct Trial {
     bool   may_give_up, had_faults;
 } Trial;
 
-/* Simplifies the best further, unless all trials have faults or it is stopped. */
+/* Simplifies the best triangles further, unless all trials have faults or it is stopped. */
 static void try_all(Simplifier *s, Trial *trial, double goal)
 {
     double radius = trial->radius * s->error;
@@ -429,9 +432,9 @@ static void try_all(Simplifier *s, Trial *trial, double goal)
     }
 }
 
-/* meshoptimizer leaves out most triangles in little time where the surface is smooth.  Single collapses leave out
-   half of what it leaves, and all where its proposals cross themselves, as flat faces do.  What was kept around faults is tried
-   once more. */
+/* Makes all trials. meshoptimizer removes most triangles in little time where the surface is
+   smooth.  Single collapses remove half of what it leaves, and all where its proposals cross
+   themselves, as flat faces do.  What was kept around faults is tried once more. */
 static void find_triangles(Simplifier *s)
 {
     const KrsMesh *mesh  = s->mesh;
@@ -445,7 +448,7 @@ static void find_triangles(Simplifier *s)
             s->positions[i][k] = (float)mesh->vertices[i][k];
     s->facing      = arena_alloc(&s->arena, count + 1, sizeof *s->facing);
     s->best_facing = arena_alloc(&s->arena, count + 1, sizeof *s->facing);
-    s->looks       = arena_new_array(&s->arena, NearLook, MAX_PARTS);
+    s->queries     = arena_new_array(&s->arena, NearQuery, MAX_PARTS);
     near_mesh_new(&s->original, (const double(*)[3])mesh->vertices,
                   (const uint32_t(*)[3])mesh->triangles, count, &s->arena);
     s->best_count = count;
@@ -463,7 +466,7 @@ static void find_triangles(Simplifier *s)
     }
 }
 
-/* Without vertices that no triangle has. */
+/* Copies the best triangles, with the vertices that they use. */
 static KrsStatus copy_triangles(Simplifier *s, KrsMesh **result)
 {
     const KrsMesh *mesh   = s->mesh;

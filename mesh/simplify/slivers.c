@@ -1,4 +1,5 @@
-/* slivers.c: edges are flipped where a triangle has no area, as along straight edges that were simplified. */
+/* slivers.c: flips edges of triangles without area, which come of straight edges that are
+   simplified. */
 #include "mesh/simplify/slivers.h"
 
 #include <string.h>
@@ -6,7 +7,7 @@
 #include "compiler/base/vec.h"
 
 enum { MAX_ROUNDS = 12 };
-/* Height over the longest edge. */
+/* The height over the longest edge below which a triangle is a sliver. */
 static const double THIN = 1e-6;
 
 typedef struct Flipping {
@@ -16,7 +17,7 @@ typedef struct Flipping {
     bool         *changed; /* triangles that the edges no longer know */
 } Flipping;
 
-/* The corner from which the longest edge begins, where the triangle is a sliver; -1: it is none. */
+/* Returns the corner from which the longest edge of a sliver begins; -1 if it is none. */
 static int longest_of_sliver(const Flipping *f, uint32_t triangle)
 {
     const uint32_t *corners = f->triangles[triangle];

@@ -20,13 +20,13 @@ enum { SIDE = 24, ROWS = SIDE + 1, BELOW = ROWS * ROWS };
 
 /* A sheet of squares, each cut in two, with heights, and a closed bottom below. */
 typedef struct Sheet {
-    Memory   memory;
-    Arena    arena;
-    double   vertices[2 * BELOW][3];
-    uint32_t triangles[8 * SIDE * SIDE][3];
-    size_t   count;
-    NearMesh mesh;
-    NearLook look;
+    Memory    memory;
+    Arena     arena;
+    double    vertices[2 * BELOW][3];
+    uint32_t  triangles[8 * SIDE * SIDE][3];
+    size_t    count;
+    NearMesh  mesh;
+    NearQuery query;
 } Sheet;
 
 static void add_triangle(Sheet *sheet, size_t a, size_t b, size_t c)
@@ -109,7 +109,7 @@ static bool is_found_near(Sheet *sheet, const size_t corners[3], double lift, do
             starts[count++] = edges->items[i].triangle;
     }
     return is_near_mesh(&sheet->mesh, (const double(*)[3])places, error, starts, count,
-                        &sheet->look);
+                        &sheet->query);
 }
 
 static void flat_sheets_are_near(void **state)
@@ -120,7 +120,7 @@ static void flat_sheets_are_near(void **state)
     const size_t back[3]    = {at(0, 0), at(3, SIDE), at(SIDE, 0)};
     build_sheet(sheet, 5);
     assert_true(is_found_near(sheet, corners, 0, 0.01));
-    assert_true(sheet->look.faced_count > SIDE * SIDE / 2); /* those that it covers */
+    assert_true(sheet->query.faced_count > SIDE * SIDE / 2); /* those that it covers */
     assert_true(is_found_near(sheet, back, 0, 0.01));
     assert_true(is_found_near(sheet, corners, 0.009, 0.01));
     assert_false(is_found_near(sheet, corners, 0.011, 0.01));
@@ -228,7 +228,7 @@ static void triangles_beyond_rims_are_judged(void **state)
             places[1][1] -= beyond;
             start       = sheet->mesh.edges.items[sheet->mesh.edges.begins[corners[2]]].triangle;
             bool   near = is_near_mesh(&sheet->mesh, (const double(*)[3])places, error, &start, 1,
-                                       &sheet->look);
+                                       &sheet->query);
             double farthest = farthest_of(&sheet->mesh, (const double(*)[3])places, error);
             if (near)
                 assert_true(farthest < 1.01);
