@@ -1,22 +1,24 @@
-/* bend.c: chords bent to the outline. */
+/* bend.c: bends chords to the outline. */
 #include "slice/section.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 
-/* Chords are this part of the error from the outline; points that are left out later are the rest. */
+/* The part of the error that chords may be from the outline; dropped points have the rest. */
 static const double PART_OF_CHORDS = 0.25;
-/* Chords as short as that part of the error stay as they are. */
+/* Chords as short as this part of the error stay as they are. */
 static const double SHORTEST = 1.0 / 256;
-/* Numbers for corners: how far one is from the outline, in errors, at most, and in what tangents of an arc
-   would be from it; and the cosine of the angle by which normals differ at least. */
+/* The most that a corner is from the outline, in errors, and over the distance where tangents of an
+   arc would meet; and the cosine of the angle by which normals differ at least. */
 static const double NEAR_CORNER = 1e-3, PART_OF_ARC = 0.02, STRAIGHT_COSINE = 1 - 1e-5;
-/* Where normals differ by more than that, a stretch has a corner, or is halved. */
+/* Cosine of the angle of normals beyond which a stretch has a corner, or is halved. */
 static const double SMOOTH_COSINE = 0.996;
-/* How far it is from both ends of the stretch, in its lengths: what is nearer is the corner at that end. */
+/* Least distance of a corner to the ends of a stretch, in its lengths: a nearer one is the corner
+   at that end. */
 static const double NEAREST = 0.02;
-/* How far beside a chord the distance is looked at: in its lengths, and in errors, where a sharp corner may be. */
+/* How far beside a chord the distance is evaluated: in its lengths, and in errors, where a sharp
+   corner may be. */
 static const double BESIDE_LENGTHS = 0.5, BESIDE_ERRORS = 4;
 
 typedef struct Stretch {
@@ -40,7 +42,7 @@ static Stretch stretch_between(const OutlinePoint *from, const OutlinePoint *to)
     return stretch;
 }
 
-/* A point at a part of the stretch, and so far to the left. */
+/* Finds the point at a part of the stretch, and so far to the left of it. */
 static void beside(const Stretch *stretch, double part, double left, double at[2])
 {
     for (int k = 0; k < 2; k++)
@@ -48,13 +50,13 @@ static void beside(const Stretch *stretch, double part, double left, double at[2
                 left * stretch->left[k];
 }
 
-/* Tells whether the outline is as near at four places along the stretch. */
+/* Tells whether the outline is within reach at four points along the stretch. */
 static bool is_near(const Section *s, const Stretch *stretch, double reach)
 {
-    static const double places[4] = {0.17, 0.39, 0.61, 0.87};
+    static const double parts[4] = {0.17, 0.39, 0.61, 0.87};
     double              points[8][2], distances[8];
     for (int i = 0; i < 8; i++)
-        beside(stretch, places[i / 2], i % 2 ? reach : -reach, points[i]);
+        beside(stretch, parts[i / 2], i % 2 ? reach : -reach, points[i]);
     slice_distances(s->field, &s->plane, (const double(*)[2])points, 8, distances);
     for (int i = 0; i < 8; i++)
         if (is_inside(distances[i]) != (i % 2 == 1))
@@ -62,18 +64,19 @@ static bool is_near(const Section *s, const Stretch *stretch, double reach)
     return true;
 }
 
-/* A search for the outline between a point inside and one outside, by parts of the way. */
+/* A search for the outline between a point inside and one outside, by parts of the line between
+   them. */
 typedef struct Search {
     double inside[2], outside[2], low, high, at_low, at_high;
 } Search;
 
-static void place_on_way(const Search *search, double part, double at[2])
+static void point_between(const Search *search, double part, double at[2])
 {
     for (int k = 0; k < 2; k++)
         at[k] = search->inside[k] + part * (search->outside[k] - search->inside[k]);
 }
 
-static double place_of_zero(const Search *search)
+static double part_at_zero(const Search *search)
 {
     bool finite = isfinite(search->at_low) && isfinite(search->at_high);
     return finite && search->at_low < search->at_high
@@ -81,20 +84,21 @@ static double place_of_zero(const Search *search)
                : 0.5;
 }
 
-/* Looks around where a line through both ends is 0, since eight points cost as much as one; or evenly. */
+/* Evaluates eight points, which cost as much as one: around where the line through both ends is 0,
+   or evenly. */
 static void narrow(const Section *s, Search *search, bool evenly)
 {
-    enum { PLACES = 8 };
-    static const double around[PLACES] = {-0.2, -0.02, -1e-3, -1e-5, 1e-5, 1e-3, 0.02, 0.2};
-    double points[PLACES][2], values[PLACES], parts[PLACES], width = search->high - search->low;
-    double zero = place_of_zero(search);
-    for (int i = 0; i < PLACES; i++) {
-        double part = evenly ? (i + 1.0) / (PLACES + 1) : min2(max2(zero + around[i], 0), 1);
+    enum { POINTS = 8 };
+    static const double around[POINTS] = {-0.2, -0.02, -1e-3, -1e-5, 1e-5, 1e-3, 0.02, 0.2};
+    double points[POINTS][2], values[POINTS], parts[POINTS], width = search->high - search->low;
+    double zero = part_at_zero(search);
+    for (int i = 0; i < POINTS; i++) {
+        double part = evenly ? (i + 1.0) / (POINTS + 1) : min2(max2(zero + around[i], 0), 1);
         parts[i]    = search->low + width * part;
-        place_on_way(search, parts[i], points[i]);
+        point_between(search, parts[i], points[i]);
     }
-    slice_distances(s->field, &s->plane, (const double(*)[2])points, PLACES, values);
-    for (int i = 0; i < PLACES; i++)
+    slice_distances(s->field, &s->plane, (const double(*)[2])points, POINTS, values);
+    for (int i = 0; i < POINTS; i++)
         if (is_inside(values[i])) {
             search->low    = parts[i];
             search->at_low = values[i];
@@ -105,7 +109,8 @@ static void narrow(const Section *s, Search *search, bool evenly)
         }
 }
 
-/* Until it is known to `enough`; evenly where a line through the ends leads astray. */
+/* Finds the outline to an accuracy of `enough`; evenly where the line through the ends does not
+   lead to it. */
 static void find_between(const Section *s, Search *search, double at[2])
 {
     enum { MAX_ROUNDS = 30 };
@@ -117,11 +122,11 @@ static void find_between(const Section *s, Search *search, double at[2])
         narrow(s, search, evenly);
         evenly = search->high - search->low > 0.25 * width;
     }
-    place_on_way(search, search->low + (search->high - search->low) * place_of_zero(search), at);
+    point_between(search, search->low + (search->high - search->low) * part_at_zero(search), at);
 }
 
-/* The outline across the middle of a stretch, no farther off than that is long: to the right of what is inside, or to
-   the left.  False: it is not there. */
+/* Finds the outline across the middle of a stretch, no farther off than its length: to the right if
+   the middle is inside, or to the left.  Returns false if it is not there. */
 static bool find_middle(const Section *s, const Stretch *stretch, double at[2])
 {
     enum { STEPS = 7 };
@@ -145,12 +150,12 @@ static bool find_middle(const Section *s, const Stretch *stretch, double at[2])
     return false;
 }
 
-/* What is known at both ends: normals of the outline, and how steep the distance is. */
+/* At both ends the normal of the outline, and how steep the distance is. */
 typedef struct Ends {
     double normals[2][2], steep[2];
 } Ends;
 
-/* Normals jump at corners, so there they are those of a place a little farther on. */
+/* Finds normals at both ends, or a little farther on at corners, where they jump. */
 static bool find_ends(const Section *s, const Stretch *stretch, Ends *ends)
 {
     static const double BESIDE_CORNER = 0.01;
@@ -174,7 +179,7 @@ static double width_beside(const Section *s, double length)
     return BESIDE_LENGTHS * length + BESIDE_ERRORS * s->error;
 }
 
-/* Where the tangents at both ends meet, if that is a corner of the outline. */
+/* Finds where the tangents at both ends meet, if that is a corner of the outline. */
 static bool meet_tangents(const Section *s, const Stretch *stretch, const Ends *ends, double at[2])
 {
     const double *n = ends->normals[0], *m = ends->normals[1];
@@ -183,7 +188,6 @@ static bool meet_tangents(const Section *s, const Stretch *stretch, const Ends *
         across = stretch->length * (m[0] * stretch->along[0] + m[1] * stretch->along[1]);
     if (cosine > STRAIGHT_COSINE || sine == 0)
         return false;
-    /* Forward along the first tangent, and then along the second. */
     at[0]       = stretch->from[0] - n[1] * across / sine;
     at[1]       = stretch->from[1] + n[0] * across / sine;
     double from = across / sine / stretch->length;
@@ -197,42 +201,43 @@ static bool meet_tangents(const Section *s, const Stretch *stretch, const Ends *
     return fabs(distance) <= near * min2(ends->steep[0], ends->steep[1]);
 }
 
-/* A point of the outline towards the next, no farther off than that: on the tangent there. */
+/* Finds a point of the outline towards the next, no farther than `reach`, by a step of Newton. */
 static bool point_towards(const Section *s, const OutlinePoint *from, const OutlinePoint *to,
                           double reach, OutlinePoint *point)
 {
     double length = hypot(to->at[0] - from->at[0], to->at[1] - from->at[1]), distance;
-    double places[2][2], gradients[2][2];
+    double points[2][2], gradients[2][2];
     *point = *to;
     if (length <= reach)
         return true;
     point->corner = false;
     for (int k = 0; k < 2; k++)
-        places[0][k] = places[1][k] = from->at[k] + reach / length * (to->at[k] - from->at[k]);
-    slice_distances(s->field, &s->plane, (const double(*)[2])places, 1, &distance);
-    slice_gradients(s->field, &s->plane, (const double(*)[2])places, 1e-3 * reach, gradients);
+        points[0][k] = points[1][k] = from->at[k] + reach / length * (to->at[k] - from->at[k]);
+    slice_distances(s->field, &s->plane, (const double(*)[2])points, 1, &distance);
+    slice_gradients(s->field, &s->plane, (const double(*)[2])points, 1e-3 * reach, gradients);
     double steep2 = gradients[0][0] * gradients[0][0] + gradients[0][1] * gradients[0][1];
     for (int k = 0; k < 2; k++)
-        point->at[k] = places[0][k] - distance * gradients[0][k] / steep2;
+        point->at[k] = points[0][k] - distance * gradients[0][k] / steep2;
     return steep2 > 0;
 }
 
-/* So, too, but from places nearer and nearer to the corner: tangents of what is round meet beside it. */
+/* Finds a corner by tangents at points nearer and nearer to it: tangents of what is round meet
+   beside it. */
 static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends *ends, double at[2])
 {
     enum { TRIES = 2 };
     static const double CLOSER = 0.02, LEAST = 1e5;
     if (!meet_tangents(s, stretch, ends, at))
         return false;
-    OutlinePoint corner = {{at[0], at[1]}, true}, ways[2] = {{.corner = false}}, from, to;
-    memcpy(ways[0].at, stretch->from, sizeof ways[0].at);
-    memcpy(ways[1].at, stretch->to, sizeof ways[1].at);
-    double reach = CLOSER * min2(stretch_between(&ways[0], &corner).length,
-                                 stretch_between(&corner, &ways[1]).length);
+    OutlinePoint corner = {{at[0], at[1]}, true}, outer[2] = {{.corner = false}}, from, to;
+    memcpy(outer[0].at, stretch->from, sizeof outer[0].at);
+    memcpy(outer[1].at, stretch->to, sizeof outer[1].at);
+    double reach = CLOSER * min2(stretch_between(&outer[0], &corner).length,
+                                 stretch_between(&corner, &outer[1]).length);
     for (int i = 0; i < TRIES && reach > LEAST * s->enough; i++, reach *= CLOSER) {
         Ends closer;
-        if (!point_towards(s, &corner, &ways[0], reach, &from) ||
-            !point_towards(s, &corner, &ways[1], reach, &to))
+        if (!point_towards(s, &corner, &outer[0], reach, &from) ||
+            !point_towards(s, &corner, &outer[1], reach, &to))
             break;
         Stretch around = stretch_between(&from, &to);
         if (around.length == 0 || !find_ends(s, &around, &closer) ||
@@ -243,7 +248,8 @@ static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends 
     return true;
 }
 
-/* Tells whether an arc with such tangents, which are nearly the same, is as near to the stretch. */
+/* Tells whether an arc with these tangents, nearly parallel ones, is within reach of the
+   stretch. */
 static bool has_tangents(const Stretch *stretch, const Ends *ends, double reach)
 {
     const double *n = ends->normals[0], *m = ends->normals[1];
@@ -258,8 +264,8 @@ static bool has_tangents(const Stretch *stretch, const Ends *ends, double reach)
     return true;
 }
 
-/* As near, or nearer beside what is thinner than that, where the other side is not to be met: on stretches that are
-   straight, or short. */
+/* Tells whether the outline is within reach; beside what is thinner, on straight or short
+   stretches, a shorter reach may be needed to miss the other side. */
 static bool is_near_enough(const Section *s, const Stretch *stretch, const Ends *ends, double reach)
 {
     static const double CLOSER = 1.0 / 8, SHORT = 0.5, SAME_COSINE = 1 - 1e-9;
@@ -272,7 +278,7 @@ static bool is_near_enough(const Section *s, const Stretch *stretch, const Ends 
     return false;
 }
 
-/* Where the distance is looked at between two points of the outline, as a rule. */
+/* Finds the box in which the distance is mostly evaluated between two points of the outline. */
 static void box_between(const Section *s, const double from[2], const double to[2], double low[2],
                         double high[2])
 {
@@ -285,7 +291,7 @@ static void box_between(const Section *s, const double from[2], const double to[
 
 static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, int depth);
 
-/* Where half of a stretch is much shorter, less of the scene is near to it. */
+/* Bends half of a stretch, with the field pruned to it. */
 static void bend_half(Section *s, const OutlinePoint *from, const OutlinePoint *to, int depth)
 {
     double low[2], high[2];
@@ -328,7 +334,8 @@ static void box_of_chord(const Section *s, size_t item, double low[2], double hi
 
 /* ---- corners at the ends of stretches ---- */
 
-/* What is too near to an end of its stretch to be found is in the middle between both neighbours of that end. */
+/* Searches a corner that was too near to an end of its stretch between both neighbours of that
+   end. */
 static void find_corner_at(const Section *s, const OutlinePoint *before, OutlinePoint *point,
                            const OutlinePoint *behind)
 {
@@ -359,7 +366,7 @@ static OutlinePoint point_of_chord(const Section *s, const Chord *chord, size_t 
     return (OutlinePoint){{to->point[0], to->point[1]}, to->corner};
 }
 
-static void box_of_csg_node(const Section *s, size_t item, double low[2], double high[2])
+static void box_of_loose(const Section *s, size_t item, double low[2], double high[2])
 {
     uint32_t number = s->loose.items[item];
     uint32_t next   = s->crossings.items[s->chords.items[number].to].chord;
@@ -374,8 +381,9 @@ static void box_of_csg_node(const Section *s, size_t item, double low[2], double
     }
 }
 
-/* Looks at the bends of a chord for corners, and at the one with the next, if that is bent; false: it is not. */
-static bool look_at_ends(Section *s, const Chord *chord)
+/* Searches corners at the bends of a chord, and between it and the next; returns false if the next
+   is not bent yet. */
+static bool find_missed_corners(Section *s, const Chord *chord)
 {
     const Crossing *start  = &s->crossings.items[chord->from];
     Crossing       *end    = &s->crossings.items[chord->to];
@@ -397,13 +405,13 @@ static bool look_at_ends(Section *s, const Chord *chord)
     return true;
 }
 
-static void look_at_loose(Section *s, size_t first, size_t count)
+static void find_loose_corners(Section *s, size_t first, size_t count)
 {
     for (size_t i = first; i < first + count; i++)
-        look_at_ends(s, &s->chords.items[s->loose.items[i]]);
+        find_missed_corners(s, &s->chords.items[s->loose.items[i]]);
 }
 
-/* ---- all ---- */
+/* ---- all chords ---- */
 
 static void bend_chord(Section *s, Chord *chord)
 {
@@ -416,18 +424,18 @@ static void bend_chord(Section *s, Chord *chord)
     chord->bent  = true;
 }
 
-/* Most are followed by one of the same group. */
+/* Bends chords; most are followed by one of the same group, the others are loose. */
 static void bend_some(Section *s, size_t first, size_t count)
 {
     for (size_t i = first; i < first + count; i++)
         bend_chord(s, &s->chords.items[i]);
     for (size_t i = first; i < first + count; i++)
-        if (!look_at_ends(s, &s->chords.items[i]))
+        if (!find_missed_corners(s, &s->chords.items[i]))
             array_push_large(&s->arena, &s->loose, (uint32_t)i);
 }
 
 void bend_chords(Section *s)
 {
     in_groups(s, s->chords.count, box_of_chord, bend_some);
-    in_groups(s, s->loose.count, box_of_csg_node, look_at_loose);
+    in_groups(s, s->loose.count, box_of_loose, find_loose_corners);
 }

@@ -1,12 +1,13 @@
-/* chords.c: where the outline crosses the edges of cells, and how cells join these places. */
+/* chords.c: finds where the outline crosses the edges of cells, and joins these crossings in each
+   cell. */
 #include "slice/section.h"
 
 #include <string.h>
 
 /* ---- edges ---- */
 
-/* Calls `visit` for the shortest edges of cells along an edge, from its lower end to its upper one or back: corners on
-   it are those of smaller cells beside it. */
+/* Calls `visit` for the shortest edges of cells along an edge, from its lower end to its upper one
+   or back: smaller cells beside it have corners on it. */
 typedef void VisitEdge(Section *s, const uint32_t at[2], int axis, uint32_t side);
 
 static void visit_edge(Section *s, const uint32_t at[2], int axis, uint32_t side, bool back,
@@ -22,7 +23,7 @@ static void visit_edge(Section *s, const uint32_t at[2], int axis, uint32_t side
     visit_edge(s, back ? at : middle, axis, side / 2, back, visit);
 }
 
-/* Counter-clockwise around a cell. */
+/* Visits the edges of a cell counter-clockwise. */
 static void visit_cell(Section *s, const Cell *cell, VisitEdge *visit)
 {
     uint32_t x = cell->at[0], y = cell->at[1], side = cell->side;
@@ -37,10 +38,11 @@ static void visit_cell(Section *s, const Cell *cell, VisitEdge *visit)
 static uint32_t *crossing_slot(const Section *s, const uint32_t at[2], int axis)
 {
     return &s->crossing_slots
-                .items[hash_place(at, (uint32_t)axis + 1) & (s->crossing_slots.count - 1)];
+                .items[hash_point(at, (uint32_t)axis + 1) & (s->crossing_slots.count - 1)];
 }
 
-/* Two edges of different lengths that begin at a corner do not both exist. */
+/* Returns the crossing of an edge, or NULL; its length does not matter, since no two edges have the
+   same beginning and axis. */
 static Crossing *find_crossing(const Section *s, const uint32_t at[2], int axis)
 {
     uint32_t next = *crossing_slot(s, at, axis);
@@ -79,8 +81,8 @@ static void add_crossing(Section *s, const uint32_t at[2], int axis, uint32_t si
 static void crossing_ends(const Section *s, const Crossing *crossing, double low[2], double high[2])
 {
     for (int k = 0; k < 2; k++) {
-        low[k]  = place_of(s, k, crossing->at[k]);
-        high[k] = place_of(s, k, crossing->at[k] + (k == crossing->axis ? crossing->side : 0));
+        low[k]  = coordinate_of(s, k, crossing->at[k]);
+        high[k] = coordinate_of(s, k, crossing->at[k] + (k == crossing->axis ? crossing->side : 0));
     }
 }
 
@@ -124,7 +126,7 @@ static void find_crossings(Section *s)
 
 /* ---- chords ---- */
 
-/* Those of the cell at hand, in their order around it. */
+/* Lists a crossing of the present cell, in the order around it. */
 static void note_crossing(Section *s, const uint32_t at[2], int axis, uint32_t side)
 {
     bool first;
@@ -134,8 +136,7 @@ static void note_crossing(Section *s, const uint32_t at[2], int axis, uint32_t s
     }
 }
 
-/* Tells whether the border of a cell, counter-clockwise, leaves the solid at a crossing: x grows along the lower
-   edge, y along the right one. */
+/* Tells whether the border of a cell, counter-clockwise, leaves the solid at a crossing. */
 static bool is_exit(const Cell *cell, const Crossing *crossing)
 {
     bool ahead = crossing->axis == 0 ? crossing->at[1] == cell->at[1]
@@ -147,13 +148,14 @@ static bool has_solid_middle(const Section *s, const Cell *cell)
 {
     double at[2], distance;
     for (int k = 0; k < 2; k++)
-        at[k] = place_of(s, k, cell->at[k]) + 0.5 * s->side * ((double)cell->side / WHOLE_SIDE);
+        at[k] = coordinate_of(s, k, cell->at[k]) +
+                0.5 * s->side * ((double)cell->side / WHOLE_SIDE);
     slice_distances(s->field, &s->plane, (const double(*)[2])at, 1, &distance);
     return is_inside(distance);
 }
 
-/* A chord goes from where the border leaves the solid to where it was entered before or, if the solid is one in the
-   middle, will be entered next. */
+/* Adds chords from where the border leaves the solid to where it was entered before or, if the
+   solid is connected in the middle, will be entered next. */
 static void join_crossings(Section *s, const Cell *cell)
 {
     size_t count = s->around.count;

@@ -1,4 +1,4 @@
-/* contours.c: the contours of a section, from chord to chord. */
+/* contours.c: follows the contours of a section from chord to chord. */
 #include "slice/section.h"
 
 #include <stdlib.h>
@@ -6,17 +6,17 @@
 
 #include "compiler/base/minmax.h"
 
-/* What is left out of contours, and where arcs may be, in errors; the rest is that of chords. */
+/* The parts of the error for dropped points, and for arcs; chords have the rest. */
 static const double PART_OF_POINTS = 0.5, PART_OF_ARCS = 0.002;
 
 typedef struct Result {
-    OutlinePoint *points,
-        *copy; /* of the contour at hand; a copy, of which one of both kinds is made */
-    double     *bulges;
-    KrsSection *section;
+    OutlinePoint *points, *copy; /* of the present contour; a copy, which is simplified */
+    double       *bulges;
+    KrsSection   *section;
 } Result;
 
-/* Points from a crossing on until it comes again; 0: chords do not lead back. */
+/* Lists the points from a crossing on until it comes again; returns 0 if chords do not lead
+   back. */
 static size_t follow(const Section *s, uint32_t start, bool *seen, OutlinePoint *points)
 {
     size_t   count = 0;
@@ -36,7 +36,8 @@ static size_t follow(const Section *s, uint32_t start, bool *seen, OutlinePoint 
     return count;
 }
 
-/* Twice the area would lose digits far from the origin. */
+/* Returns the area; points are taken from the first one, since far from the origin digits would be
+   lost. */
 static double area_of(const OutlinePoint *points, const double *bulges, size_t count)
 {
     double area = 0;
@@ -52,7 +53,7 @@ static double area_of(const OutlinePoint *points, const double *bulges, size_t c
     return area;
 }
 
-/* What a contour encloses, as a strip of so much area and length. */
+/* Returns the width of a strip with the area and the length of a contour. */
 static double width_of(const OutlinePoint *points, size_t count)
 {
     double length = 0;
@@ -63,25 +64,25 @@ static double width_of(const OutlinePoint *points, size_t count)
     return length > 0 ? 2 * fabs(area_of(points, NULL, count)) / length : 0;
 }
 
-/* Tells whether points that are left out leave nothing of a contour. */
-static bool is_crumb(Section *s, const OutlinePoint *points, size_t count)
+/* Tells whether nothing is left of a contour when points are dropped. */
+static bool vanishes(Section *s, const OutlinePoint *points, size_t count)
 {
     ArenaMark     before = arena_mark(&s->arena);
     OutlinePoint *copy   = arena_new_array(&s->arena, OutlinePoint, count + 1);
     memcpy(copy, points, count * sizeof *copy);
-    bool crumb = leave_out_points(copy, count, PART_OF_POINTS * s->error, &s->arena) < 3;
+    bool gone = leave_out_points(copy, count, PART_OF_POINTS * s->error, &s->arena) < 3;
     arena_rewind(&s->arena, before);
-    return crumb;
+    return gone;
 }
 
-/* Tells whether a contour is one of rounding, where nothing thin was found; or of what is thinner than what is
-   looked for. */
-static bool is_dust(Section *s, const OutlinePoint *points, size_t count, double width)
+/* Tells whether a contour comes of rounding, where nothing thin was found, or of something thinner
+   than is searched for, which is counted. */
+static bool is_noise(Section *s, const OutlinePoint *points, size_t count, double width)
 {
     static const double LEAST = 1e-3;
     double              thin  = s->side * ((double)s->thinnest / WHOLE_SIDE);
     if (!s->split_thin)
-        return is_crumb(s, points, count);
+        return vanishes(s, points, count);
     if (width >= 0.25 * thin)
         return false;
     if (width > LEAST * thin && s->lost++ == 0)
@@ -89,7 +90,7 @@ static bool is_dust(Section *s, const OutlinePoint *points, size_t count, double
     return true;
 }
 
-/* Adds the points at hand, of which few stay, to a section of lines, or of arcs as well. */
+/* Adds the present points, of which few stay, to a section of lines, or of arcs as well. */
 static void add_points(Section *s, const Result *result, size_t count, double error, bool arcs,
                        KrsSection *section)
 {
@@ -113,14 +114,14 @@ static void add_points(Section *s, const Result *result, size_t count, double er
 static void add_contour(Section *s, const Result *result, size_t count)
 {
     double width = width_of(result->points, count), error = min2(s->error, 0.5 * width);
-    if (is_dust(s, result->points, count, width))
+    if (is_noise(s, result->points, count, width))
         return;
     add_points(s, result, count, error, s->arcs, result->section);
     if (result->section->lines)
         add_points(s, result, count, error, false, result->section->lines);
 }
 
-/* Room for all points, of which few stay. */
+/* Makes a section with room for all points, of which few stay. */
 static KrsSection *section_new(size_t points, size_t contours, bool arcs, bool lines)
 {
     KrsSection *section = calloc(1, sizeof *section);
@@ -143,7 +144,7 @@ static void *shrunk(void *items, size_t count, size_t size)
     return less ? less : items;
 }
 
-static void give_back_room(KrsSection *section)
+static void shrink_section(KrsSection *section)
 {
     section->points   = shrunk(section->points, section->point_count, sizeof *section->points);
     section->contours = shrunk(section->contours, section->contour_count,
@@ -151,7 +152,7 @@ static void give_back_room(KrsSection *section)
     if (section->bulges)
         section->bulges = shrunk(section->bulges, section->point_count, sizeof *section->bulges);
     if (section->lines)
-        give_back_room(section->lines);
+        shrink_section(section->lines);
 }
 
 bool section_contours(Section *s, KrsSection **section)
@@ -175,7 +176,7 @@ bool section_contours(Section *s, KrsSection **section)
     result.section->lost     = s->lost;
     result.section->thinnest = s->side * ((double)s->thinnest / WHOLE_SIDE);
     slice_point(&s->plane, s->lost_at, result.section->lost_at);
-    give_back_room(result.section);
+    shrink_section(result.section);
     return true;
 }
 

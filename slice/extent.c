@@ -1,4 +1,4 @@
-/* extent.c: where a solid ends, by branch and bound. */
+/* extent.c: finds where a solid ends, by branch and bound. */
 #include "slice/extent.h"
 
 #include <string.h>
@@ -7,14 +7,14 @@
 
 enum { MAX_BOXES = 1500, MAX_OPEN = 256, SAMPLES = 12 };
 
-/* Along an axis, downwards or upwards: heights are coordinates times the sign. */
+/* A search along an axis, downwards or upwards: heights are coordinates times the sign. */
 typedef struct Extent {
     const MeshField *field;
     int              axis;
     double           sign, best; /* the least height of a point that is known to be solid */
     double           at[3];      /* that point */
-    double           gap;        /* what is above best - gap is not looked for */
-    size_t           looked;
+    double           gap;        /* what is above best - gap does not matter */
+    size_t           visited;
 } Extent;
 
 static double bottom_of(const Extent *e, const Box *box)
@@ -30,8 +30,9 @@ static void set_top(const Extent *e, Box *box, double height)
         box->axis[e->axis].low = max2(box->axis[e->axis].low, -height);
 }
 
-/* Down from a solid point to where it ends, or to a height: by eighths, since steps along a distance would be many. */
-static void go_down(Extent *e, const double from[3], double bottom)
+/* Goes down from a solid point to where the solid ends, or to a height: by division into parts,
+   since steps by the distance would be many. */
+static void descend(Extent *e, const double from[3], double bottom)
 {
     enum { ROUNDS = 10, PARTS = MAX_FIELD_POINTS }; /* to a part of 2^-50 */
     double points[PARTS][3], distances[PARTS], inside = e->sign * from[e->axis], outside = bottom;
@@ -56,8 +57,9 @@ static void go_down(Extent *e, const double from[3], double bottom)
     e->best        = inside;
 }
 
-/* Looks at the middle of a box.  False: there is nothing in the box, as distances change no faster than points move. */
-static bool look_in(Extent *e, const Box *box)
+/* Tests the middle of a box; returns false if nothing is solid in the box, since distances change
+   no faster than points move. */
+static bool probe_box(Extent *e, const Box *box)
 {
     double point[3], half[3];
     for (int k = 0; k < 3; k++) {
@@ -67,12 +69,12 @@ static bool look_in(Extent *e, const Box *box)
     double distance = field_distance(e->field, point);
     if (distance > 0)
         return distance <= 1.0001 * length3(half);
-    go_down(e, point, bottom_of(e, box));
+    descend(e, point, bottom_of(e, box));
     return true;
 }
 
-/* From the lowest point that is known sideways, and down from there, by steps that become shorter.  What is lower by
-   less than a small part of the height is not looked for. */
+/* Goes from the lowest known point sideways, and down from there, by steps that become shorter.
+   What is lower by less than a small part of the height does not count. */
 static void slide_down(Extent *e, const Box *box)
 {
     enum { STEPS = 40, MAX_SLIDES = 400, DIRECTIONS = 8 };
@@ -91,7 +93,7 @@ static void slide_down(Extent *e, const Box *box)
         field_distances(e->field, (const double(*)[3])points, DIRECTIONS, distances);
         for (int k = 0; k < DIRECTIONS && e->best == before; k++)
             if (distances[k] <= 0)
-                go_down(e, points[k], bottom);
+                descend(e, points[k], bottom);
         if (e->best == before) {
             step *= 0.5;
             i++;
@@ -101,16 +103,13 @@ static void slide_down(Extent *e, const Box *box)
 
 static void halve(const Box *box, Box halves[2])
 {
-    int longest = 0;
-    for (int k = 1; k < 3; k++)
-        if (box->axis[k].high - box->axis[k].low > box->axis[longest].high - box->axis[longest].low)
-            longest = k;
+    int    longest = box_longest_axis(box);
+    double middle  = 0.5 * (box->axis[longest].low + box->axis[longest].high);
     halves[0] = halves[1]        = *box;
-    double middle                = 0.5 * (box->axis[longest].low + box->axis[longest].high);
     halves[0].axis[longest].high = halves[1].axis[longest].low = middle;
 }
 
-/* Tells whether nothing is solid below best - gap; `best` is lower then. */
+/* Tells whether it is proven that nothing is solid below best - gap; may lower `best`. */
 static bool prove(Extent *e, Box all)
 {
     Box    open[MAX_OPEN];
@@ -120,9 +119,9 @@ static bool prove(Extent *e, Box all)
         Box box = open[--count];
         set_top(e, &box, e->best - e->gap);
         if (!(box.axis[e->axis].low < box.axis[e->axis].high) ||
-            field_range(e->field, box).low > 0 || !look_in(e, &box))
+            field_range(e->field, box).low > 0 || !probe_box(e, &box))
             continue;
-        if (++e->looked > MAX_BOXES || count + 2 > MAX_OPEN)
+        if (++e->visited > MAX_BOXES || count + 2 > MAX_OPEN)
             return false;
         set_top(e, &box, e->best - e->gap);
         if (!(box.axis[e->axis].low < box.axis[e->axis].high))
@@ -152,12 +151,12 @@ static void sample(Extent *e, const Box *box)
         field_distances(e->field, (const double(*)[3])points, SAMPLES, distances);
         for (int k = 0; k < SAMPLES; k++)
             if (distances[k] <= 0)
-                go_down(e, points[k], e->sign * points[k][e->axis]);
+                descend(e, points[k], e->sign * points[k][e->axis]);
     }
 }
 
-/* The least height that is known to be solid, if nothing is by a 500th of all heights lower; else one that nothing is
-   below. */
+/* Returns the least height that is known to be solid, if nothing is lower by a 500th of the box;
+   else one that nothing is below. */
 static double find_bottom(const MeshField *field, const Box *box, int axis, double sign)
 {
     static const double gaps[] = {0.05, 0.002};
@@ -165,8 +164,8 @@ static double find_bottom(const MeshField *field, const Box *box, int axis, doub
     double bottom = bottom_of(&e, box), height = box->axis[axis].high - box->axis[axis].low;
     sample(&e, box);
     for (size_t i = 0; i < sizeof gaps / sizeof *gaps && e.best < INFINITY; i++) {
-        e.gap    = gaps[i] * height;
-        e.looked = 0;
+        e.gap     = gaps[i] * height;
+        e.visited = 0;
         slide_down(&e, box);
         if (!prove(&e, *box))
             return bottom;
@@ -175,7 +174,7 @@ static double find_bottom(const MeshField *field, const Box *box, int axis, doub
     return e.best < INFINITY ? e.best : bottom;
 }
 
-/* Tells whether nothing is solid in a box, as far as few boxes prove it. */
+/* Tells whether few boxes prove that nothing is solid in a box. */
 static bool is_empty(const MeshField *field, const double low[3], const double high[3])
 {
     Extent e = {.field = field, .sign = 1, .best = INFINITY};

@@ -1,11 +1,11 @@
-/* fit.c: fewer points of a contour, and arcs. */
+/* fit.c: drops points of contours, and fits arcs. */
 #include "slice/section.h"
 
 #include <string.h>
 
 #include "compiler/base/minmax.h"
 
-/* ---- where runs begin and end ---- */
+/* ---- beginnings ---- */
 
 static double distance2(const double a[2], const double b[2])
 {
@@ -21,9 +21,9 @@ static size_t farthest_from(const OutlinePoint *points, size_t count, const doub
     return farthest;
 }
 
-/* Begins with a corner, or else with what is farthest from somewhere, and ends with the first point once more, for
-   which there is room. */
-static void turn_to_corner(OutlinePoint *points, size_t count, Arena *scratch)
+/* Rotates a contour to begin with a corner, or else with the point farthest from the first, and
+   repeats that at the end, where there is room. */
+static void rotate_to_corner(OutlinePoint *points, size_t count, Arena *scratch)
 {
     size_t first = 0;
     while (first < count && !points[first].corner)
@@ -50,7 +50,8 @@ static double distance_to_line(const double at[2], const double from[2], const d
     return hypot(off[0] - part * along[0], off[1] - part * along[1]);
 }
 
-/* The point between two that is farthest from the line between them, if that is more than the error; or 0. */
+/* Returns the point between two that is farthest from the line between them, if that is more than
+   the error; or 0. */
 static size_t farthest_between(const OutlinePoint *points, size_t from, size_t to, double error)
 {
     size_t farthest = 0;
@@ -64,8 +65,8 @@ static size_t farthest_between(const OutlinePoint *points, size_t from, size_t t
     return farthest;
 }
 
-/* Keeps the points that are needed.  A contour without corners is halved before, as both of its ends are one
-   point. */
+/* Keeps the points that are needed, by Douglas and Peucker's algorithm.  Both ends must differ, so
+   a contour without corners is halved before. */
 static void keep_needed(const OutlinePoint *points, size_t from, size_t to, double error,
                         bool *kept, Arena *scratch)
 {
@@ -96,7 +97,7 @@ size_t leave_out_points(OutlinePoint *points, size_t count, double error, Arena 
     ArenaMark before = arena_mark(scratch);
     bool     *kept   = arena_new_array(scratch, bool, count + 1);
     size_t    left   = 0;
-    turn_to_corner(points, count, scratch);
+    rotate_to_corner(points, count, scratch);
     for (size_t from = 0, to; from < count; from = to) {
         for (to = from + 1; !points[to].corner;)
             to++;
@@ -116,11 +117,11 @@ size_t leave_out_points(OutlinePoint *points, size_t count, double error, Arena 
 
 /* ---- lines and arcs ---- */
 
-/* A run may end with a point behind the place where the next piece touches it, as near as the error is; that bends its
-   arc a little.  So what touches is told by that many errors. */
+/* Errors within which pieces touch: a run may end with a point behind where the next piece touches
+   it, which bends its arc a little. */
 static const double LOOSER = 20;
 
-/* A line, or an arc: that from a point to another through the one in the middle between them. */
+/* A line, or an arc, whose radius is above 0. */
 typedef struct Piece2 {
     double from[2], to[2], centre[2], radius, bulge;
 } Piece2;
@@ -141,7 +142,7 @@ static bool arc_of(const double from[2], const double via[2], const double to[2]
     arc->centre[0] = from[0] + 0.5 * (b[1] * aa - a[1] * bb) / cross;
     arc->centre[1] = from[1] + 0.5 * (a[0] * bb - b[0] * aa) / cross;
     arc->radius    = distance2(arc->centre, from);
-    /* Angles at the circle are half of those in the centre. */
+    /* The inscribed angle is half of the central one. */
     double c[2]  = {to[0] - via[0], to[1] - via[1]};
     double angle = atan2(a[0] * c[1] - a[1] * c[0], a[0] * c[0] + a[1] * c[1]);
     arc->bulge   = tan(0.5 * angle);
@@ -171,7 +172,8 @@ static bool fit_run(const OutlinePoint *points, size_t from, size_t to, double e
            fits(points, from, to, piece, error);
 }
 
-/* The longest run from a point on that one piece fits, up to `end`: doubled until it does not, then halved between. */
+/* Returns the end of the longest run that one piece fits, up to `end`: doubles its length, at least
+   to eight steps, until none fits, then bisects. */
 static size_t longest_run(const OutlinePoint *points, size_t from, size_t end, double error,
                           Piece2 *best)
 {
@@ -198,7 +200,7 @@ static size_t longest_run(const OutlinePoint *points, size_t from, size_t end, d
     return good;
 }
 
-/* Tells how far it is from a point to the line or the circle of a piece. */
+/* Returns the distance from a point to the line or the circle of a piece. */
 static double distance_to_whole(const Piece2 *piece, const double at[2])
 {
     if (piece->radius > 0)
@@ -208,9 +210,8 @@ static double distance_to_whole(const Piece2 *piece, const double at[2])
     return fabs(cross) / hypot(along[0], along[1]);
 }
 
-/* Where a line and a circle, or two circles, touch, near a place between them: both are smooth there. */
-static bool touching_point(const Piece2 *a, const Piece2 *b, const double near[2],
-                           double csg_node[2])
+/* Finds where a line and a circle, or two circles, touch, as near to `near` as they do. */
+static bool touching_point(const Piece2 *a, const Piece2 *b, const double near[2], double touch[2])
 {
     const Piece2 *round = a->radius > 0 ? a : b, *other = a->radius > 0 ? b : a;
     double        to[2];
@@ -226,41 +227,41 @@ static bool touching_point(const Piece2 *a, const Piece2 *b, const double near[2
     double length = hypot(to[0], to[1]);
     double side   = to[0] * (near[0] - round->centre[0]) + to[1] * (near[1] - round->centre[1]);
     for (int k = 0; k < 2 && length > 0; k++)
-        csg_node[k] = round->centre[k] + (side < 0 ? -1 : 1) * round->radius * to[k] / length;
+        touch[k] = round->centre[k] + (side < 0 ? -1 : 1) * round->radius * to[k] / length;
     return length > 0;
 }
 
-static void end_piece_at(Piece2 *piece, bool at_end, const double csg_node[2])
+static void end_piece_at(Piece2 *piece, bool at_end, const double touch[2])
 {
     double *end = at_end ? piece->to : piece->from;
-    memcpy(end, csg_node, 2 * sizeof *csg_node);
+    memcpy(end, touch, 2 * sizeof *touch);
     if (piece->radius == 0)
         return;
-    double a[2] = {piece->from[0] - piece->centre[0], piece->from[1] - piece->centre[1]};
-    double b[2] = {piece->to[0] - piece->centre[0], piece->to[1] - piece->centre[1]};
-    double turn = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-    if (piece->bulge > 0 && turn < 0)
-        turn += 2 * M_PI;
-    if (piece->bulge < 0 && turn > 0)
-        turn -= 2 * M_PI;
-    piece->bulge = tan(0.25 * turn);
+    double a[2]  = {piece->from[0] - piece->centre[0], piece->from[1] - piece->centre[1]};
+    double b[2]  = {piece->to[0] - piece->centre[0], piece->to[1] - piece->centre[1]};
+    double sweep = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    if (piece->bulge > 0 && sweep < 0)
+        sweep += 2 * M_PI;
+    if (piece->bulge < 0 && sweep > 0)
+        sweep -= 2 * M_PI;
+    piece->bulge = tan(0.25 * sweep);
 }
 
-/* Moves the place where two pieces meet, which is near `near`, to where they touch; false: they do not, within an error,
-   or farther away than `reach`. */
+/* Moves the end of a piece and the beginning of the next, near `near`, to where they touch; returns
+   false if they do not, within an error, or farther away than `reach`. */
 static bool join_smoothly(Piece2 *before, Piece2 *behind, const double near[2], double reach,
                           double error)
 {
-    double csg_node[2];
-    if (!touching_point(before, behind, near, csg_node) || distance2(csg_node, near) > reach ||
-        distance_to_whole(before, csg_node) > error || distance_to_whole(behind, csg_node) > error)
+    double touch[2];
+    if (!touching_point(before, behind, near, touch) || distance2(touch, near) > reach ||
+        distance_to_whole(before, touch) > error || distance_to_whole(behind, touch) > error)
         return false;
-    end_piece_at(before, true, csg_node);
-    end_piece_at(behind, false, csg_node);
+    end_piece_at(before, true, touch);
+    end_piece_at(behind, false, touch);
     return true;
 }
 
-/* The pieces of a contour, and which lead from one point to the next only. */
+/* The pieces of a contour; links lead only from one point to the next. */
 typedef struct Pieces {
     Piece2 *items;
     bool   *links;
@@ -278,7 +279,8 @@ static void fit_runs(const OutlinePoint *points, size_t count, double error, Pie
     }
 }
 
-/* Between a line and an arc that touches it there is a link from the last point on one to the first on the other. */
+/* Drops links between a line and an arc that touches it, which lead from the last point on one to
+   the first on the other. */
 static void leave_out_links(Pieces *pieces, double error)
 {
     size_t left = 0, count = pieces->count;
@@ -306,15 +308,15 @@ static void touch_neighbours(Pieces *pieces, double error)
     }
 }
 
-/* Contours without corners begin somewhere: what is one piece there becomes one. */
+/* Joins the first piece with the last, if they are one: contours without corners begin anywhere. */
 static void join_ends(Pieces *pieces, double error)
 {
     if (pieces->count < 4)
         return;
     Piece2 *first = &pieces->items[0], *last = &pieces->items[pieces->count - 1];
-    double  turn = 4 * fabs(atan(first->bulge) + atan(last->bulge));
+    double  sweep = 4 * fabs(atan(first->bulge) + atan(last->bulge));
     if ((first->radius > 0) != (last->radius > 0) || first->bulge * last->bulge < 0 ||
-        turn > M_PI || distance_to_whole(last, first->to) > error ||
+        sweep > M_PI || distance_to_whole(last, first->to) > error ||
         distance_to_whole(first, last->from) > error)
         return;
     end_piece_at(last, true, first->to);
@@ -322,7 +324,7 @@ static void join_ends(Pieces *pieces, double error)
     pieces->count--;
 }
 
-/* An arc that is as near to its chord is a line. */
+/* Tells whether an arc is within the error of its chord. */
 static bool is_straight(const Piece2 *piece, double error)
 {
     return 0.5 * fabs(piece->bulge) * distance2(piece->from, piece->to) <= error;
@@ -334,7 +336,7 @@ size_t fit_arcs(OutlinePoint *points, double *bulges, size_t count, double error
     Pieces    pieces = {.items = arena_new_array(scratch, Piece2, count),
                         .links = arena_new_array(scratch, bool, count)};
     size_t    left   = 0;
-    turn_to_corner(points, count, scratch);
+    rotate_to_corner(points, count, scratch);
     fit_runs(points, count, error, &pieces);
     leave_out_links(&pieces, LOOSER * error);
     touch_neighbours(&pieces, LOOSER * error);

@@ -1,4 +1,4 @@
-/* plane.c: the distance in a plane. */
+/* plane.c: evaluates the distance in a plane, by lanes. */
 #include "slice/plane.h"
 
 #include <string.h>
@@ -55,8 +55,8 @@ void slice_distances(const MeshField *field, const SlicePlane *plane, const doub
     field_distances(field, (const double(*)[3])in_space, count, distances);
 }
 
-/* Where a line through both ends of what is left is 0: the first step on a flat face leads to the root but for rounding,
-   and may leave the other end far away. */
+/* Returns where the line through both ends of the bracket is 0: the first step on a flat face finds
+   the root but for rounding, and may leave the other end far away. */
 static double root_of(const RootSearch *search)
 {
     double at_low = search->at_low, at_high = search->at_high;

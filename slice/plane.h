@@ -1,12 +1,12 @@
 /*
- * plane.h: the distance in a plane.
+ * plane.h: evaluates the distance in a plane.
  */
 #ifndef KRS_SLICE_PLANE_H
 #define KRS_SLICE_PLANE_H
 
 #include "compiler/field/field.h"
 
-/* A point of it is origin + x right + y up. */
+/* A plane; its points are origin + x right + y up. */
 typedef struct SlicePlane {
     double origin[3], right[3], up[3];
 } SlicePlane;
@@ -19,10 +19,10 @@ static inline void slice_point(const SlicePlane *plane, const double at[2], doub
         point[k] = plane->origin[k] + at[0] * plane->right[k] + at[1] * plane->up[k];
 }
 
-/* A square in a plane, and what is nearer to it than a margin. */
+/* Returns the box around a square in a plane, wider by a margin. */
 Box slice_box(const SlicePlane *plane, const double low[2], const double high[2], double margin);
 
-/* At up to MAX_FIELD_POINTS points. */
+/* Evaluates up to MAX_FIELD_POINTS points. */
 void slice_distances(const MeshField *field, const SlicePlane *plane, const double (*points)[2],
                      size_t count, double *distances);
 
@@ -32,11 +32,11 @@ typedef struct PlaneRoot {
     double at[2]; /* what is found */
 } PlaneRoot;
 
-/* Up to MAX_FIELD_POINTS of them, until they are known to `enough`. */
+/* Makes up to MAX_FIELD_POINTS searches, to an accuracy of `enough`. */
 void slice_roots(const MeshField *field, const SlicePlane *plane, PlaneRoot *roots, size_t count,
                  double enough);
 
-/* The gradients in the plane at two points, by differences over `step`. */
+/* Finds the gradients in the plane at two points, by differences over `step`. */
 void slice_gradients(const MeshField *field, const SlicePlane *plane, const double (*points)[2],
                      double step, double (*gradients)[2]);
 

@@ -1,4 +1,4 @@
-/* slice.c: krs_slice: what is asked for, and what is given back. */
+/* slice.c: krs_slice checks what is asked for, and makes sections by all threads. */
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +9,8 @@
 #include "slice/section.h"
 
 static const double DEFAULT_ERROR = 1.0 / 2000, MIN_ERROR = 1e-7;
-/* Parts of coordinates: how far roots are known, and by how much solids are thicker, so that faces that touch,
-   and faces in the plane itself, are not decided by rounding. */
+/* Parts of coordinates: the accuracy of roots, and by how much solids are thickened, so that
+   rounding does not decide faces that touch, and faces in the plane itself. */
 static const double ENOUGH = 1e-14, SKIN = 1e-12;
 
 struct KrsSlicer {
@@ -151,7 +151,7 @@ bool krs_slicer_box(const KrsSlicer *slicer, double low[3], double high[3])
 
 /* ---- sections ---- */
 
-/* Some sections, by all threads: each takes the next. */
+/* Sections that are made by all threads: each takes the next. */
 typedef struct Slicing {
     KrsSlicer             *slicer;
     const KrsSectionPlane *planes;

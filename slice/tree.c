@@ -1,4 +1,4 @@
-/* tree.c: the cells of a plane that the outline goes through. */
+/* tree.c: finds the cells of a quadtree that the outline goes through. */
 #include "slice/section.h"
 
 #include <string.h>
@@ -10,15 +10,17 @@ enum {
     ENTER_EVERY = 3,               /* halvings until the field is pruned again */
     ASK_EVERY   = 256
 };
-/* Where something is thinner than the smallest cells, cells are halved so often more; what is still thinner is
-   counted. */
+/* How often cells are halved again where something is thinner than the smallest; what is still
+   thinner is counted. */
 enum { THIN_HALVINGS = 4 };
-/* Derivatives below that count as 0: a face that was turned by a right angle is straight. */
+/* Derivatives below this count as 0, so that a face that was rotated by a right angle is
+   straight. */
 static const double STRAIGHT = 1e-9;
 
 void section_root(Section *s, const double low[3], const double high[3])
 {
-    /* Not in the middle, so that faces and corners of what is symmetric or of whole sizes are on no edges of cells. */
+    /* The root is off the middle, so that faces and corners of symmetric solids and whole sizes are
+       on no edges of cells. */
     static const double WIDER = 1.0973, OFF[2] = {0.0131, 0.0173};
     double              least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
     for (int i = 0; i < 8; i++) {
@@ -41,7 +43,7 @@ void section_root(Section *s, const double low[3], const double high[3])
 
 /* ---- corners ---- */
 
-uint64_t hash_place(const uint32_t at[2], uint32_t more)
+uint64_t hash_point(const uint32_t at[2], uint32_t more)
 {
     uint64_t hash = (at[0] * 0x9E3779B97F4A7C15u) ^ (at[1] * 0xC2B2AE3D27D4EB4Fu) ^
                     (more * 0xD6E8FEB86659FD93u);
@@ -56,7 +58,7 @@ static void grow_slots(Section *s)
     s->corner_slots.count = count;
     for (size_t i = 0; i < s->corners.count; i++) {
         Corner   *corner = &s->corners.items[i];
-        uint32_t *slot   = &s->corner_slots.items[hash_place(corner->at, 0) & (count - 1)];
+        uint32_t *slot   = &s->corner_slots.items[hash_point(corner->at, 0) & (count - 1)];
         corner->next     = *slot;
         *slot            = (uint32_t)i + 1;
     }
@@ -66,7 +68,7 @@ const Corner *find_corner(const Section *s, const uint32_t at[2])
 {
     if (s->corner_slots.count == 0)
         return NULL;
-    uint32_t next = s->corner_slots.items[hash_place(at, 0) & (s->corner_slots.count - 1)];
+    uint32_t next = s->corner_slots.items[hash_point(at, 0) & (s->corner_slots.count - 1)];
     while (next > 0) {
         const Corner *corner = &s->corners.items[next - 1];
         if (corner->at[0] == at[0] && corner->at[1] == at[1])
@@ -80,25 +82,25 @@ static void add_corner(Section *s, const uint32_t at[2], double distance)
 {
     if (s->corners.count >= s->corner_slots.count)
         grow_slots(s);
-    uint32_t *slot   = &s->corner_slots.items[hash_place(at, 0) & (s->corner_slots.count - 1)];
+    uint32_t *slot   = &s->corner_slots.items[hash_point(at, 0) & (s->corner_slots.count - 1)];
     Corner    corner = {{at[0], at[1]}, *slot, distance};
     array_push_large(&s->arena, &s->corners, corner);
     *slot = (uint32_t)s->corners.count;
 }
 
-/* Finds the distance at those that are new. */
-static void make_corners(Section *s, const uint32_t (*places)[2], size_t count)
+/* Adds those corners that are new, with their distances. */
+static void make_corners(Section *s, const uint32_t (*wanted)[2], size_t count)
 {
     enum { MOST = 5 };
     double   points[MOST][2], distances[MOST];
     uint32_t made[MOST][2];
     size_t   fresh = 0;
     for (size_t i = 0; i < count; i++) {
-        if (find_corner(s, places[i]))
+        if (find_corner(s, wanted[i]))
             continue;
-        memcpy(made[fresh], places[i], sizeof *made);
+        memcpy(made[fresh], wanted[i], sizeof *made);
         for (int k = 0; k < 2; k++)
-            points[fresh][k] = place_of(s, k, places[i][k]);
+            points[fresh][k] = coordinate_of(s, k, wanted[i][k]);
         fresh++;
     }
     if (fresh > 0)
@@ -112,12 +114,13 @@ static void make_corners(Section *s, const uint32_t (*places)[2], size_t count)
 static void cell_square(const Section *s, const Cell *cell, double low[2], double high[2])
 {
     for (int k = 0; k < 2; k++) {
-        low[k]  = place_of(s, k, cell->at[k]);
-        high[k] = place_of(s, k, cell->at[k] + cell->side);
+        low[k]  = coordinate_of(s, k, cell->at[k]);
+        high[k] = coordinate_of(s, k, cell->at[k] + cell->side);
     }
 }
 
-/* Distances change no faster than points move, so some corner may tell that there is no outline in a cell. */
+/* Tells whether a corner proves that a cell has no outline, since distances change no faster than
+   points move. */
 static bool is_far(const Section *s, const Cell *cell)
 {
     double diagonal = 1.0001 * M_SQRT2 * s->side * ((double)cell->side / WHOLE_SIDE);
@@ -139,22 +142,23 @@ static bool is_monotone(const LaneSlope *slope, const double direction[3])
 
 /* ---- what is thinner than cells ---- */
 
-/* Tells whether a value is on the other side by more than solids are thicker. */
+/* Tells whether a value is on the other side by more than solids are thickened. */
 static bool is_other(const Section *s, double distance, bool inside)
 {
     return inside ? distance > s->skin : distance < -2 * s->skin;
 }
 
-/* From a point of a cell to where the distance is 0, by its gradient, and on, up to a side of the cell: how thick at
-   most is what is there; INFINITY: no thinner than the cell; 0: nothing is found.  `at` is in it. */
-static double look_through(const Section *s, double side, const double from[2], double distance,
-                           double at[2])
+/* Goes from a point of a cell along the gradient through the surface, up to a side of the cell.
+   Returns a bound of the thickness of what is there, INFINITY if it is no thinner than the cell,
+   and 0 if nothing is found; `at` becomes a point in it. */
+static double probe_thickness(const Section *s, double side, const double from[2], double distance,
+                              double at[2])
 {
-    enum { STEPS = 3, PLACES = 16, NOWHERE = 1000 };
-    static const int halvings[PLACES] = {0,  1,  2,  3,  4,  5,  6,  8,
+    enum { STEPS = 3, POINTS = 16, NOWHERE = 1000 };
+    static const int halvings[POINTS] = {0,  1,  2,  3,  4,  5,  6,  8,
                                          10, 12, 14, 16, 18, 20, 22, NOWHERE};
     const bool       inside           = is_inside(distance);
-    double           points[PLACES][2], distances[PLACES], gradients[2][2], pair[2][2];
+    double           points[POINTS][2], distances[POINTS], gradients[2][2], pair[2][2];
     memcpy(pair[0], from, sizeof pair[0]);
     for (int step = 0; step < STEPS; step++) {
         memcpy(pair[1], pair[0], sizeof pair[1]);
@@ -162,49 +166,50 @@ static double look_through(const Section *s, double side, const double from[2], 
         double steep = hypot(gradients[0][0], gradients[0][1]);
         if (!(fabs(distance) < 2 * steep * side))
             return 0;
-        for (int i = 0; i < PLACES; i++) {
+        for (int i = 0; i < POINTS; i++) {
             double on = ldexp(side, -halvings[i]);
             for (int k = 0; k < 2; k++)
                 points[i][k] = pair[0][k] -
                                gradients[0][k] / steep * (distance / steep + (inside ? -on : on));
         }
-        slice_distances(s->field, &s->plane, (const double(*)[2])points, PLACES, distances);
-        for (int i = 0; i < PLACES; i++)
+        slice_distances(s->field, &s->plane, (const double(*)[2])points, POINTS, distances);
+        for (int i = 0; i < POINTS; i++)
             if (is_other(s, distances[i], inside)) {
                 memcpy(at, points[i], sizeof points[i]);
                 return i == 0 ? INFINITY : ldexp(side, -halvings[i - 1]);
             }
-        if (!(fabs(distances[PLACES - 1]) < 0.5 * fabs(distance)))
+        if (!(fabs(distances[POINTS - 1]) < 0.5 * fabs(distance)))
             return 0;
-        memcpy(pair[0], points[PLACES - 1], sizeof pair[0]);
-        distance = distances[PLACES - 1];
+        memcpy(pair[0], points[POINTS - 1], sizeof pair[0]);
+        distance = distances[POINTS - 1];
     }
     return 0;
 }
 
-/* Tells whether all of a line is on the other side. */
+/* Tells whether points all along a line are on the other side. */
 static bool is_joined(const Section *s, const double from[2], const double to[2], bool inside)
 {
-    enum { PLACES = 8 };
-    double points[PLACES][2], distances[PLACES];
+    enum { POINTS = 8 };
+    double points[POINTS][2], distances[POINTS];
     bool   joined = true;
-    for (int i = 0; i < PLACES; i++)
+    for (int i = 0; i < POINTS; i++)
         for (int k = 0; k < 2; k++)
-            points[i][k] = from[k] + (to[k] - from[k]) * (i + 1.0) / (PLACES + 1);
-    slice_distances(s->field, &s->plane, (const double(*)[2])points, PLACES, distances);
-    for (int i = 0; i < PLACES && joined; i++)
+            points[i][k] = from[k] + (to[k] - from[k]) * (i + 1.0) / (POINTS + 1);
+    slice_distances(s->field, &s->plane, (const double(*)[2])points, POINTS, distances);
+    for (int i = 0; i < POINTS && joined; i++)
         joined = is_other(s, distances[i], inside);
     return joined;
 }
 
-/* Directions from a place, up to `spread` to either side of `angle`, and what is found in one: the angle and the place. */
+/* Directions from a point, up to `spread` to either side of `angle`; then the angle and the point
+   that were found. */
 typedef struct Fan {
     double at[2], angle, spread;
-    int    rounds; /* each looks around the deepest direction of the one before */
+    int    rounds; /* each refines the deepest direction of the one before */
 } Fan;
 
-/* Tells whether what is thin at a place is joined to where it is so deep, so far off; then the fan is at the
-   deepest of these places, and its angle leads there. */
+/* Tells whether what is thin at the fan's point is joined to a point at the distance `reach` that
+   is deeper than `depth`; then the fan moves to the deepest of these, and its angle leads there. */
 static bool leads_to(const Section *s, Fan *fan, bool inside, double reach, double depth)
 {
     enum { DIRECTIONS = MAX_FIELD_POINTS };
@@ -235,9 +240,10 @@ static bool leads_to(const Section *s, Fan *fan, bool inside, double reach, doub
     return false;
 }
 
-static const double WIDER = 16; /* so many thicknesses away what is thin may be thick */
+static const double WIDER = 16; /* thicknesses away, where what is thin may be thick */
 
-/* Tells whether what is thin at a place leads to where it is thicker; `angle` becomes the direction. */
+/* Tells whether what is thin at a point leads to where it is thicker; `angle` becomes the
+   direction. */
 static bool is_end(const Section *s, const double at[2], bool inside, double thick, double *angle)
 {
     static const double DEEP = 0.6; /* a wall is half as deep as it is thick */
@@ -247,8 +253,8 @@ static bool is_end(const Section *s, const double at[2], bool inside, double thi
     return end;
 }
 
-/* Tells whether it only does so, as at corners: a neck between two thick parts goes on behind the place, and a
-   wall on a thick part does. */
+/* Tells whether it leads only there, as at corners: a neck between two thick parts also continues
+   behind the point, and so does a wall on a thick part. */
 static bool is_tip(const Section *s, const double at[2], bool inside, double thick)
 {
     enum { STEPS = 4 };
@@ -263,57 +269,60 @@ static bool is_tip(const Section *s, const double at[2], bool inside, double thi
     return false;
 }
 
-/* And where that is thick, back from there: the point may be in what is thin. */
-static double look_both_ways(const Section *s, double side, const double from[2], double distance,
-                             double at[2])
+/* Probes the thickness in front of a point, and where that is thick, back from there: the point
+   itself may be in what is thin. */
+static double probe_both_ways(const Section *s, double side, const double from[2], double distance,
+                              double at[2])
 {
-    double there, behind[2], thick = look_through(s, side, from, distance, at);
+    double there, behind[2], thick = probe_thickness(s, side, from, distance, at);
     if (!isinf(thick))
         return thick;
     slice_distances(s->field, &s->plane, (const double(*)[2])at, 1, &there);
-    double back = look_through(s, side, at, there, behind);
+    double back = probe_thickness(s, side, at, there, behind);
     if (back == 0 || isinf(back))
         return thick;
     memcpy(at, behind, sizeof behind);
     return back;
 }
 
-/* What is found from the middles of the four quarters of a cell: the thinnest, and a place in it. */
+/* Returns the least thickness that is found from the middles of the four quarters of a cell; `at`
+   becomes a point there. */
 static double find_thinnest(const Section *s, const Cell *cell, bool same, double at[2])
 {
     const double side = s->side * ((double)cell->side / WHOLE_SIDE);
-    /* A quarter without an outline has nothing that could be found, unless it is where the thickness shows. */
+    /* A quarter without an outline has nothing to find, but where corners differ the thickness may
+       show from farther away. */
     const double reach = same ? 1.0001 * 0.25 * M_SQRT2 * side : 2 * side;
     double       middles[4][2], distances[4], thinnest = 0;
     for (uint32_t i = 0; i < 4; i++) {
-        middles[i][0] = place_of(s, 0, cell->at[0]) + (0.25 + 0.5 * (i % 2)) * side;
-        middles[i][1] = place_of(s, 1, cell->at[1]) + (0.25 + 0.5 * (i / 2)) * side;
+        middles[i][0] = coordinate_of(s, 0, cell->at[0]) + (0.25 + 0.5 * (i % 2)) * side;
+        middles[i][1] = coordinate_of(s, 1, cell->at[1]) + (0.25 + 0.5 * (i / 2)) * side;
     }
     slice_distances(s->field, &s->plane, (const double(*)[2])middles, 4, distances);
     for (int i = 0; i < 4; i++) {
-        double place[2];
+        double found[2];
         double thick = fabs(distances[i]) > reach
                            ? 0
-                           : look_both_ways(s, side, middles[i], distances[i], place);
+                           : probe_both_ways(s, side, middles[i], distances[i], found);
         if (thick > 0 && (thinnest == 0 || thick < thinnest)) {
             thinnest = thick;
-            memcpy(at, place, sizeof place);
+            memcpy(at, found, sizeof found);
         }
     }
     return thinnest;
 }
 
-/* Tells whether a cell of the least size is split for what is thinner: corners do not tell what goes on between
-   them.  What no split would find is counted. */
+/* Tells whether a smallest cell is split for something thinner, which corners do not tell.  Counts
+   what no split would find. */
 static bool hides_thin(Section *s, const Cell *cell)
 {
     const bool inside = is_inside(find_corner(s, cell->at)->distance);
     bool       same   = true;
     double     at[2];
     for (uint32_t i = 1; i < 4; i++) {
-        const uint32_t place[2] = {cell->at[0] + i % 2 * cell->side,
-                                   cell->at[1] + i / 2 * cell->side};
-        same                    = same && is_inside(find_corner(s, place)->distance) == inside;
+        const uint32_t corner[2] = {cell->at[0] + i % 2 * cell->side,
+                                    cell->at[1] + i / 2 * cell->side};
+        same                     = same && is_inside(find_corner(s, corner)->distance) == inside;
     }
     const double side  = s->side * ((double)cell->side / WHOLE_SIDE);
     const double least = s->side * ((double)s->thinnest / WHOLE_SIDE);
@@ -336,21 +345,22 @@ static bool hides_thin(Section *s, const Cell *cell)
 
 typedef enum CellState { CELL_EMPTY, CELL_LEAF, CELL_SPLIT } CellState;
 
-/* Tells whether the outline crosses an edge of a cell as often as its ends tell: not at all, or once at most. */
+/* Tells whether the outline is proven to cross an edge of a cell only as its ends tell: not at all,
+   or once at most. */
 static bool is_plain_edge(const Section *s, const Cell *cell, int axis, uint32_t across)
 {
     double    low[2], high[2];
     Range     range;
     LaneSlope slope;
     cell_square(s, cell, low, high);
-    low[1 - axis] = high[1 - axis] = place_of(s, 1 - axis, cell->at[1 - axis] + across);
+    low[1 - axis] = high[1 - axis] = coordinate_of(s, 1 - axis, cell->at[1 - axis] + across);
     bool known = field_slope(s->field, slice_box(&s->plane, low, high, s->enough), &range, &slope);
     return range.low > s->skin || range.high < s->skin ||
            (known && is_monotone(&slope, axis == 0 ? s->plane.right : s->plane.up));
 }
 
-/* Tells whether signs at corners tell where the outline is: both derivatives keep their sign; or one does, so that
-   it is crossed once at most on each line along that axis, and both edges across are plain. */
+/* Tells whether signs at corners tell the topology: both derivatives keep their sign; or one does,
+   so that each line along its axis is crossed once at most, and both edges across it are plain. */
 static bool is_told_by_corners(const Section *s, const Cell *cell, const LaneSlope *slope)
 {
     bool right = is_monotone(slope, s->plane.right), up = is_monotone(slope, s->plane.up);
@@ -376,14 +386,14 @@ static CellState find_state(Section *s, const Cell *cell, Box box)
 
 static bool goes_on(Section *s)
 {
-    if (s->progress && s->looked++ % ASK_EVERY == 0 && !s->progress(s->user, s->fraction))
+    if (s->progress && s->visited++ % ASK_EVERY == 0 && !s->progress(s->user, s->fraction))
         atomic_store(s->stopped, true);
     return !atomic_load_explicit(s->stopped, memory_order_relaxed);
 }
 
-static bool look_at_cell(Section *s, Cell cell, int depth);
+static bool refine_cell(Section *s, Cell cell, int depth);
 
-static bool look_at_parts(Section *s, const Cell *cell, int depth)
+static bool refine_parts(Section *s, const Cell *cell, int depth)
 {
     uint32_t       half = cell->side / 2, x = cell->at[0], y = cell->at[1];
     const uint32_t middles[5][2] = {{x + half, y},
@@ -394,11 +404,11 @@ static bool look_at_parts(Section *s, const Cell *cell, int depth)
     make_corners(s, middles, 5);
     bool done = true;
     for (uint32_t i = 0; i < 4 && done; i++)
-        done = look_at_cell(s, (Cell){{x + i % 2 * half, y + i / 2 * half}, half}, depth + 1);
+        done = refine_cell(s, (Cell){{x + i % 2 * half, y + i / 2 * half}, half}, depth + 1);
     return done;
 }
 
-static bool look_at_cell(Section *s, Cell cell, int depth)
+static bool refine_cell(Section *s, Cell cell, int depth)
 {
     double low[2], high[2];
     bool   enter = depth % ENTER_EVERY == 0 && s->field->region_count < MAX_REGIONS - 1;
@@ -413,7 +423,7 @@ static bool look_at_cell(Section *s, Cell cell, int depth)
         return true;
     if (enter)
         field_focus(s->field, box);
-    bool done = look_at_parts(s, &cell, depth);
+    bool done = refine_parts(s, &cell, depth);
     if (enter)
         field_leave(s->field);
     return done;
@@ -424,7 +434,7 @@ bool find_leaves(Section *s)
     const uint32_t corners[4][2] = {
         {0, 0}, {WHOLE_SIDE, 0}, {0, WHOLE_SIDE}, {WHOLE_SIDE, WHOLE_SIDE}};
     make_corners(s, corners, 4);
-    return look_at_cell(s, (Cell){{0, 0}, WHOLE_SIDE}, 0);
+    return refine_cell(s, (Cell){{0, 0}, WHOLE_SIDE}, 0);
 }
 
 /* ---- groups ---- */
@@ -464,7 +474,8 @@ static double size_of(const Square *square)
     return square->high[0] - square->low[0] + square->high[1] - square->low[1];
 }
 
-/* Where items are split so that both halves are small: the items of each, times the size of their square, are fewest. */
+/* Returns where to split items so that both halves are small: with the least sum of items times the
+   size of their square. */
 static size_t find_split(const Section *s, size_t first, size_t count, BoxOfItem *box)
 {
     Square parts[PARTS_OF_GROUP], ahead = square_of_nothing(), behind = square_of_nothing();
@@ -487,7 +498,7 @@ static size_t find_split(const Section *s, size_t first, size_t count, BoxOfItem
     return best * part;
 }
 
-/* Tells whether the tape that was entered last is worth another look in smaller boxes. */
+/* Tells whether the present tape is so long that pruning it to smaller boxes pays. */
 static bool is_long(const MeshField *field)
 {
     const LaneTape *tape = field_tape(field);
