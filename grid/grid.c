@@ -1,4 +1,5 @@
-/* grid.c: krs_grid_new and krs_grid_visit: what is asked for, and what is given back. */
+/* grid.c: krs_grid_new checks what is asked for, and krs_grid_visit deals out runs of bricks to
+   threads. */
 #include "grid/grid.h"
 
 #include <setjmp.h>
@@ -13,14 +14,14 @@
 /* Cells around what is solid where there is no band. */
 enum { MARGIN = 3 };
 static const double MAX_BAND = 1e6;
-/* The error where none is given, in parts of a cell. */
+/* The default error, in cells. */
 static const double USUAL_ERROR = 0.1;
 /* How far solids may reach beyond the box that is found, as a part of its side (narrow_box). */
 static const double BEYOND = 0.0021;
 
 /* ---- what is sampled ---- */
 
-/* False: it has no end; without anything solid the box is of points. */
+/* Finds the box of what is sampled; returns false if it is unbounded. */
 static bool find_box(KrsGrid *grid, bool *empty)
 {
     const KrsGridOptions *options = &grid->options;
@@ -36,7 +37,8 @@ static bool find_box(KrsGrid *grid, bool *empty)
     return *empty || !endless;
 }
 
-/* What is in the box that was narrowed, and a little beyond, if the first one has that; false: nothing. */
+/* Narrows the box, but leaves a little room within the first one; returns false if nothing is
+   solid. */
 static bool narrow(KrsGrid *grid)
 {
     double low[3], high[3];
@@ -52,7 +54,7 @@ static bool narrow(KrsGrid *grid)
     return true;
 }
 
-/* False: there are too many samples. */
+/* Finds the samples of the box; returns false if they are too many. */
 static bool find_samples(KrsGrid *grid)
 {
     const KrsGridOptions *options = &grid->options;
@@ -73,7 +75,7 @@ static bool find_samples(KrsGrid *grid)
     return true;
 }
 
-/* The least of distances that are exact outside is so, too. */
+/* Tells whether distances are exact outside: the least of such distances is. */
 static bool is_exact_outside(const KrsGrid *grid, const KrsState *state)
 {
     bool exact = !grid->options.within && state->zone_count == 0 && !grid->solid.zoned;
@@ -93,7 +95,7 @@ static KrsStatus find_mesh(KrsGrid *grid, KrsState *state)
                                      .user         = options->user};
     memcpy(how.low, options->low, sizeof how.low);
     memcpy(how.high, options->high, sizeof how.high);
-    /* Half of it is how far the distance to the mesh may be from the true one, to either side. */
+    /* The distance to the mesh may be off by half of the error, to either side. */
     how.error        = 0.5 * (options->error > 0 ? options->error : USUAL_ERROR * options->cell);
     KrsStatus status = krs_mesh(state, &how, &grid->mesh);
     if (status != KRS_OK)
@@ -170,7 +172,8 @@ static KrsStatus choose_components(KrsGrid *grid, const KrsScene *scene)
     return KRS_OK;
 }
 
-/* Samples that are farther from the surface have one value: those whose cube it does not reach, or beyond the band. */
+/* Returns the distance beyond which samples have one value, since the surface does not meet their
+   cubes, or they are beyond the band. */
 static double find_near(const KrsGridOptions *options)
 {
     const double half_diagonal = 0.8661;
@@ -249,10 +252,10 @@ KrsGridShape krs_grid_shape(const KrsGrid *grid) { return grid->shape; }
 
 /* ---- samples ---- */
 
-/* Runs that are made at once: some for each part, of at least so many bricks. */
+/* The runs that are made at once: some for each part, with at least so many bricks. */
 enum { LONGEST_RUN = 64, RUNS_OF_PART = 4, ENOUGH_BRICKS = 1024, MAX_RUNS = 256 };
 
-/* Some runs, by all threads: each takes the next. */
+/* Runs that are made by all threads: each takes the next. */
 typedef struct Runs {
     KrsGrid *grid;
     size_t   first, count;
@@ -275,7 +278,7 @@ static size_t longest_run(const KrsGrid *grid)
     return grid->bricks[0] < LONGEST_RUN ? grid->bricks[0] : LONGEST_RUN;
 }
 
-/* Along x, then y, then z. */
+/* Returns a run by its number, in the order of x, y and z. */
 static BrickRun run_of(const KrsGrid *grid, size_t number)
 {
     const size_t each = runs_of_row(grid), x = number % each * LONGEST_RUN, row = number / each;
@@ -318,7 +321,7 @@ static void make_room(Runs *runs, size_t count)
     }
 }
 
-/* One value for all samples, and no colour. */
+/* Gives all samples of a brick one value, and no colour. */
 static void tell_far(const Runs *runs, const Brick *from, KrsGridBrick *brick)
 {
     for (size_t i = 0; i < BRICK_SAMPLES && runs->equal[i] != from->far; i++)

@@ -1,11 +1,11 @@
-/* row.c: bricks that follow each other along x. */
+/* row.c: fills the bricks of a row along x. */
 #include "grid/grid.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 
-/* A field is pruned for a run and a brick, and for every so many halvings between. */
+/* The field is pruned for a run and for a brick, and in between once for so many halvings. */
 enum { ENTER_EVERY = 3 };
 
 typedef struct Row {
@@ -13,11 +13,11 @@ typedef struct Row {
     MeshField      *field;
     const BrickRun *run;
     bool            count_only;
-    uint32_t        triangle; /* the nearest one of the last sample */
+    uint32_t        triangle; /* the nearest to the last sample */
     Brick          *bricks;
 } Row;
 
-/* Around the samples of some bricks of the run. */
+/* Returns the box around the samples of some bricks of the run. */
 static Box box_of(const Row *row, size_t first, size_t count)
 {
     const size_t *at      = row->run->first;
@@ -25,11 +25,13 @@ static Box box_of(const Row *row, size_t first, size_t count)
     const size_t  to[3]   = {from[0] + count * BRICK - 1, from[1] + BRICK - 1, from[2] + BRICK - 1};
     Box           box;
     for (int k = 0; k < 3; k++)
-        box.axis[k] = (Range){grid_place(row->grid, k, from[k]), grid_place(row->grid, k, to[k])};
+        box.axis[k] = (Range){grid_coordinate(row->grid, k, from[k]),
+                              grid_coordinate(row->grid, k, to[k])};
     return box;
 }
 
-/* Where the field is asked: around samples for what is solid of their cubes, and for normals. */
+/* Returns the box in which the field is evaluated: wider than samples for their cubes, and for
+   normals. */
 static Box asked_box(const Row *row, Box box)
 {
     const KrsGridOptions *options = &row->grid->options;
@@ -39,8 +41,8 @@ static Box asked_box(const Row *row, Box box)
     return box;
 }
 
-/* Tells whether all of the box is farther from the surface than what is near, by the distance at its middle, which
-   changes no faster than points move, or by its range. */
+/* Tells whether all of a box is farther from the surface than `near`, by the distance at its
+   middle, which changes no faster than points move, or by its range. */
 static bool is_far(const Row *row, Box box, double *distance)
 {
     double middle[3], half[3], near = row->grid->near;

@@ -1,4 +1,4 @@
-/* samples.c: the samples of a brick. */
+/* samples.c: computes the samples of a brick. */
 #include "grid/grid.h"
 
 #include <string.h>
@@ -6,15 +6,15 @@
 #include "compiler/base/vec.h"
 #include "compiler/scene/points.h"
 
-/* Sample `i` of a brick, x first. */
-static void sample_place(const KrsGrid *grid, const size_t at[3], size_t i, double point[3])
+/* Finds the point of sample `i` of a brick, x first. */
+static void sample_point(const KrsGrid *grid, const size_t at[3], size_t i, double point[3])
 {
-    point[0] = grid_place(grid, 0, at[0] + i % BRICK);
-    point[1] = grid_place(grid, 1, at[1] + i / BRICK % BRICK);
-    point[2] = grid_place(grid, 2, at[2] + i / (BRICK * BRICK));
+    point[0] = grid_coordinate(grid, 0, at[0] + i % BRICK);
+    point[1] = grid_coordinate(grid, 1, at[1] + i / BRICK % BRICK);
+    point[2] = grid_coordinate(grid, 2, at[2] + i / (BRICK * BRICK));
 }
 
-/* Rounding makes no distance longer. */
+/* Rounds a distance so that it becomes no longer. */
 static float rounded(double value)
 {
     float number = (float)value;
@@ -34,7 +34,8 @@ float far_value(const KrsGrid *grid, double distance)
     return rounded(distance < 0 ? -grid->shape.band : grid->shape.band);
 }
 
-/* The distance to the mesh, less its error, is no longer than the true one, and at most twice the error shorter. */
+/* Returns the distance to the mesh, less its error: it is no longer than the true one, and at most
+   twice the error shorter. */
 static double exact_distance(const KrsGrid *grid, const double point[3], double distance,
                              uint32_t *triangle)
 {
@@ -62,7 +63,7 @@ void fill_brick(const KrsGrid *grid, MeshField *field, const size_t at[3], uint3
     for (size_t first = 0; first < BRICK_SAMPLES; first += MAX_FIELD_POINTS) {
         double points[MAX_FIELD_POINTS][3], distances[MAX_FIELD_POINTS];
         for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
-            sample_place(grid, at, first + i, points[i]);
+            sample_point(grid, at, first + i, points[i]);
         field_distances(field, (const double(*)[3])points, MAX_FIELD_POINTS, distances);
         for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
             brick->values[first + i] = value_at(grid, field, points[i], distances[i], triangle);
@@ -71,7 +72,7 @@ void fill_brick(const KrsGrid *grid, MeshField *field, const size_t at[3], uint3
 
 /* ---- materials ---- */
 
-/* By differences, as queries find them. */
+/* Finds normals by differences, as queries do. */
 static void find_normals(const MeshField *field, const double (*points)[3], double (*normals)[3])
 {
     for (int i = 0; i < MAX_FIELD_POINTS; i++)
@@ -100,7 +101,7 @@ KrsStatus add_materials(const KrsGrid *grid, MeshField *field, const size_t at[3
         double   distances[MAX_FIELD_POINTS];
         uint32_t nearest[MAX_FIELD_POINTS];
         for (size_t i = 0; i < MAX_FIELD_POINTS; i++)
-            sample_place(grid, at, first + i, points[i]);
+            sample_point(grid, at, first + i, points[i]);
         find_normals(field, (const double(*)[3])points, normals);
         points_look(field->state, (const double(*)[3])points, (const double(*)[3])normals,
                     MAX_FIELD_POINTS, distances, nearest);

@@ -1,4 +1,4 @@
-/* cut.c: a box is six tetrahedra, and each is taken apart by the planes one after the other. */
+/* cut.c: divides a box into six tetrahedra, and cuts each by the planes one after the other. */
 #include "measure/cut.h"
 
 #include <math.h>
@@ -47,7 +47,7 @@ static void add_tetrahedron(Cutter *cutter, Parts *parts, const double a[3], con
     parts->count++;
 }
 
-/* The point between two corners where the value is 0. */
+/* Finds the point between two corners where the value is 0. */
 static void cross_edge(const double a[3], const double b[3], double at_a, double at_b,
                        double point[3])
 {
@@ -65,7 +65,7 @@ static void add_wedge(Cutter *cutter, Parts *parts, const double first[3][3],
     add_tetrahedron(cutter, parts, first[0], second[0], second[1], second[2]);
 }
 
-/* One corner is on the other side: a tetrahedron, and a wedge. */
+/* Cuts off one corner: a tetrahedron, which leaves a wedge. */
 static void cut_corner(Cutter *cutter, const double *const corners[4], const double values[4],
                        Parts *alone, Parts *others)
 {
@@ -78,7 +78,7 @@ static void cut_corner(Cutter *cutter, const double *const corners[4], const dou
     add_wedge(cutter, others, (const double(*)[3])cuts, (const double(*)[3])rest);
 }
 
-/* Two corners are on either side: two wedges. */
+/* Separates two corners from two others, by two wedges. */
 static void cut_edge(Cutter *cutter, const double *const corners[4], const double values[4],
                      Parts *inside, Parts *outside)
 {
@@ -98,31 +98,32 @@ static void cut_edge(Cutter *cutter, const double *const corners[4], const doubl
 static void cut_by_plane(Cutter *cutter, const HalfSpace *space, const Tetrahedron *t,
                          Parts *inside, Parts *outside)
 {
-    const double *corners[4], *turned[4];
+    const double *corners[4], *reversed[4];
     double        values[4], back[4];
     int           within = 0, beyond = 4;
     for (int i = 0; i < 4; i++) {
-        double value   = space->at + dot3(space->slope, t->corners[i]);
-        int    place   = value < 0 ? within++ : --beyond;
-        corners[place] = t->corners[i];
-        values[place]  = value;
+        double value  = space->at + dot3(space->slope, t->corners[i]);
+        int    slot   = value < 0 ? within++ : --beyond;
+        corners[slot] = t->corners[i];
+        values[slot]  = value;
     }
     for (int i = 0; i < 4; i++) {
-        turned[i] = corners[3 - i];
-        back[i]   = values[3 - i];
+        reversed[i] = corners[3 - i];
+        back[i]     = values[3 - i];
     }
     if (within == 1)
         cut_corner(cutter, corners, values, inside, outside);
     else if (within == 2)
         cut_edge(cutter, corners, values, inside, outside);
     else if (within == 3)
-        cut_corner(cutter, turned, back, outside, inside);
+        cut_corner(cutter, reversed, back, outside, inside);
     else
         add_tetrahedron(cutter, within ? inside : outside, t->corners[0], t->corners[1],
                         t->corners[2], t->corners[3]);
 }
 
-/* By the expression that ends with a step.  Of a union the second is asked outside of the first, else inside. */
+/* Cuts by the expression that ends with a step.  The second operand of a union cuts what is outside
+   of the first, that of an intersection what is inside. */
 static void cut(Cutter *cutter, int step, const Tetrahedron *t, Parts *inside, Parts *outside)
 {
     int what = cutter->spaces->steps[step];
@@ -150,7 +151,7 @@ static void find_beginnings(Cutter *cutter)
 
 bool cut_box(const double half[3], const HalfSpaces *spaces, double *volume, double moment[3])
 {
-    /* Kuhn's: from corner 0 to 7 along the axes in each of their orders. */
+    /* Kuhn's tetrahedra: from corner 0 to 7 along the axes, in each order of these. */
     static const int orders[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
     Cutter           cutter       = {.spaces = spaces};
     Parts            inside;

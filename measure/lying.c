@@ -1,5 +1,5 @@
 /*
- * lying.c: how a part lies on a plate, and how it lies best.
+ * lying.c: finds how a part lies on a plate, and how it lies best.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -9,9 +9,11 @@
 #include "measure/measure.h"
 
 enum { MAX_RESTS = 64 };
-/* Faces are level within a degree, and of one height within that part of the size. */
+/* Faces are level within a degree (this is its cosine), and of one height within this part of the
+   size. */
 static const double LEVEL = 0.99984769515639127, SAME_HEIGHT = 1e-5;
-/* Overhangs that differ by less of the area are alike, and a base of less holds nothing. */
+/* Parts of the area: overhangs that differ by less count as equal, and on a smaller base nothing
+   stands. */
 static const double SAME_AREA = 1e-3, MIN_BASE = 1e-4;
 
 /* ---- one orientation ---- */
@@ -50,8 +52,9 @@ static int compare_numbers(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Tells whether the center is inside of the convex hull of points that are seen from it at these angles. */
-static bool is_held(Lying *lying)
+/* Tells whether the center is inside of the convex hull of the base, whose points are at these
+   angles around it. */
+static bool is_stable(Lying *lying)
 {
     if (lying->count < 3 || lying->result->base < MIN_BASE * lying->m->measures->area)
         return false;
@@ -93,7 +96,7 @@ static KrsOrientation lie(const Measurer *m, const double up[3], double *angles)
         ends[1]       = i == 0 ? height : max2(ends[1], height);
     }
     result.height = ends[1] - ends[0];
-    result.stands = is_held(&lying);
+    result.stands = is_stable(&lying);
     return result;
 }
 
@@ -104,7 +107,7 @@ typedef struct Face {
     double area, normal[3];
 } Face;
 
-/* Rounded with an offset by which usual directions are not between two numbers. */
+/* Rounds with an offset, so that usual directions are not between two numbers. */
 static int round_off(double number) { return (int)floor(number + 0.381966); }
 
 static Face face_of(const Measurer *m, const Sample *sample)
@@ -164,7 +167,7 @@ static void add_orientation(Measurer *m, const double up[3], double *angles)
         m->measures->orientations[m->measures->orientation_count++] = lie(m, up, angles);
 }
 
-/* Number of SAME_AREA in an overhang, for an order that is one. */
+/* Returns the overhang in whole numbers of SAME_AREA, so that the order is transitive. */
 static double rank_of(const KrsOrientation *orientation, double area)
 {
     return floor(orientation->overhang / (SAME_AREA * area) + 0.5);
@@ -176,7 +179,7 @@ typedef struct Ranked {
     size_t         number;
 } Ranked;
 
-/* Those that stand, least overhang, lowest, and in the order in which they were found. */
+/* Orders those that stand first, then by overhang, then as they were found. */
 static int compare_orientations(const void *a, const void *b)
 {
     const Ranked *x = a, *y = b;

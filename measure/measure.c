@@ -1,4 +1,4 @@
-/* measure.c: krs_measure: what is asked for, and what is given back. */
+/* measure.c: krs_measure checks what is asked for, and runs the steps. */
 #include "measure/measure.h"
 
 #include <setjmp.h>
@@ -9,7 +9,7 @@
 #include "slice/extent.h"
 
 enum { MAX_ORIENTATIONS = 72 };
-/* Parts of the work that are done behind the mesh, the volume and the samples. */
+/* Parts of the work that are done after the mesh and after the volume. */
 static const double MESH_DONE = 0.4, VOLUME_DONE = 0.7;
 
 bool measurer_goes_on(Measurer *m, size_t part, double fraction)
@@ -41,7 +41,7 @@ static KrsStatus make_mesh(Measurer *m, KrsState *state)
     return krs_mesh(state, &how, &m->mesh);
 }
 
-/* The box around the mesh. */
+/* Finds the box around the mesh. */
 static void find_box(Measurer *m)
 {
     for (int k = 0; k < 3; k++) {
@@ -85,7 +85,7 @@ static KrsStatus open_fields(Measurer *m, KrsState *state)
     return status;
 }
 
-/* Where the solid ends is within the mesh's error of where the mesh does. */
+/* Finds the box of the solid, whose sides are within the mesh's error of those of the mesh. */
 static void measure_box(Measurer *m)
 {
     double low[3], high[3], error = m->mesh->error;
@@ -115,7 +115,8 @@ static void measure_all(Measurer *m)
     m->begun = VOLUME_DONE;
     m->goal  = 1;
     measure_samples(m);
-    if (measurer_goes_on(m, 0, 1)) /* who asks may have had no part of the samples */
+    if (measurer_goes_on(m, 0,
+                         1)) /* reported here, since the first thread may have had no samples */
         measure_lying(m);
 }
 

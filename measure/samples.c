@@ -1,5 +1,5 @@
 /*
- * samples.c: samples of the surface, their normals and walls.
+ * samples.c: samples the surface, and finds normals and walls.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -9,15 +9,15 @@
 #include "compiler/field/roots.h"
 #include "measure/measure.h"
 
-/* About as many samples as there are if the mesh has fewer triangles. */
+/* About the number of samples if the mesh has fewer triangles. */
 static const double MAX_SAMPLES = 20000;
-/* Parts of the size: of steps by which normals are found, and how far roots are known.  A part of the mesh's
-   error: the least step inwards, so gaps of less are none. */
+/* Parts of the size: the step of differences for normals, and the accuracy of roots.  A part of the
+   mesh's error: the least step inwards, so that narrower gaps are missed. */
 static const double NORMAL_STEP = 1e-6, ENOUGH = 1e-13, MIN_STEP = 1e-3;
-/* Cosine of 30 degrees: of both sides of a wall. */
+/* Cosine of 30 degrees, the most between both sides of a wall. */
 static const double OPPOSITE = 0.8660254037844386;
 
-/* ---- triangles that are halved ---- */
+/* ---- samples of triangles ---- */
 
 static int longest_edge(const double corners[3][3], double *length)
 {
@@ -99,7 +99,7 @@ static void add_samples(Measurer *m, const double corners[3][3], const double no
     halve_triangle(m, corners, normal, area, m->measures->spacing);
 }
 
-/* ---- onto the surface, and inwards ---- */
+/* ---- normals and walls ---- */
 
 typedef struct Searcher {
     const Measurer  *m;
@@ -118,13 +118,13 @@ static Searcher searcher_of(const Measurer *m, size_t part)
                       MIN_STEP * m->mesh->error};
 }
 
-/* The sample on the surface that a search along the normal found. */
+/* Moves a sample to where a search along the normal found the surface. */
 static void snap_at(const Searcher *s, Sample *sample, const RootSearch *search)
 {
     double normal[3];
     add_scaled3(sample->at, search->from, search->low, search->along);
     sample->snapped = true;
-    /* Over an edge the mean of both sides would be neither's. */
+    /* Over an edge the gradient would be the mean of both sides. */
     if (field_normal(s->field, sample->at, s->normal_step, normal) &&
         dot3(normal, sample->normal) > 0)
         memcpy(sample->normal, normal, sizeof normal);
@@ -157,7 +157,8 @@ static void snap_within(const Searcher *s, Sample *samples, size_t count, double
             snap_at(s, &samples[i], &searches[i]);
 }
 
-/* Gives samples the surface's position and normal where it is near.  First nearby: behind a thin wall it is outside, too. */
+/* Gives samples the surface's position and normal where it is near, first by short searches: behind
+   a thin wall it is outside, too. */
 static void snap(const Searcher *s, Sample *samples, size_t count)
 {
     for (double part = 1.0 / 256; part <= 1; part *= 4)
@@ -201,8 +202,7 @@ static void walk_inwards(const Searcher *s, const Sample *samples, size_t count,
             search->high += max2(-values[i], s->min_step);
         }
     }
-    for (size_t i = 0; i < count;
-         i++) /* which never happens where distances are not far too short */
+    for (size_t i = 0; i < count; i++) /* only if distances are far too short */
         searches[i].done = searches[i].done || walking[i];
 }
 
@@ -245,7 +245,8 @@ static void take_samples(void *task, size_t part, size_t parts)
 
 /* ---- the thinnest wall ---- */
 
-/* Looks around a sample for a thinner wall, by steps that become shorter.  Neighbours are looked at all at once. */
+/* Moves a sample to where the wall is thinner, by steps that become shorter; tests all neighbours
+   at once. */
 static void slide_to_thinnest(const Searcher *s, Sample *sample, double step)
 {
     enum { DIRECTIONS = 8, HALVINGS = 40, MAX_SLIDES = 200 };
@@ -284,16 +285,17 @@ static bool is_thinner(const void *a, const void *b)
     return ((const Sample *)a)->wall < ((const Sample *)b)->wall;
 }
 
-/* The thinnest of all samples that are no neighbours of `count` others; NULL: no further wall. */
-static const Sample *thinnest_apart(const Measurer *m, const Sample *others, size_t count,
-                                    double apart)
+/* Returns the thinnest sample that is at least `separation` from `count` others; NULL if no other
+   has a wall. */
+static const Sample *thinnest_beyond(const Measurer *m, const Sample *others, size_t count,
+                                     double separation)
 {
     const Sample *thinnest = NULL;
     for (size_t i = 0; i < m->samples.count; i++) {
         const Sample *sample = &m->samples.items[i];
         bool          near   = !isfinite(sample->wall);
         for (size_t k = 0; k < count && !near; k++)
-            near = distance3(sample->at, others[k].at) < apart;
+            near = distance3(sample->at, others[k].at) < separation;
         if (!near && (!thinnest || is_thinner(sample, thinnest)))
             thinnest = sample;
     }
@@ -308,7 +310,7 @@ static void find_thinnest(Measurer *m)
     Sample       starts[STARTS];
     size_t       count = 0;
     for (const Sample *next; count < STARTS; count++) {
-        next = thinnest_apart(m, starts, count, 4 * measures->spacing);
+        next = thinnest_beyond(m, starts, count, 4 * measures->spacing);
         if (!next)
             break;
         starts[count] = *next;
@@ -325,7 +327,7 @@ static void find_thinnest(Measurer *m)
 
 void measure_samples(Measurer *m)
 {
-    static const double EQUAL    = 1e-6; /* walls as thick as the nozzle are not thinner */
+    static const double EQUAL    = 1e-6; /* by which a wall must be thinner than the nozzle */
     KrsMeasures        *measures = m->measures;
     measures->wall.thickness     = INFINITY;
     visit_triangles(m, add_area);

@@ -1,10 +1,11 @@
 /*
- * volume.c: volume and center by cells.
+ * volume.c: finds volume and center by cells.
  *
- * In a cell let the derivatives be in the ranges g +- r, and f be the value in its middle c.  Then the value at p is
- * f + g . (p - c) up to R = sum r_k h_k, where h are the half sides.  So the solid in the cell contains the part where
- * f + g . (p - c) < -R, and is in the part where it is below R; both are boxes cut by planes.  So it is for each piece where
- * the distance is a minimum or a maximum of some, as at edges.  Cells are halved until the difference is small.
+ * In a cell let the derivatives be in the ranges g +- r, and f be the value in its middle c. Then
+ * the value at p is f + g . (p - c) up to R = sum r_k h_k, where h are the half sides.  So the
+ * solid in the cell contains the part where f + g . (p - c) < -R, and is in the part where it is
+ * below R; both are boxes cut by planes.  The same is true of each piece where the distance is a
+ * minimum or a maximum of some, as at edges.  Cells are halved until the difference is small.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -17,12 +18,12 @@
 enum {
     ROOT_SIDE = 8,
     ROOTS     = ROOT_SIDE * ROOT_SIDE * ROOT_SIDE,
-    MAX_CELLS = 200000, /* about as many are looked at in the last round */
+    MAX_CELLS = 200000, /* about as many are measured in the last round */
     DEEPEST   = 24,
     MAX_ROUND = 12
 };
 static const double WANTED   = 1e-4;  /* error of the volume, relative */
-static const double NEAR     = 1e-6;  /* of the sides of a cell: a box with its middle */
+static const double NEAR     = 1e-6;  /* of the sides of a cell: of a box around its middle */
 static const double ROUNDING = 1e-12; /* of the volume of the box */
 
 /* ---- cells ---- */
@@ -53,7 +54,7 @@ static void add_part(Round *round, Sum *sum, const double middle[3], const doubl
     sum->moment_error += error * (length3(offset) + length3(half));
 }
 
-/* The half-spaces of the pieces of a cell, and how far values may be from theirs. */
+/* The half-spaces of the pieces of a cell, and how far values may be from their linear ones. */
 typedef struct Model {
     HalfSpaces spaces;
     double     room[MAX_PIECES];
@@ -73,7 +74,8 @@ static void set_space(Model *model, size_t piece, double at, double sign, const 
     }
 }
 
-/* By Taylor: with the slope in the middle, values differ from those of the plane by half of p . H p only. */
+/* Narrows the room of a single piece by Taylor's theorem: with the slope in the middle, values
+   differ from the linear ones by half of p . H p only. */
 static void narrow_space(MeshField *field, const double middle[3], const double half[3],
                          const FieldPieces *pieces, Model *model)
 {
@@ -93,7 +95,8 @@ static void narrow_space(MeshField *field, const double middle[3], const double 
         *model = narrow;
 }
 
-/* By its pieces, or else by the distance itself; false: nothing is known. */
+/* Makes a model of a cell by its pieces, or else by the distance itself; returns false if nothing
+   is known. */
 static bool find_model(MeshField *field, const Box *box, const double middle[3],
                        const double half[3], double at, Model *model)
 {
@@ -125,7 +128,7 @@ static bool find_model(MeshField *field, const Box *box, const double middle[3],
     return isfinite(all);
 }
 
-/* The volume if all values are greater than those of the model by a part of their room. */
+/* Finds the volume if all values are greater than those of the model by a part of their room. */
 static bool cut_model(const double half[3], const Model *model, double part, double *volume,
                       double moment[3])
 {
@@ -141,8 +144,8 @@ typedef struct Solid {
     bool   by_pieces;
 } Solid;
 
-static Solid look_at(MeshField *field, const Box *box, const double middle[3], const double half[3],
-                     double at)
+static Solid measure_cell(MeshField *field, const Box *box, const double middle[3],
+                          const double half[3], double at)
 {
     Model  model;
     Solid  solid;
@@ -157,7 +160,7 @@ static Solid look_at(MeshField *field, const Box *box, const double middle[3], c
     return (Solid){.volume = 0.5 * all, .most = all};
 }
 
-/* Where no slopes say better: cut as the tangent plane in the middle would. */
+/* Takes the volume below the tangent plane in the middle, where no pieces are known. */
 static void take_tangent(const MeshField *field, const double middle[3], const double half[3],
                          double at, Solid *solid)
 {
@@ -214,7 +217,7 @@ static void halve_cell(Round *round, MeshField *field, Sum *sum, const Box *box,
         add_part(round, sum, middle, half, volume, 0, none);
         return;
     }
-    Solid solid = look_at(field, box, middle, half, at);
+    Solid solid = measure_cell(field, box, middle, half, at);
     if (error_of(&solid) > round->enough && depth < DEEPEST &&
         !atomic_load_explicit(&round->m->stopped, memory_order_relaxed)) {
         divide_cell(round, field, sum, box, middle, depth);
@@ -225,11 +228,11 @@ static void halve_cell(Round *round, MeshField *field, Sum *sum, const Box *box,
     add_part(round, sum, middle, half, solid.volume, error_of(&solid), solid.moment);
 }
 
-static Range root_side(const Measurer *m, int axis, int place)
+static Range root_side(const Measurer *m, int axis, int index)
 {
     double side = (m->high[axis] - m->low[axis]) / ROOT_SIDE;
-    return (Range){m->low[axis] + place * side,
-                   place == ROOT_SIDE - 1 ? m->high[axis] : m->low[axis] + (place + 1) * side};
+    return (Range){m->low[axis] + index * side,
+                   index == ROOT_SIDE - 1 ? m->high[axis] : m->low[axis] + (index + 1) * side};
 }
 
 static void take_roots(void *task, size_t part, size_t parts)
@@ -239,11 +242,11 @@ static void take_roots(void *task, size_t part, size_t parts)
     size_t    i;
     (void)parts;
     while (part < m->parts && (i = atomic_fetch_add(&m->next, 1)) < ROOTS) {
-        int place[3] = {(int)i % ROOT_SIDE, (int)i / ROOT_SIDE % ROOT_SIDE,
+        int index[3] = {(int)i % ROOT_SIDE, (int)i / ROOT_SIDE % ROOT_SIDE,
                         (int)i / ROOT_SIDE / ROOT_SIDE};
         Box box;
         for (int k = 0; k < 3; k++)
-            box.axis[k] = root_side(m, k, place[k]);
+            box.axis[k] = root_side(m, k, index[k]);
         field_focus(&m->fields[part], box);
         halve_cell(round, &m->fields[part], &round->sums[i], &box, 0);
         field_leave(&m->fields[part]);
@@ -251,7 +254,7 @@ static void take_roots(void *task, size_t part, size_t parts)
     }
 }
 
-/* In the order of the cells, so that sums do not depend on threads. */
+/* Adds up all roots in their order, so that sums do not depend on threads. */
 static Sum sum_round(const Round *round)
 {
     Sum sum = {.error = ROUNDING * round->volume};
@@ -282,8 +285,8 @@ static void note_volume(Measurer *m, const Round *round, const Sum *sum)
                                  : 0.5 * m->longest * sqrt(3);
 }
 
-/* Errors of cells are about their sides to the fourth, and their sum is about the square of the sides: so the sum is about
-   the root of the error of a cell, and the number of cells its inverse. */
+/* Errors of cells are about the fourth power of their sides, and their sum about the square: so the
+   sum is about the root of the error of a cell, and the number of cells its inverse. */
 void measure_volume(Measurer *m)
 {
     Round *round = arena_new(&m->arena, Round);
