@@ -181,6 +181,8 @@ static void print_text(const KrsScene *scene)
     print_vector(program->high, 3);
     printf("\noperations %zu\nflops per evaluation ", program->operations);
     printf("%.1f", program->flops);
+    if (krs_scene_too_large(scene))
+        printf("\ntoo large for shaders: %s", krs_scene_too_large(scene)->message);
     printf("\nhash %s\n", krs_scene_hash(scene));
 }
 
@@ -300,6 +302,7 @@ void info_add_json(Text *json, const KrsScene *scene)
                 program->table_count, program->table_instances, table_bytes(program));
     text_format(json, ", \"operations\": %zu, \"flops_per_evaluation\": ", program->operations);
     json_number(json, program->flops);
+    text_format(json, ", \"too_large\": %s", krs_scene_too_large(scene) ? "true" : "false");
     text_add(json, ", ");
     add_components(json, scene);
     text_add(json, ", ");

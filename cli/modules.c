@@ -71,7 +71,7 @@ static KrsStatus compile_shader(const Options *options, const KrsScene *scene, c
 
 KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules *modules)
 {
-    KrsStatus status = KRS_OK;
+    KrsStatus status = scene_check_shaders(options, scene);
     *modules         = (Modules){0};
     stage_enter(STAGE_SHADERS);
     spirv_start();

@@ -261,7 +261,7 @@ static KrsStatus open_device(Query *query, const KrsScene *scene)
     stage_enter(STAGE_SHADERS);
     status = krs_rendering_new(query->renderer, scene, KRS_FOR_QUESTIONS, &query->rendering);
     if (status != KRS_OK)
-        say("%s", krs_renderer_message(query->renderer));
+        say_renderer(query->options, scene, query->renderer, status);
     return status;
 }
 

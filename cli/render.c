@@ -257,7 +257,7 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
         free_others(render);
         progress_end(&render->progress);
         if (status != KRS_INTERRUPTED && !render->checkpoint.failed)
-            say("%s", krs_renderer_message(render->renderer));
+            say_renderer(options, render->scene, render->renderer, status);
         return status;
     }
     status = write_outputs(render, picture, time, frame);
@@ -283,23 +283,6 @@ static double pixels_of_window(const KrsRenderOptions *how)
     return crop->width > 0 ? (double)crop->width * crop->height : (double)how->width * how->height;
 }
 
-/* The scene has literals so far. */
-static KrsStatus specialize(Render *render)
-{
-    const Options *options = render->options;
-    KrsScene      *edited  = NULL;
-    if (options->specialize == KRS_SPECIALIZE_AUTO)
-        edited = specialize_edited(options, render->scene,
-                                   count_samples(render, pixels_of_window(&render->how)));
-    if (!edited)
-        return KRS_OK;
-    krs_state_free(render->state);
-    krs_scene_free(render->scene);
-    render->state = NULL;
-    render->scene = edited;
-    return scene_state(options, edited, &render->state);
-}
-
 /* With more samples, shaders that take longer to compile are better even if they are new.  What compilation takes
    less, frames take more after ten pictures of 640x360 of examples/05-rock.krs and 06-temple.krs, after one and a half
    of 08-reef.krs and 29-logo.krs, and at once of 07-grove.krs (bench/measurements.md). */
@@ -313,10 +296,30 @@ static KrsPurpose purpose_of(const Render *render)
     const double            whole = count_samples(render, (double)how->width * how->height);
     const bool              small = whole <= SAMPLES_OF_SMALL_PICTURES &&
                        render->options->command != COMMAND_WATCH;
-    return how->integrator != KRS_INTEGRATOR_PREVIEW     ? KRS_FOR_PATHS
-           : how->methods.executor == KRS_EXECUTOR_LANES ? KRS_FOR_LANES
-           : small                                       ? KRS_FOR_SMALL_PICTURES
-                                                         : KRS_FOR_PICTURES;
+    const KrsExecutor executor = how->methods.executor;
+    const bool        lanes    = executor == KRS_EXECUTOR_LANES ||
+                       (executor == KRS_EXECUTOR_DEFAULT && krs_scene_too_large(render->scene));
+    return how->integrator != KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PATHS
+           : lanes                                   ? KRS_FOR_LANES
+           : small                                   ? KRS_FOR_SMALL_PICTURES
+                                                     : KRS_FOR_PICTURES;
+}
+
+/* The scene has literals so far. */
+static KrsStatus specialize(Render *render)
+{
+    const Options *options = render->options;
+    KrsScene      *edited  = NULL;
+    if (options->specialize == KRS_SPECIALIZE_AUTO && purpose_of(render) != KRS_FOR_LANES)
+        edited = specialize_edited(options, render->scene,
+                                   count_samples(render, pixels_of_window(&render->how)));
+    if (!edited)
+        return KRS_OK;
+    krs_state_free(render->state);
+    krs_scene_free(render->scene);
+    render->state = NULL;
+    render->scene = edited;
+    return scene_state(options, edited, &render->state);
 }
 
 KrsStatus render_choose(Render *render)
@@ -330,11 +333,16 @@ KrsStatus render_compile(Render *render)
     const Options *options = render->options;
     stage_enter(STAGE_SHADERS);
     console_doing(options, "compiling the shaders");
-    KrsStatus status = krs_rendering_new(render->renderer, render->scene, purpose_of(render),
-                                         &render->rendering);
+    const KrsPurpose purpose = purpose_of(render);
+    KrsStatus        status  = krs_rendering_new(render->renderer, render->scene, purpose,
+                                                 &render->rendering);
     console_doing(options, NULL);
     if (status != KRS_OK)
-        say("%s", krs_renderer_message(render->renderer));
+        say_renderer(options, render->scene, render->renderer, status);
+    else if (purpose == KRS_FOR_LANES && render->how.methods.executor == KRS_EXECUTOR_DEFAULT &&
+             !options->quiet)
+        say("the scene is too large for shaders (%s): lanes of the host march its rays",
+            krs_scene_too_large(render->scene)->code);
     return status;
 }
 

@@ -418,9 +418,10 @@ static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
     status = scene_state(v->options, v->scene, &v->state);
     if (status == KRS_OK && v->options->seconds > 0)
         status = try_search(v);
-    if (status == KRS_OK)
+    const bool shaders = !krs_scene_too_large(v->scene);
+    if (status == KRS_OK && shaders)
         status = try_modules(v);
-    if (status == KRS_OK && renderer) {
+    if (status == KRS_OK && shaders && renderer) {
         stage_enter(STAGE_SHADERS);
         status = krs_rendering_new(renderer, v->scene, KRS_FOR_PICTURES, &rendering);
         if (status != KRS_OK)

@@ -58,7 +58,7 @@ static KrsStatus adopt(Watch *watch)
     if (render->rendering)
         status = krs_rendering_update(render->rendering, version_scene(version));
     if (status != KRS_OK) {
-        say("%s", krs_renderer_message(render->renderer));
+        say_renderer(render->options, version_scene(version), render->renderer, status);
         version_release(version);
         return status;
     }

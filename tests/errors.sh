@@ -2,12 +2,12 @@
 # errors.sh: every diagnostic code has a scene in tests/errors/ whose output is as blessed in the
 # .err file beside it, and a mark in the scene (//~ E0203) that no blessing can change: that code
 # is reported on that line.  `errors.sh --bless` writes the .err files.  A scene that begins with
-# "// krs check --root FOLDER" is checked with that option, one that begins with
-# "// krs validate" is refused by that only; what it finds depends on rounding, so numbers in its
-# notes are not compared.
+# "// krs check --root FOLDER" is checked with that option.  One that begins with "// krs compile" is
+# refused by that only, and passes the check; so is one that begins with "// krs validate", and since what
+# that finds depends on rounding, numbers in its notes are not compared.
 cd "$(dirname "$0")/.." || exit 1
 krs=${KRS:-build/krs}
-got=$(mktemp) && trap 'rm -f "$got"' EXIT
+got=$(mktemp) && folder=$(mktemp -d) && trap 'rm -rf "$got" "$folder"' EXIT
 failed=0
 
 report() { # name, passed
@@ -19,6 +19,10 @@ for scene in tests/errors/*.krs; do
         "$krs" validate --no-device --quiet --color never "$scene" >"$got" 2>&1
         status=$?
         sed -i '/^ *= note/s/[-+.0-9][-+.0-9e]*/#/g; /^error/s/ [-+.0-9e]* times/ # times/' "$got"
+    elif head -n 1 "$scene" | grep -q '^// krs compile'; then
+        "$krs" check --quiet "$scene" || echo "# $scene: is refused by krs check"
+        "$krs" compile --color never -o "$folder" "$scene" >"$got" 2>&1
+        status=$?
     else
         root=$(sed -n '1s,^// krs check --root \(.*\)$,\1,p' "$scene")
         "$krs" check --color never ${root:+--root "$root"} "$scene" >"$got" 2>&1

@@ -49,6 +49,12 @@ void scene_enter_compile(const char *path);
 /* "2 errors, 1 warning", unless there were none. */
 void scene_print_counts(const DiagnosticSink *sink);
 
+/* KRS_OK, or KRS_BAD_SCENE and words: the scene is too large for shaders, which somebody needs. */
+KrsStatus scene_check_shaders(const Options *options, const KrsScene *scene);
+/* Says why a call with that renderer failed. */
+void say_renderer(const Options *options, const KrsScene *scene, const KrsRenderer *renderer,
+                  KrsStatus status);
+
 /* A frame with --set, --zone and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
 KrsStatus scene_state(const Options *options, const KrsScene *scene, KrsState **state);
 /* The number of the camera that --camera names, or of the first; KRS_BAD_ARGUMENT and words: there is none. */

@@ -214,6 +214,25 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
     return status == KRS_OUT_OF_MEMORY ? say_too_large(options, path) : say_status(status, path);
 }
 
+KrsStatus scene_check_shaders(const Options *options, const KrsScene *scene)
+{
+    DiagnosticSink       sink = {.options = options};
+    const KrsDiagnostic *why  = krs_scene_too_large(scene);
+    if (!why)
+        return KRS_OK;
+    print_diagnostic(&sink, why);
+    scene_print_counts(&sink);
+    return KRS_BAD_SCENE;
+}
+
+void say_renderer(const Options *options, const KrsScene *scene, const KrsRenderer *renderer,
+                  KrsStatus status)
+{
+    if (status == KRS_BAD_SCENE)
+        scene_check_shaders(options, scene);
+    say("%s", krs_renderer_message(renderer));
+}
+
 const char *scene_name(Arena *arena, const char *path)
 {
     const char *slash  = strrchr(path, '/');

@@ -91,7 +91,7 @@ LowerContext context_divided(LowerContext context, double factor);
 double reach_behind(const Graph *graph, double reach, Node scale);
 
 /* Most nodes that one shape may add to the graph. */
-enum { MAX_LOWERED = 400000 };
+enum { MAX_LOWERED = 4000000 };
 
 /* Tells whether a step along a ray that is safe for the parts of a shape is safe for the shape. */
 bool    rays_pass(const Shape *shape);

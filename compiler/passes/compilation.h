@@ -66,7 +66,8 @@ struct Compilation {
     Sources           sources;
     Names             names;
     Diags             diags;
-    BoxNodes          box_nodes; /* where numbers are kept out of the shaders */
+    Diags             of_shaders; /* why no shader is made of the scene, if that is so */
+    BoxNodes          box_nodes;  /* where numbers are kept out of the shaders */
     MirrorNodes      *mirror_nodes;
     Files             files;
     Scene             elaborated; /* its graph is extended by the pass `lower` */
@@ -99,9 +100,8 @@ uint32_t min_instances(const Compilation *c);
 bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, bool pictures,
                      Arena *scratch);
 
-/* limits.c: reports that the scene is too large.  `component` is the largest, with that number of
-   operations; 0: there were too many to be counted. */
-void refuse_component(Compilation *c, size_t component, size_t operations);
+/* limits.c: refuses the scene, of which a component needs too much to be lowered. */
+void refuse_component(Compilation *c, size_t component);
 
 /* find_assembly.c: finds the assembly of the scene, if the options ask for it, and returns its roots. */
 RootRange find_assembly(Compilation *c, struct LoweredGroups *instances);

@@ -105,9 +105,7 @@ static KrsStatus format(Compilation *c)
 
 /* ---- the API ---- */
 
-/* Passes a diagnostic to the caller. */
-static void report_one(const Diags *diags, const Diag *diag, const KrsOptions *options,
-                       Arena *arena)
+static KrsDiagnostic make_public(const Diags *diags, const Diag *diag, Arena *arena)
 {
     const Source *source   = &diags->sources->items[diag->span.source];
     Position      position = source_position(source, diag->span.start);
@@ -115,24 +113,38 @@ static void report_one(const Diags *diags, const Diag *diag, const KrsOptions *o
     diag_print_one(diags, diag, false, &text);
     diag_json_one(diags, diag, &json);
     DiagSeverity severity = diag_info[diag->code].severity;
-    KrsDiagnostic public  = {.error   = severity == DIAG_ERROR,
-                             .note    = severity == DIAG_NOTE,
-                             .code    = diag_info[diag->code].code,
-                             .message = diag->message,
-                             .source  = source->name,
-                             .line    = position.line,
-                             .column  = position.column,
-                             .text    = text.bytes,
-                             .json    = json.bytes};
-    options->diagnostic(options->user, &public);
+    return (KrsDiagnostic){.error   = severity == DIAG_ERROR,
+                           .note    = severity == DIAG_NOTE,
+                           .code    = diag_info[diag->code].code,
+                           .message = diag->message,
+                           .source  = source->name,
+                           .line    = position.line,
+                           .column  = position.column,
+                           .text    = text.bytes,
+                           .json    = json.bytes};
 }
 
 static void report(Compilation *c)
 {
     const KrsOptions *options = c->options;
     diags_sort(&c->diags);
-    for (size_t i = 0; options->diagnostic && i < c->diags.count; i++)
-        report_one(&c->diags, c->diags.items[i], options, &c->scratch);
+    for (size_t i = 0; options->diagnostic && i < c->diags.count; i++) {
+        const KrsDiagnostic public = make_public(&c->diags, c->diags.items[i], &c->scratch);
+        options->diagnostic(options->user, &public);
+    }
+}
+
+/* Keeps for the scene why no shader is made of it. */
+static void retain_too_large(Compilation *c)
+{
+    Arena *arena = &c->scene->arena;
+    if (c->of_shaders.count == 0)
+        return;
+    KrsDiagnostic *kept = arena_new(arena, KrsDiagnostic);
+    *kept               = make_public(&c->of_shaders, c->of_shaders.items[0], arena);
+    kept->message       = arena_copy_text(arena, kept->message, strlen(kept->message));
+    kept->source        = arena_copy_text(arena, kept->source, strlen(kept->source));
+    c->scene->too_large = kept;
 }
 
 /* Runs the passes, and reports their diagnostics.  Where memory runs out, longjmp returns here. */
@@ -148,6 +160,8 @@ static KrsStatus run_guarded(Compilation *c)
     if (status == KRS_OK && c->request->format)
         status = format(c);
     report(c);
+    if (status == KRS_OK)
+        retain_too_large(c);
     return status;
 }
 
@@ -180,15 +194,16 @@ static void begin(Compilation *c)
     c->work = c->syntax = c->values = c->scratch = (Arena){.memory = &c->scene->memory};
     c->sources                                   = (Sources){.arena = &c->work};
     c->names                                     = (Names){.arena = &c->work};
-    c->diags = (Diags){.arena = &c->work, .sources = &c->sources};
-    c->dump  = (Text){.arena = &c->work};
-    c->files = (Files){.arena   = &c->work,
-                       .trees   = &c->syntax,
-                       .scratch = &c->scratch,
-                       .diags   = &c->diags,
-                       .names   = &c->names,
-                       .sources = &c->sources,
-                       .loader  = c->loader};
+    c->diags      = (Diags){.arena = &c->work, .sources = &c->sources};
+    c->of_shaders = c->diags;
+    c->dump       = (Text){.arena = &c->work};
+    c->files      = (Files){.arena   = &c->work,
+                            .trees   = &c->syntax,
+                            .scratch = &c->scratch,
+                            .diags   = &c->diags,
+                            .names   = &c->names,
+                            .sources = &c->sources,
+                            .loader  = c->loader};
 }
 
 static void end(Compilation *c)

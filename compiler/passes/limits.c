@@ -1,9 +1,9 @@
 /*
- * limits.c: refuses scenes that are too large, or that have numbers which are not finite in single
- * precision.
+ * limits.c: refuses scenes that have numbers which are not finite in single precision, and shaders of scenes that
+ * are too large for these.
  *
- * Size is limited because drivers compile large shaders slowly: a million bytes take about ten
- * seconds, two million three times as long.
+ * The size of shaders is limited because drivers compile large ones slowly: a million bytes take about ten
+ * seconds, two million three times as long.  Who needs none, such as meshes and lanes of the host, goes on.
  */
 #include <float.h>
 #include <math.h>
@@ -12,11 +12,13 @@
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/bounds/facts.h"
+#include "compiler/lower/context.h"
 
 enum { MAX_OPERATIONS = 20000, MAX_GLSL_BYTES = 1500000 };
 
-static const char fewer_shapes[] = "fewer shapes, reflections or copies; parts of a union that "
-                                   "differ in constants alone count once";
+static const char fewer_shapes[] =
+    "fewer shapes, reflections or copies; parts of a union that differ in constants alone count "
+    "once.  Meshes, sections, grids and answers, and previews by `--rays lanes`, need no shader";
 
 /* ---- operations ---- */
 
@@ -62,7 +64,7 @@ static void blame_heaviest(Compilation *c, Diag *diag, const Component *componen
         return;
     const Shape *shape = heaviest.shape;
     diag_secondary(
-        &c->diags, diag, shape->span,
+        &c->of_shaders, diag, shape->span,
         diag_text(&c->diags, "this `%s` has %zu of them", shape->name, heaviest.operations));
     diag->help =
         strcmp(shape->name, "polygon") == 0
@@ -72,23 +74,31 @@ static void blame_heaviest(Compilation *c, Diag *diag, const Component *componen
               "skipped";
 }
 
-void refuse_component(Compilation *c, size_t component, size_t operations)
+void refuse_component(Compilation *c, size_t component)
 {
     const Component *shown = &c->elaborated.components.items[component];
     Diag            *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, shown->span,
-                                      "the scene needs more than %d operations", MAX_OPERATIONS);
-    diag->label = operations ? diag_text(&c->diags, "`%s` is the largest component, with %zu",
-                                         shown->name, operations)
-                             : diag_text(&c->diags, "`%s` alone needs more", shown->name);
-    diag->help  = fewer_shapes;
-    if (operations > 0) /* else lowering has ended early, and `scratch` is in use */
-        blame_heaviest(c, diag, shown);
+                                      "the scene needs more than %d operations", MAX_LOWERED);
+    diag->label            = diag_text(&c->diags, "`%s` alone needs more", shown->name);
+    diag->help = "fewer shapes, reflections or copies; parts of a union that differ in constants "
+                 "alone count once";
 }
 
-static void refuse_zones(Compilation *c, size_t operations)
+static void refuse_shaders_of_component(Compilation *c, size_t component, size_t operations)
+{
+    const Component *shown = &c->elaborated.components.items[component];
+    Diag            *diag  = diag_add(&c->of_shaders, DIAG_TOO_LARGE, shown->span,
+                                      "the scene needs more than %d operations", MAX_OPERATIONS);
+    diag->label = diag_text(&c->diags, "`%s` is the largest component, with %zu", shown->name,
+                            operations);
+    diag->help  = fewer_shapes;
+    blame_heaviest(c, diag, shown);
+}
+
+static void refuse_shaders_of_zones(Compilation *c, size_t operations)
 {
     Span  span  = c->scene->graph->items[zone_root(c->scene)].span;
-    Diag *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, span,
+    Diag *diag  = diag_add(&c->of_shaders, DIAG_TOO_LARGE, span,
                            "the scene needs more than %d operations", MAX_OPERATIONS);
     diag->label = diag_text(&c->diags, "its %zu zones need %zu", c->elaborated.zone_count,
                             operations);
@@ -117,22 +127,21 @@ static size_t total_operations(const Compilation *c)
     return total;
 }
 
-static bool check_operations(Compilation *c)
+static void check_operations(Compilation *c)
 {
     size_t count = c->elaborated.components.count, largest = 0, most = 0;
     count_all_operations(c);
     if (total_operations(c) <= MAX_OPERATIONS)
-        return true;
+        return;
     for (size_t i = 0; i < count; i++)
         if (c->operations[i] > most) {
             most    = c->operations[i];
             largest = i;
         }
     if (c->operations[count] > most)
-        refuse_zones(c, c->operations[count]);
+        refuse_shaders_of_zones(c, c->operations[count]);
     else
-        refuse_component(c, largest, most);
-    return false;
+        refuse_shaders_of_component(c, largest, most);
 }
 
 /* ---- numbers ---- */
@@ -281,7 +290,8 @@ static bool check_domains(Compilation *c)
 
 KrsStatus pass_limits(Compilation *c)
 {
-    bool good = check_operations(c) && check_numbers(c) && check_tables(c) && check_domains(c);
+    check_operations(c);
+    const bool good = check_numbers(c) && check_tables(c) && check_domains(c);
     return good ? KRS_OK : KRS_BAD_SCENE;
 }
 
@@ -341,11 +351,11 @@ static KrsStatus check_defaults(Compilation *c)
 
 /* ---- text ---- */
 
-static void refuse_length(Compilation *c, size_t largest, size_t operations)
+static void refuse_length_of_shaders(Compilation *c, size_t largest, size_t operations)
 {
     size_t           count = c->elaborated.components.count;
     const Component *shown = count ? &c->elaborated.components.items[largest] : NULL;
-    Diag *diag = diag_add(&c->diags, DIAG_TOO_LARGE, shown ? shown->span : (Span){1, 0, 0},
+    Diag *diag = diag_add(&c->of_shaders, DIAG_TOO_LARGE, shown ? shown->span : (Span){1, 0, 0},
                           "the scene needs %.1f MB of shader; the limit is %.1f MB",
                           (double)c->scene->program.glsl_length * 1e-6, MAX_GLSL_BYTES * 1e-6);
     if (count > 1)
@@ -359,11 +369,11 @@ static void refuse_length(Compilation *c, size_t largest, size_t operations)
 
 /* Limits the text in addition to the operations: many small components have few operations but much
    text. */
-static bool check_length(Compilation *c)
+static void check_length(Compilation *c)
 {
     size_t largest = 0, most = 0;
     if (c->scene->program.glsl_length <= MAX_GLSL_BYTES)
-        return true;
+        return;
     arena_free(&c->scratch);
     for (size_t i = 0; i < c->elaborated.components.count; i++) {
         const Node *roots      = surface_roots(&c->scene->roots, i);
@@ -371,11 +381,14 @@ static bool check_length(Compilation *c)
         largest                = operations > most ? i : largest;
         most                   = operations > most ? operations : most;
     }
-    refuse_length(c, largest, most);
-    return false;
+    refuse_length_of_shaders(c, largest, most);
 }
 
-KrsStatus pass_check(Compilation *c) { return check_length(c) ? check_defaults(c) : KRS_BAD_SCENE; }
+KrsStatus pass_check(Compilation *c)
+{
+    check_length(c);
+    return check_defaults(c);
+}
 
 void print_check(Compilation *c, Text *out)
 {

@@ -81,7 +81,8 @@ KrsStatus pass_emit(Compilation *c)
     module_lay_out(&scene->module, KRS_MAX_ZONES, arena, &c->scratch);
     program->value_slots           = scene->module.slots.plain.slots;
     program->camera_relative_slots = scene->module.slots.camera_relative.slots;
-    program->glsl_length           = print_entry_points(c, false).length;
+    if (c->of_shaders.count == 0)
+        program->glsl_length = print_entry_points(c, false).length;
     return KRS_OK;
 }
 

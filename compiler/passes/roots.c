@@ -57,7 +57,7 @@ static bool lower_components(Compilation *c, Graph *g, LoweredGroups *groups)
         if (!lower_component(g, s->components.items[i].shape,
                              (uint32_t)s->components.items[i].first + 1, groups, &c->scratch,
                              surface_roots(&c->scene->roots, i), place)) {
-            refuse_component(c, i, 0);
+            refuse_component(c, i);
             return false;
         }
         if (place && *place == NODE_NONE)

@@ -10,6 +10,8 @@
 
 const KrsProgram *krs_scene_program(const KrsScene *scene) { return &scene->program; }
 
+const KrsDiagnostic *krs_scene_too_large(const KrsScene *scene) { return scene->too_large; }
+
 bool krs_scene_is_panoramic(const KrsScene *scene)
 {
     bool panoramic = false;

@@ -138,6 +138,7 @@ struct KrsScene {
     const char      *name;    /* as it was compiled, */
     KrsOptions       options; /* and how: for krs_scene_update */
     KrsProgram       program;
+    KrsDiagnostic   *too_large; /* why no shader is made of it; NULL: shaders are */
     const Graph     *graph;
     Module           module; /* what text is printed from */
     Roots            roots;

@@ -147,6 +147,8 @@ KrsStatus krs_text(const KrsScene *scene, KrsTarget target, const KrsTextOptions
     *text              = NULL;
     if ((unsigned)target >= KRS_TARGET_COUNT)
         return KRS_BAD_ARGUMENT;
+    if (scene->too_large)
+        return KRS_BAD_SCENE;
     *text = print(&(Printing){scene, printers[target], &variant, wanted, count, {0}, {0}},
                   &scene->options.allocator);
     return *text ? KRS_OK : KRS_OUT_OF_MEMORY;

@@ -200,6 +200,11 @@ KRS_SIZED KrsStatus krs_compile_file(const char *path, const KrsOptions *options
    is ignored, as in all functions that free. */
 void krs_scene_free(KrsScene *scene);
 
+/* E0401: why no shader is made of the scene, for which drivers would take minutes; NULL: shaders are made.  It lives as
+   long as the scene.  krs_text is refused, and so are renderings, but for previews by lanes of the host
+   (KRS_EXECUTOR_LANES), which all previews are then.  Answers, meshes, sections and grids need no shader. */
+const KrsDiagnostic *krs_scene_too_large(const KrsScene *scene);
+
 /*
  * Lays out the text of a scene in the canonical way, which docs/language.md describes: blanks change, but
  * no word, comment or break between lines.  It is a text in memory, or a file, as of krs_compile_text.  Of the options,
@@ -330,7 +335,7 @@ typedef struct KrsTextOptions {
  * that they need (docs/library.md).  It is the same for all states.  `options` may be NULL.
  *
  * On KRS_OK the caller releases *text by the allocator of the scene's options, or by free() where there is none.  On any
- * other status it is NULL: KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY.
+ * other status it is NULL: KRS_BAD_SCENE (krs_scene_too_large), KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY.
  */
 KRS_SIZED KrsStatus krs_text(const KrsScene *scene, KrsTarget target, const KrsTextOptions *options,
                              char **text);

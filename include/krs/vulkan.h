@@ -115,7 +115,8 @@ typedef enum KrsPurpose {
 } KrsPurpose;
 
 /* Compiles the scene's shaders, for a purpose.  The scene must outlive the rendering.  On any status
-   but KRS_OK *rendering is NULL: KRS_OUT_OF_MEMORY, KRS_INTERRUPTED, KRS_INTERNAL.
+   but KRS_OK *rendering is NULL: KRS_BAD_SCENE (krs_scene_too_large), KRS_OUT_OF_MEMORY, KRS_INTERRUPTED,
+   KRS_INTERNAL.
 
    To go on rendering meanwhile, compile by a second renderer, in a thread of its own: whichever
    rendering is ready is shown, and the other renderer is free for the next edit. */

@@ -84,7 +84,7 @@ static void put_noise(const KrsImage *image, KrsRenderOptions *o)
         o->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-image->exposure);
 }
 
-static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
+static void put_defaults(const KrsImage *image, bool too_large, KrsRenderOptions *o)
 {
     o->width  = first_nonzero(o->width, image->width, KRS_DEFAULT_WIDTH);
     o->height = first_nonzero(o->height, image->height, KRS_DEFAULT_HEIGHT);
@@ -105,6 +105,9 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     if (o->integrator == KRS_INTEGRATOR_DEFAULT)
         o->integrator = (KrsIntegrator)find_name(krs_integrator_names, image->integrator,
                                                  KRS_INTEGRATOR_PREVIEW);
+    if (o->methods.executor == KRS_EXECUTOR_DEFAULT && too_large &&
+        o->integrator == KRS_INTEGRATOR_PREVIEW)
+        o->methods.executor = KRS_EXECUTOR_LANES;
     if (o->catcher == KRS_CATCHER_DEFAULT)
         o->catcher = o->depth && o->plate ? KRS_CATCHER_SHADOWS : KRS_CATCHER_NONE;
     if (o->catcher_reflectance == 0)
@@ -153,6 +156,6 @@ bool settings_complete(KrsRendering *rendering, KrsRenderOptions *options, KrsSc
     const KrsImage image = krs_scene_image(rendering->scene);
     if (!choose(rendering, options, asked))
         return false;
-    put_defaults(&image, options);
+    put_defaults(&image, krs_scene_too_large(rendering->scene) != NULL, options);
     return check(rendering, options);
 }

@@ -202,14 +202,26 @@ bool primary_find_plate(Job *job, const Shader **shader)
     return *shader != NULL;
 }
 
+/* No shader marches the rays of a scene that is too large. */
+static void refuse_lanes(Job *job, const char *reason)
+{
+    const KrsDiagnostic *why = krs_scene_too_large(job->rendering->scene);
+    if (why)
+        gpu_refuse(job->gpu, KRS_BAD_SCENE,
+                   "%s, so no shader is made of it (%s), and lanes cannot march these rays: %s",
+                   why->message, why->code, reason);
+    else
+        gpu_refuse(job->gpu, KRS_BAD_ARGUMENT, "lanes cannot march these rays: %s", reason);
+}
+
 /* Adds the pass in which lanes of the host march all components. */
 static bool add_lanes(Job *job, Plan *plan, float weight)
 {
     const char *reason = lane_rays_refuse(job);
-    if (reason)
-        gpu_refuse(job->gpu, KRS_BAD_ARGUMENT, "lanes cannot march these rays: %s", reason);
-    if (reason)
+    if (reason) {
+        refuse_lanes(job, reason);
         return false;
+    }
     plan->field  = lane_fields_rays(job->rendering, job->state, lane_rays_know_planes(job));
     plan->failed = plan->failed || !plan->field;
     plan_add(plan, (Pass){.kind = PASS_LANES, .phase = KRS_PHASE_PRIMARY, .weight = weight});

@@ -32,13 +32,24 @@ static bool is_of(const ShaderEntry *entry, const char *file, const ShaderVarian
            strcmp(entry->variant.defines, variant->defines) == 0;
 }
 
+/* False, and the failure is noted: drivers would take minutes for a shader that contains this scene. */
+static bool may_contain(const KrsRendering *rendering, const ShaderVariant *variant)
+{
+    const KrsDiagnostic *why = krs_scene_too_large(rendering->scene);
+    if (!why || !variant->scene.scene)
+        return true;
+    gpu_refuse(&rendering->renderer->gpu, KRS_BAD_SCENE, "%s, so no shader is made of it (%s)",
+               why->message, why->code);
+    return false;
+}
+
 /* Finds the entry of a shader, or adds one; NULL with the failure noted. */
 static ShaderEntry *find_entry(KrsRendering *rendering, const char *file, ShaderVariant variant)
 {
     ShaderEntry *entry = rendering->shaders.first;
     while (entry && !is_of(entry, file, &variant))
         entry = entry->next;
-    if (entry)
+    if (entry || !may_contain(rendering, &variant))
         return entry;
     entry = gpu_alloc(&rendering->renderer->gpu, 1, sizeof *entry, "prepare the scene");
     if (entry) {
@@ -300,7 +311,8 @@ bool shaders_create(KrsRendering *rendering, KrsPurpose purpose)
     Requests    requests = {.rendering = rendering};
     rendering_choose(rendering, &trace, &schedule);
     request_sceneless(&requests, purpose);
-    if (purpose == KRS_FOR_LANES) {
+    if (purpose == KRS_FOR_LANES ||
+        (is_for_pictures(purpose) && krs_scene_too_large(rendering->scene))) {
         const bool found = surface_field_suits(rendering->scene);
         request(&requests, "shade.comp",
                 found ? variant_of_shade_found(rendering) : variant_of_shade(rendering));

@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "tests/support/random.h"
 #include "tests/support/renderer.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
@@ -94,12 +95,12 @@ static Verdict judge(const KrsPicture *a, const KrsPicture *b)
     return verdict;
 }
 
-static Verdict compare(const char *text, const char *other_text)
+static Verdict compare_with(KrsExecutor executor, const char *text, const char *other_text)
 {
     KrsRenderOptions options = {
         .width = WIDTH, .height = HEIGHT, .methods.executor = KRS_EXECUTOR_KERNELS};
     KrsPicture *kernels      = picture_of(text, &options);
-    options.methods.executor = KRS_EXECUTOR_LANES;
+    options.methods.executor = executor;
     KrsPicture   *lanes      = picture_of(other_text, &options);
     const Verdict verdict    = judge(kernels, lanes);
     const double  steps      = (double)kernels->stats.unresolved - (double)lanes->stats.unresolved;
@@ -107,6 +108,11 @@ static Verdict compare(const char *text, const char *other_text)
     krs_picture_free(kernels);
     krs_picture_free(lanes);
     return verdict;
+}
+
+static Verdict compare(const char *text, const char *other_text)
+{
+    return compare_with(KRS_EXECUTOR_LANES, text, other_text);
 }
 
 static void pictures_are_the_same(void **context)
@@ -134,11 +140,12 @@ static void a_moved_scene_is_seen(void **context)
     assert_true(v.other_depths > v.hits / 4);
 }
 
-/* What a text is refused with, by lanes. */
-static void refused(const char *text, KrsIntegrator integrator, const char *words)
+/* What a text is refused with. */
+static void refused_by(KrsExecutor executor, const char *text, KrsIntegrator integrator,
+                       KrsStatus status, const char *words)
 {
     const KrsRenderOptions options = {
-        .width = 8, .height = 8, .integrator = integrator, .methods.executor = KRS_EXECUTOR_LANES};
+        .width = 8, .height = 8, .integrator = integrator, .methods.executor = executor};
     KrsScene     *scene;
     KrsState     *state;
     KrsRendering *rendering;
@@ -146,11 +153,16 @@ static void refused(const char *text, KrsIntegrator integrator, const char *word
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_state_new(scene, &state), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, state, &options, &picture), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_render(rendering, state, &options, &picture), status);
     assert_non_null(strstr(krs_renderer_message(renderer), words));
     krs_rendering_free(rendering);
     krs_state_free(state);
     krs_scene_free(scene);
+}
+
+static void refused(const char *text, KrsIntegrator integrator, const char *words)
+{
+    refused_by(KRS_EXECUTOR_LANES, text, integrator, KRS_BAD_ARGUMENT, words);
 }
 
 static void what_lanes_do_not_know_is_refused(void **context)
@@ -162,6 +174,64 @@ static void what_lanes_do_not_know_is_refused(void **context)
     refused("show algebraic(x^4 + y^4 + z^4 == 1);", KRS_INTEGRATOR_PREVIEW, "method");
     refused("def pebble(cell) = sphere(0.15 + 0.2 * random(cell)); show pebble.repeat([1, 0, 1]);",
             KRS_INTEGRATOR_PREVIEW, "single precision");
+}
+
+enum { SEEN = 12, UNSEEN = 3000, BYTES_OF_PART = 600 };
+
+/* A solid around a point of which others are taken: no two have the same kinds of them. */
+static size_t write_part(char *to, Random *random, const double at[3])
+{
+    static const char *const kinds[] = {"sphere(%.4f)", "box([%.4f, 0.2, 0.15])",
+                                        "torus(%.4f, 0.05)", "cylinder(%.4f, 0.3)"};
+    const int                count   = 3 + random_below(random, 5);
+    size_t                   length  = 0;
+    for (int i = 0; i < count; i++) {
+        double off[3];
+        random_vector(random, i == 0 ? 0 : 0.25, off);
+        length += (size_t)sprintf(to + length, i == 0 ? "" : " - ");
+        length += (size_t)sprintf(to + length, kinds[random_below(random, 4)],
+                                  random_between(random, 0.15, 0.3));
+        length += (size_t)sprintf(to + length, ".move([%.4f, %.4f, %.4f])", at[0] + off[0],
+                                  at[1] + off[1], at[2] + off[2]);
+    }
+    return length + (size_t)sprintf(to + length, ", ");
+}
+
+/* The first parts are before the camera, and so many more behind it. */
+static char *different_parts(int unseen)
+{
+    Random random = {7};
+    char  *text   = malloc((size_t)(SEEN + unseen + 1) * BYTES_OF_PART);
+    size_t length = 0;
+    assert_non_null(text);
+    length += (size_t)sprintf(text, "camera { eye: [0, 0, 5], fov: 40deg } show union([");
+    for (int i = 0; i < SEEN + unseen; i++) {
+        double at[3];
+        random_vector(&random, i < SEEN ? 1 : 8, at);
+        at[2] += i < SEEN ? 0 : 20;
+        length += write_part(text + length, &random, at);
+    }
+    sprintf(text + length, "]);");
+    return text;
+}
+
+/* No shader is made of thousands of parts that differ; lanes march by themselves then. */
+static void what_is_too_large_for_shaders_is_drawn(void **context)
+{
+    (void)context;
+    char         *few = different_parts(0), *many = different_parts(UNSEEN);
+    const Verdict v = compare_with(KRS_EXECUTOR_DEFAULT, few, many);
+    print_message("%zu hits; others: %zu hits, %zu depths, %zu normals\n", v.hits, v.other_hits,
+                  v.other_depths, v.other_normals);
+    assert_true(v.hits > PIXELS / 40);
+    assert_true(v.other_hits <= PIXELS / 1000);
+    assert_true(v.other_depths <= PIXELS / 2000);
+    assert_true(v.other_normals <= v.hits / 100);
+    refused_by(KRS_EXECUTOR_KERNELS, many, KRS_INTEGRATOR_PREVIEW, KRS_BAD_SCENE, "E0401");
+    refused_by(KRS_EXECUTOR_DEFAULT, many, KRS_INTEGRATOR_PATH, KRS_BAD_SCENE, "E0401");
+    refused_by(KRS_EXECUTOR_LANES, many, KRS_INTEGRATOR_PATH, KRS_BAD_SCENE, "`preview`");
+    free(few);
+    free(many);
 }
 
 /* Rays do not depend on which others there are. */
@@ -259,6 +329,7 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures_are_the_same),
                                        cmocka_unit_test(a_moved_scene_is_seen),
                                        cmocka_unit_test(what_lanes_do_not_know_is_refused),
+                                       cmocka_unit_test(what_is_too_large_for_shaders_is_drawn),
                                        cmocka_unit_test(crops_are_parts_of_the_whole),
                                        cmocka_unit_test(what_is_kept_changes_nothing)};
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);

@@ -18,8 +18,9 @@ static bool op_never_jumps(Op op)
 
 double *lane_steepest(const Graph *graph, Arena *arena)
 {
-    double     *steepest = arena_new_array(arena, double, graph->count + 1);
-    const Fact *facts    = graph_facts(graph, (Box){{ANYTHING, ANYTHING, ANYTHING}}, NULL, arena);
+    double         *steepest = arena_new_array(arena, double, graph->count + 1);
+    const ArenaMark mark     = arena_mark(arena);
+    const Fact     *facts = graph_facts(graph, (Box){{ANYTHING, ANYTHING, ANYTHING}}, NULL, arena);
     for (Node node = 0; node < graph->count; node++) {
         const Expr *e = &graph->items[node];
         bool steady   = e->time != TIME_POINT || e->op == OP_POINT || op_never_jumps((Op)e->op);
@@ -27,5 +28,6 @@ double *lane_steepest(const Graph *graph, Arena *arena)
             steady = steady && isfinite(steepest[e->operands[k]]);
         steepest[node] = steady ? facts[node].slope : HUGE_VAL;
     }
+    arena_rewind(arena, mark);
     return steepest;
 }
