@@ -311,8 +311,8 @@ enum { MAX_OF_ISLAND = 64 };
 
 /* Adds the points of a tetrahedron that are inside to an island; returns false if one is of a large
    part, or they are too many. */
-static bool add_to_island(const Tets *tets, uint32_t tet, const bool *large,
-                          uint32_t island[MAX_OF_ISLAND], size_t *count)
+static bool add_to_island(const Tets *tets, uint32_t tet, uint32_t island[MAX_OF_ISLAND],
+                          size_t *count)
 {
     for (int k = 0; k < 4; k++) {
         const uint32_t other = tets->list.items[tet].points[k];
@@ -323,7 +323,7 @@ static bool add_to_island(const Tets *tets, uint32_t tet, const bool *large,
             known++;
         if (known < *count)
             continue;
-        if (*count == MAX_OF_ISLAND || large[other])
+        if (*count == MAX_OF_ISLAND || tets->points.items[other].large)
             return false;
         island[(*count)++] = other;
     }
@@ -331,10 +331,10 @@ static bool add_to_island(const Tets *tets, uint32_t tet, const bool *large,
 }
 
 /* Lists the points inside that are connected with a point.  Returns how many; 0: they are no
-   island, since they are too many, or some are far or deep.  `large` are points of what is no
-   island, which are added. */
-static size_t find_island(const Tets *tets, uint32_t point, const double center[3], double radius,
-                          double deep, bool *large, uint32_t island[MAX_OF_ISLAND])
+   island, since they are too many, or some are far or deep.  Marks what it found of a part that is
+   no island as large. */
+static size_t find_island(Tets *tets, uint32_t point, const double center[3], double radius,
+                          double deep, uint32_t island[MAX_OF_ISLAND])
 {
     size_t count = 1;
     bool   small = true;
@@ -346,10 +346,10 @@ static size_t find_island(const Tets *tets, uint32_t point, const double center[
                 distance3(at, center) <= radius;
         for (uint32_t link = tets->points.items[island[i]].first; link && small;
              link          = tets->links.items[link - 1].next)
-            small = add_to_island(tets, tets->links.items[link - 1].tet, large, island, &count);
+            small = add_to_island(tets, tets->links.items[link - 1].tet, island, &count);
     }
     for (size_t i = 0; i < count && !small; i++)
-        large[island[i]] = true;
+        tets->points.items[island[i]].large = true;
     return small ? count : 0;
 }
 
@@ -361,23 +361,23 @@ static void move(Tets *tets, const uint32_t *points, size_t count)
     }
 }
 
-static bool drop_islands(Contour *contour, const double center[3], double radius, double deep)
+/* Moves the points of all islands to the outside; returns whether there were any. */
+static bool drop_islands(Tets *tets, const double center[3], double radius, double deep)
 {
-    Tets     *tets  = contour->tets;
-    ArenaMark mark  = arena_mark(contour->arena);
-    bool     *large = arena_new_array(contour->arena, bool, tets->points.count);
-    bool      any   = false;
+    bool any = false;
+    for (uint32_t i = 0; i < tets->points.count; i++)
+        tets->points.items[i].large = false;
     for (uint32_t i = 0; i < tets->points.count; i++) {
         uint32_t island[MAX_OF_ISLAND];
         double   at[3];
         tets_position(tets, i, at);
-        if (!point_is_inside(tets, i) || large[i] || distance3(at, center) > radius)
+        if (!point_is_inside(tets, i) || tets->points.items[i].large ||
+            distance3(at, center) > radius)
             continue;
-        size_t count = find_island(tets, i, center, radius, deep, large, island);
+        size_t count = find_island(tets, i, center, radius, deep, island);
         move(tets, island, count);
         any = any || count > 0;
     }
-    arena_rewind(contour->arena, mark);
     return any;
 }
 
@@ -399,5 +399,5 @@ bool sides_tidy(Contour *contour, const double center[3], double radius, double 
     }
     arena_rewind(contour->arena, mark);
     move(tets, moved, count);
-    return drop_islands(contour, center, radius, deep) || count > 0;
+    return drop_islands(tets, center, radius, deep) || count > 0;
 }

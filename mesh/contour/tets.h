@@ -20,6 +20,7 @@ typedef struct TetPoint {
     uint32_t split; /* `closures` of the tetrahedra when an edge of it was last bisected */
     uint32_t first; /* 1 and the link of a tetrahedron that has it; 0: none */
     bool     moved; /* to the other side than its distance tells (sides.h) */
+    bool     large; /* connected with what is no island; for sides.c alone */
     double   distance;
 } TetPoint;
 

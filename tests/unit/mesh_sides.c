@@ -183,9 +183,15 @@ static void check_moved(const Tets *tets, const double center[3], double radius,
             assert_true(distance3(at, center) <= radius &&
                         fabs(tets->points.items[i].distance) <= deep);
     }
-    for (size_t i = 0; i < tets->list.count; i++)
+    size_t fresh = 0;
+    for (size_t i = 0; i < tets->list.count; i++) {
+        fresh += tets->list.items[i].fresh;
         if (tets_is_moved(tets, &tets->list.items[i]))
             assert_true(tets->list.items[i].fresh && tets->list.items[i].state == TET_UNPROVEN);
+    }
+    assert_int_equal(tets->fresh.count, fresh);
+    for (size_t i = 0; i < fresh; i++)
+        assert_true(tets->list.items[tets->fresh.items[i]].fresh);
 }
 
 /* What is shallow at an edge loses its hole where tetrahedra are small, and an island goes.  Holes in what is as thin on all sides, what is deep and what
@@ -216,6 +222,7 @@ static void handles_at_edges_go(void **state)
         Tets    tets    = {0};
         Contour contour = {.arena = &arena, .tets = &tets};
         make_tets(&tets, cases[i].solid, &arena);
+        memset(&tets.fresh, 0, sizeof tets.fresh); /* it has to grow */
         long parts = count_parts(&tets, true), euler = euler_number(&tets);
         if (count_parts(&tets, false) != 1 || (parts == 1 && euler != 0) || parts > 2)
             fail_msg("%s: %ld parts, Euler number %ld to begin with", cases[i].name, parts, euler);
