@@ -26,6 +26,14 @@ static bool report_progress(void *user, double fraction)
     return !*interrupted();
 }
 
+static bool goes_on(void *user, double fraction)
+{
+    (void)user;
+    (void)fraction;
+    stage_goes_on();
+    return !*interrupted();
+}
+
 /* All has been said of the scene. */
 static KrsStatus compile_without(void *user, const KrsLocation *without, KrsScene **scene)
 {
@@ -195,6 +203,7 @@ static KrsStatus profile(Costing *costing, KrsRenderer *renderer)
     const double   height  = image.height > 0 ? image.height : KRS_DEFAULT_HEIGHT;
     how.aspect             = width / height;
     how.how.integrator     = KRS_INTEGRATOR_PREVIEW;
+    how.how.progress       = goes_on;
     how.purpose            = options->how.methods.executor == KRS_EXECUTOR_LANES ? KRS_FOR_LANES
                                                                                  : KRS_FOR_PICTURES;
     if (status != KRS_OK)

@@ -270,6 +270,18 @@ static void act_shading(Viewing *viewing)
     viewing_show(viewing);
 }
 
+static void act_costs(Viewing *viewing)
+{
+    if (viewing->costing.busy)
+        profiler_cancel(viewing->profiler);
+    else if (viewing->costs.count > 0)
+        viewing_drop_costs(viewing);
+    else if (viewing->view.width > 0 && profiler_start(viewing->profiler, &viewing->view)) {
+        viewing->costs_version = version_number(viewing->view.version);
+        viewing->costs_view    = viewing->views;
+    }
+}
+
 /* The size of what is seen, for a scene without an end as well. */
 static void measure_scene(Viewing *viewing)
 {

@@ -340,6 +340,36 @@ static void draw_status(Viewing *viewing)
     viewing->heights.status = gui_panel_end();
 }
 
+/* Below the status: the costliest parts; a click opens the editor there. */
+static void draw_costs(Viewing *viewing)
+{
+    const Costs *costs     = &viewing->costs;
+    viewing->heights.costs = 0;
+    if (!viewing->costing.busy && costs->count == 0)
+        return;
+    gui_panel("costs", (GuiPlace){.corner = GUI_TOP_LEFT, .below = viewing->heights.status}, false);
+    if (viewing->costing.busy) {
+        gui_text(GUI_PLAIN, "timing frames without each part; B: give up");
+        gui_progress(viewing->costing.done);
+    }
+    for (size_t i = 0; i < costs->count; i++) {
+        const CostLine *line = &costs->lines[i];
+        char            id[32], words[440];
+        if (i > 0 && !costs->lines[i - 1].place[0])
+            gui_text(GUI_FAINT, "what several of these have in common");
+        snprintf(id, sizeof id, "cost%zu", i);
+        snprintf(words, sizeof words, "%s  %s", line->words, line->place);
+        gui_swatch(line->color);
+        gui_beside();
+        if (gui_line(id, words, GUI_PLAIN) && line->place[0])
+            viewing_open_editor(viewing, line->place);
+    }
+    if (costs->untimed > 0)
+        gui_text(GUI_FAINT,
+                 "There was no time for all parts: `krs info --cost --seconds N` has more.");
+    viewing->heights.costs = gui_panel_end();
+}
+
 /* What must be known even where there is no other panel. */
 static void draw_notice(Viewing *viewing)
 {
@@ -442,6 +472,7 @@ void panels_draw(Viewing *viewing)
     }
     if (viewing->panels && viewing->view.version) {
         draw_status(viewing);
+        draw_costs(viewing);
         draw_controls(viewing);
         draw_found(viewing);
     } else if (viewing->reads_slowly) {

@@ -71,10 +71,34 @@ static void take_document(Viewing *viewing)
     version_release(version);
 }
 
+/* What was found of a text that has changed since is of no use. */
+static void take_costs(Viewing *viewing)
+{
+    const ProfilerState state = profiler_state(viewing->profiler);
+    const bool          ended = state.orders != viewing->costing.orders;
+    const bool          same  = viewing->costs_version == version_number(viewing->view.version);
+    viewing->costing          = state;
+    if (!same)
+        costs_free(&viewing->costs);
+    if (!ended)
+        return;
+    costs_free(&viewing->costs);
+    if (!profiler_take(viewing->profiler, &viewing->costs))
+        viewing_notice(viewing, "what parts cost: %s", state.message);
+    else if (!same) {
+        viewing_notice(viewing, "what parts cost: the text has changed");
+        costs_free(&viewing->costs);
+    } else
+        viewing_show_costs(viewing);
+}
+
 static void take_shot(Viewing *viewing)
 {
     Shot shot;
-    if (painter_take(viewing->painter, &shot)) {
+    take_costs(viewing);
+    if (painter_take(viewing->painter, &shot) && viewing->costs_shown)
+        free(shot.pixels); /* of the same view */
+    else if (shot.pixels) {
         if (viewing->window)
             window_set_picture(viewing->window, shot.pixels, shot.width, shot.height);
         free(viewing->pixels);
@@ -106,6 +130,8 @@ static void send_view(Viewing *viewing)
     viewing->view.width  = width < KRS_MAX_SIDE ? width : KRS_MAX_SIDE;
     viewing->view.height = height < KRS_MAX_SIDE ? height : KRS_MAX_SIDE;
     if (viewing->view_changed) {
+        viewing->costs_shown = false;
+        viewing->views++;
         painter_show(viewing->painter, &viewing->view);
         if (!viewing->playing && !viewing->undoing)
             history_note(viewing->history, &viewing->view, viewing_now());
@@ -226,7 +252,7 @@ static void draw_terminal(Viewing *viewing)
 {
     const Shot         *shot     = &viewing->shot;
     const PainterState *painting = &viewing->painting;
-    char                first[400], second[400] = "";
+    char                first[400], second[600] = "";
     const char         *lines[] = {first, second};
     if (viewing->help) {
         draw_help_lines(viewing);
@@ -242,6 +268,12 @@ static void draw_terminal(Viewing *viewing)
                  viewing->diagnostics.items[0].line, viewing->diagnostics.items[0].text);
     else if (painting->compiling)
         snprintf(second, sizeof second, "compiling the shaders: %.0f %%", 100 * painting->compiled);
+    else if (viewing->costing.busy)
+        snprintf(second, sizeof second, "timing frames without each part: %.0f %%",
+                 100 * viewing->costing.done);
+    else if (viewing->costs.count > 0)
+        snprintf(second, sizeof second, "%s  %s   %s", viewing->costs.lines[0].words,
+                 viewing->costs.lines[0].place, viewing->costs.lines[1].words);
     else if (viewing_now() - viewing->noticed_at < 4)
         snprintf(second, sizeof second, "%s", viewing->notice);
     terminal_show(viewing->terminal, viewing->pixels, shot->width, shot->height, lines, 2);
@@ -340,7 +372,9 @@ static KrsStatus run(Viewing *viewing, char message[256])
                                      .budget   = viewing->budget};
     viewing->painter              = painter_new(&painting);
     viewing->saver                = saver_new(&options->renderer, wake_viewer, viewing);
-    if (!viewing->painter || !viewing->saver ||
+    viewing->profiler             = profiler_new(&options->renderer, &options->scene, options->path,
+                                                 wake_viewer, viewing);
+    if (!viewing->painter || !viewing->saver || !viewing->profiler ||
         pthread_create(&viewing->reader, NULL, read_scene, viewing) != 0)
         return fail(message, KRS_OUT_OF_MEMORY, "out of memory", "");
     status = viewing->terminal ? terminal_loop(viewing) : loop(viewing);
@@ -368,6 +402,7 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     KrsStatus status = begin(&viewing, message);
     if (status == KRS_OK)
         status = run(&viewing, message);
+    profiler_free(viewing.profiler);
     saver_free(viewing.saver);
     painter_free(viewing.painter);
     window_close(viewing.window);
@@ -378,6 +413,7 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     free(viewing.pixels);
     diagnostics_free(&viewing.diagnostics);
     presets_free(&viewing.presets);
+    costs_free(&viewing.costs);
     document_free(viewing.document);
     return status;
 }

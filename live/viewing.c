@@ -212,6 +212,23 @@ void viewing_set_cut(Viewing *viewing)
     viewing_show(viewing);
 }
 
+void viewing_show_costs(Viewing *viewing)
+{
+    const Shot *shot = &viewing->shot;
+    if (!viewing->pixels || viewing->costs_view != viewing->views)
+        return; /* they are of what was seen before */
+    costs_tint(&viewing->costs, viewing->pixels, shot->width, shot->height);
+    if (viewing->window)
+        window_set_picture(viewing->window, viewing->pixels, shot->width, shot->height);
+    viewing->costs_shown = true;
+}
+
+void viewing_drop_costs(Viewing *viewing)
+{
+    costs_free(&viewing->costs);
+    viewing_show(viewing);
+}
+
 /* Values that were set stay; others become the new defaults. */
 static void keep_values(Viewing *viewing, const View *before)
 {

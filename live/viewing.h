@@ -10,6 +10,7 @@
 #include "live/cut.h"
 #include "live/history.h"
 #include "live/pictures/painter.h"
+#include "live/pictures/profiler.h"
 #include "live/pictures/saver.h"
 #include "live/text/document.h"
 #include "live/text/presets.h"
@@ -58,8 +59,8 @@ typedef struct Viewing {
     bool     panels, help, numbers;
     int      scrolled; /* lines of the help, since it was drawn */
     struct {
-        float status, controls, found, diagnostics; /* 0: it is not there */
-    } heights;                                      /* of panels in the last frame, with a margin */
+        float status, controls, found, diagnostics, costs; /* 0: it is not there */
+    } heights; /* of panels in the last frame, with a margin */
     Cut      cut;
     Presets  presets;
     char     preset[64]; /* the name of the next one */
@@ -70,8 +71,14 @@ typedef struct Viewing {
         uint32_t frames;
         SaveKind kind;
         bool     exr;
-    } save;              /* what the next order will be */
-    double redraw_until; /* panels need some frames to settle */
+    } save; /* what the next order will be */
+    Profiler     *profiler;
+    ProfilerState costing;
+    Costs         costs;         /* of the last order, until it is dropped; without lines: none */
+    unsigned      costs_version; /* that was ordered */
+    bool          costs_shown;   /* the picture has their colours */
+    unsigned views, costs_view;  /* how often the view has changed; then, when they were ordered */
+    double   redraw_until;       /* panels need some frames to settle */
 } Viewing;
 
 /* Says for a moment what was done. */
@@ -105,6 +112,9 @@ void viewing_set_cut(Viewing *viewing);
 void viewing_take_preset(Viewing *viewing, const Preset *preset);
 void viewing_make_preset(Viewing *viewing, const char *name);
 void viewing_drop_preset(Viewing *viewing, size_t number);
+/* Colours the picture by what parts cost, until the view changes; no longer tells what they cost. */
+void viewing_show_costs(Viewing *viewing);
+void viewing_drop_costs(Viewing *viewing);
 /* All parameters to the scene's defaults. */
 void viewing_reset_values(Viewing *viewing);
 

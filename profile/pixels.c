@@ -8,12 +8,17 @@
 /* Depths that differ by more than this part are those of other surfaces. */
 static const double SAME_DEPTH = 1e-3;
 
-Pixels pixels_new(size_t count, size_t parts, Arena *arena)
+Pixels pixels_new(size_t count, const Parts *parts, Arena *arena)
 {
     Pixels pixels = {count, arena_new_array(arena, size_t, count + 1),
-                     arena_new_array(arena, size_t, parts + 1)};
+                     arena_new_array(arena, size_t, parts->count + 1),
+                     arena_new_array(arena, size_t, parts->count + 1)};
     for (size_t i = 0; i < count; i++)
         pixels.part[i] = NO_PART;
+    for (size_t i = 0; i < parts->count; i++) {
+        const size_t parent = parts->items[i].parent;
+        pixels.depth[i]     = parent == NO_PART ? 0 : pixels.depth[parent] + 1;
+    }
     return pixels;
 }
 
@@ -23,18 +28,22 @@ static bool is_changed(const KrsPicture *whole, const KrsPicture *without, size_
     return isfinite(depth) && !(fabs(without->depth[at] - depth) <= SAME_DEPTH * fabs(depth));
 }
 
+static bool takes_from(const Pixels *pixels, size_t part, size_t other)
+{
+    if (other == NO_PART || pixels->depth[part] != pixels->depth[other])
+        return other == NO_PART || pixels->depth[part] > pixels->depth[other];
+    return pixels->changed[part] <= pixels->changed[other];
+}
+
 void pixels_take(Pixels *pixels, const KrsPicture *whole, const KrsPicture *without, size_t part)
 {
     size_t changed = 0;
     for (size_t i = 0; i < pixels->count; i++)
         changed += is_changed(whole, without, i);
     pixels->changed[part] = changed;
-    for (size_t i = 0; i < pixels->count; i++) {
-        const size_t before = pixels->part[i];
-        if (is_changed(whole, without, i) &&
-            (before == NO_PART || changed <= pixels->changed[before]))
+    for (size_t i = 0; i < pixels->count; i++)
+        if (is_changed(whole, without, i) && takes_from(pixels, part, pixels->part[i]))
             pixels->part[i] = part;
-    }
 }
 
 /* The row from 1 of a part, or of the nearest around it that has one. */

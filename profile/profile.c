@@ -374,7 +374,7 @@ KrsStatus profile_make(const ProfileOptions *options, const KrsScene *scene, Are
     if (p.status == KRS_OK)
         p.status = time_frame(&p, &p.whole, &time, &profile->picture);
     if (p.status == KRS_OK) {
-        p.pixels = pixels_new((size_t)profile->width * profile->height, p.parts.count, arena);
+        p.pixels = pixels_new((size_t)profile->width * profile->height, &p.parts, arena);
         time_parts(&p);
     }
     close_subject(&p.whole);

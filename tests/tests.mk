@@ -19,7 +19,7 @@ PROPERTY_SHARED := $(addprefix tests/property/, instance_parts.c garden.c op_tri
 UNIT        := specks texts watchdog front synonyms arguments visibility diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute state state_floor framing query zones surroundings cache cache_limits \
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid instance_grid instances \
-               instance_shaders instance_ends instance_pictures few_parts tables device_tables table_files printing printers gathered_noises answers structure update coordinates reload live saved_texts camera_text resolution painter saver profile edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly
+               instance_shaders instance_ends instance_pictures few_parts tables device_tables table_files printing printers gathered_noises answers structure update coordinates reload live saved_texts camera_text resolution painter saver profile profiler edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees iteration_boxes instances instances_apart instances_deformed instance_sums blends_of_many fillets moving_instances moving_scenes overlaps lanes lane_rows lane_instances lane_balls lane_cells found_surfaces csg_nodes iterations
 ORACLES     := research/moebius_images research/enhanced self distant patterns bumps primitives krs_expand folds trees maps moebius operators cells \
@@ -115,7 +115,7 @@ $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B
         $(B)/import.a $(LINKED)
 	@$(LINK)
 $(B)/tests/unit/watcher: $(B)/live.a
-$(addprefix $(B)/tests/unit/, live saved_texts camera_text resolution painter saver profile): $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/live.a $(LINKED)
+$(addprefix $(B)/tests/unit/, live saved_texts camera_text resolution painter saver profile profiler): $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/live.a $(LINKED)
 	@$(LINK)
 # What CGAL finds of meshes, where it is installed: without it, tests say so.  At -O2 and with names for a
 # debugger it takes twice as long to compile.

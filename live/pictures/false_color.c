@@ -24,8 +24,7 @@ static void set(uint8_t *pixel, double r, double g, double b)
     pixel[3] = 255;
 }
 
-/* Dark blue, magenta, orange, yellow: each brighter than the one before. */
-static void set_heat(uint8_t *pixel, double part)
+void heat_color(double part, uint8_t pixel[4])
 {
     static const double colors[4][3] = {
         {0.05, 0.03, 0.25}, {0.55, 0.10, 0.50}, {0.95, 0.45, 0.25}, {0.98, 0.95, 0.55}};
@@ -99,7 +98,7 @@ static void color_pixel(const KrsPicture *picture, ShadingMode shading, Range ra
     const double size = fmax(range.high - range.low, 1e-9);
     const double part = (value_at(picture, shading, range.middle, at) - range.low) / size;
     if (shading == SHADING_STEPS)
-        set_heat(pixel, part);
+        heat_color(part, pixel);
     else if (picture->component[at] == 0)
         set(pixel, 0.09, 0.095, 0.1);
     else if (shading == SHADING_DEPTH)
@@ -107,9 +106,9 @@ static void color_pixel(const KrsPicture *picture, ShadingMode shading, Range ra
     else if (shading == SHADING_NORMALS)
         set(pixel, 0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2]);
     else if (shading == SHADING_LEVELS)
-        set_heat(pixel, part);
+        heat_color(part, pixel);
     else if (shading == SHADING_SLOPE)
-        set_heat(pixel, slope);
+        heat_color(slope, pixel);
     else
         set_number(pixel,
                    shading == SHADING_COMPONENTS ? picture->component[at] : picture->instance[at],

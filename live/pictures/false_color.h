@@ -18,5 +18,7 @@ extern const char *const shading_mode_names[SHADING_COUNT];
    number for each pixel, for SHADING_SLOPE alone. */
 void false_color(const KrsPicture *picture, ShadingMode shading, const float *slopes,
                  uint8_t *pixels);
+/* Four bytes for a part of the most: dark blue, magenta, orange, yellow, each brighter than the one before. */
+void heat_color(double part, uint8_t pixel[4]);
 
 #endif

@@ -292,6 +292,15 @@ bool gui_line(const char *id, const char *text, GuiTone tone)
     return pressed;
 }
 
+void gui_swatch(const unsigned char color[3])
+{
+    const float  side = ImGui::GetFontSize();
+    const ImVec2 at   = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + side, at.y + side),
+                                              IM_COL32(color[0], color[1], color[2], 255));
+    ImGui::Dummy(ImVec2(side, side));
+}
+
 bool gui_slider(const char *label, double *value, double low, double high, const char *format)
 {
     label_left(label);

@@ -69,6 +69,7 @@ void gui_gap(void);
 void gui_beside(void); /* the next item stands beside the last one */
 bool gui_button(const char *label, bool on);
 bool gui_line(const char *id, const char *text, GuiTone tone); /* lines that can be clicked */
+void gui_swatch(const unsigned char color[3]);                 /* a square as high as a line */
 bool gui_slider(const char *label, double *value, double low, double high, const char *format);
 /* Changes numbers without limits, by dragging; `speed` is for a pixel. */
 bool gui_drag(const char *label, double *values, size_t count, double speed, double low,
