@@ -213,7 +213,7 @@ static KrsStatus profile(Costing *costing, KrsRenderer *renderer)
     status = profile_make(&how, costing->scene, options->arena, &costing->profile);
     progress_end(&costing->progress);
     if (status != KRS_OK && status != KRS_INTERRUPTED)
-        say("%s", krs_renderer_message(renderer));
+        say_renderer(options, costing->scene, renderer, status);
     return status;
 }
 
@@ -232,8 +232,9 @@ KrsStatus info_cost(const Options *options, const KrsScene *scene)
     else if (status == KRS_OK)
         print_text(&costing);
     if (status == KRS_OK && costing.profile.untimed > 0 && !options->quiet)
-        say("%zu parts were not timed in %g s; a larger --seconds times more",
-            costing.profile.untimed, options->cost_seconds);
+        say("%zu parts were not timed in %g s; a larger --seconds times more%s",
+            costing.profile.untimed, options->cost_seconds,
+            costing.profile.timed == 0 ? ", and --rays lanes compiles no shaders" : "");
     profile_free(&costing.profile);
     krs_renderer_free(renderer);
     return status;

@@ -32,6 +32,7 @@ typedef struct Profiling {
     Subject    whole;
     double     started;
     KrsStatus  status;
+    bool       lanes; /* no shaders are made of the scene: then none are of it without a part */
 } Profiling;
 
 /* Milliseconds of a frame: of rays from the camera, and of the light of what they hit; and how many hit something. */
@@ -72,6 +73,8 @@ static void close_subject(Subject *subject)
 static KrsStatus open_film(const Profiling *p, Subject *subject, uint32_t width, uint32_t height)
 {
     KrsRenderOptions how = p->options->how;
+    if (p->lanes)
+        how.methods.executor = KRS_EXECUTOR_LANES;
     krs_film_free(subject->film);
     subject->film = NULL;
     how.width     = width;
@@ -87,7 +90,9 @@ static KrsStatus open_subject(const Profiling *p, const KrsScene *scene, Subject
     KrsStatus             status  = options->state(options->user, scene, &subject->state);
     subject->scene                = scene;
     if (status == KRS_OK)
-        status = krs_rendering_new(options->renderer, scene, options->purpose, &subject->rendering);
+        status = krs_rendering_new(options->renderer, scene,
+                                   p->lanes ? KRS_FOR_LANES : options->purpose,
+                                   &subject->rendering);
     if (status == KRS_OK)
         status = krs_state_camera(subject->state, options->how.camera, &subject->camera);
     if (status == KRS_OK && p->profile->width > 0)
@@ -131,9 +136,9 @@ static KrsStatus time_frame(const Profiling *p, Subject *subject, FrameTime *tim
 
 /* ---- times ---- */
 
-enum { MIN_TURNS = 5, MAX_TURNS = 15 };
+enum { MIN_TURNS = 2, MAX_TURNS = 15 };
 /* How long the turns of a part take about, and the shortest frame that is timed, in milliseconds. */
-static const double TURNS_MS = 600, LEAST_FRAME_MS = 25;
+static const double TURNS_MS = 1500, LEAST_FRAME_MS = 25;
 
 /* What else a machine does makes frames slower, never faster: so the least time counts, of rays and of light. */
 static void take_least(FrameTime *least, const FrameTime *time, bool first)
@@ -143,14 +148,20 @@ static void take_least(FrameTime *least, const FrameTime *time, bool first)
     least->hits  = time->hits;
 }
 
+static size_t count_turns(double ms)
+{
+    return (size_t)fmin(fmax(TURNS_MS / fmax(ms, 1e-3), MIN_TURNS), MAX_TURNS);
+}
+
 /* Times frames of the whole scene; the first one prepares. */
 static KrsStatus time_whole(Profiling *p)
 {
-    FrameTime time, least = {0};
+    FrameTime time = {0}, least = {0};
     KrsStatus status = open_film(p, &p->whole, p->profile->width, p->profile->height);
     if (status == KRS_OK)
         status = time_frame(p, &p->whole, &time, NULL);
-    for (size_t i = 0; i < MIN_TURNS && status == KRS_OK; i++) {
+    const size_t count = count_turns(time.rays + time.light);
+    for (size_t i = 0; i < count && status == KRS_OK; i++) {
         status = time_frame(p, &p->whole, &time, NULL);
         take_least(&least, &time, i == 0);
     }
@@ -161,7 +172,7 @@ static KrsStatus time_whole(Profiling *p)
 /* Chooses a picture that is large enough. */
 static KrsStatus choose_size(Profiling *p)
 {
-    enum { FIRST_WIDTH = 160, LAST_WIDTH = 1280 };
+    enum { FIRST_WIDTH = 80, LAST_WIDTH = 1280 };
     Profile                *profile = p->profile;
     const KrsRenderOptions *how     = &p->options->how;
     profile->width                  = how->width > 0 ? how->width : FIRST_WIDTH;
@@ -191,8 +202,7 @@ static KrsStatus compare(Profiling *p, Subject *subject, double *saved, KrsPictu
     KrsStatus status = time_frame(p, subject, &time, picture);
     if (status != KRS_OK)
         return status;
-    const double turns = TURNS_MS / fmax(p->profile->frame_ms + time.rays + time.light, 1e-3);
-    const size_t count = (size_t)fmin(fmax(turns, MIN_TURNS), MAX_TURNS);
+    const size_t count = count_turns(p->profile->frame_ms + time.rays + time.light);
     for (size_t i = 0; i < count && status == KRS_OK; i++) {
         status = time_frame(p, &p->whole, &time, NULL);
         if (status == KRS_OK)
@@ -365,6 +375,7 @@ KrsStatus profile_make(const ProfileOptions *options, const KrsScene *scene, Are
                                              krs_renderer_device(options->renderer).kind ==
                                                  KRS_DEVICE_CPU};
     p.started   = read_clock(CLOCK_MONOTONIC);
+    p.lanes     = krs_scene_too_large(scene) != NULL;
     p.parts     = parts_of(scene, arena);
     p.found     = arena_new_array(arena, PartProfile, p.parts.count + 1);
     p.without   = arena_new_array(arena, KrsScene *, p.parts.count + 1);
