@@ -205,7 +205,8 @@ static void march_cells(March *m, const CellTape *tape, uint32_t depth, Cells *c
         const float first = cells->first[i], last = cells->last[i];
         if (!has_rays(m, cells->bundle[i], first, last))
             continue;
-        if (fminf(values[i], tape->cap) > cell_reach(tape, cells->radius[i], m->field->margin)) {
+        /* Rays go by this: no surface is nearer than the distance. */
+        if (fminf(values[i], tape->cap) > cells->radius[i] + m->field->margin) {
             skip_rays(m, cells->bundle[i], last);
             continue;
         }

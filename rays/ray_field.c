@@ -61,7 +61,7 @@ static void finish_tape(RayField *field, RayTape *tape, const NodeValue *values,
     LaneTape *lanes = &tape->lanes;
     lanes->scalars  = arena_new_array(&field->arena, double, lanes->scalar_count + 1);
     lane_tape_scalars(lanes, values, lanes->scalars);
-    tape->cells = cell_tape_new(lanes, &field->arena);
+    tape->cells = cell_tape_new(lanes, values, &field->arena);
     for (size_t i = 0; i < parallel_parts(); i++)
         tape->works[i] = cell_work_new(
             &tape->cells, depth,

@@ -10,13 +10,19 @@ enum { CHILDREN = 8, MOST_CUBES = 1 << 15, DEEPEST = 5 };
 /* Shorter tapes are not worth another. */
 enum { SHORT_TAPE = 40 };
 /* The room for all tapes of a space: as many steps as so many times the whole has, within limits. */
-enum { TIMES_WHOLE = 1000, LEAST_STEPS = 1 << 18, MOST_STEPS = 1 << 22, CALLS_OF_CUBES = 1 << 14 };
+enum {
+    TIMES_WHOLE    = 1000,
+    LEAST_STEPS    = 1 << 18,
+    MOST_STEPS     = 1 << 22,
+    CALLS_OF_CUBES = 1 << 14,
+    MOST_LISTED    = 1 << 20
+};
 
 /* Leaves the cubes that are there from the beginning. */
 static void clear(Space *space, const CellTape *tape)
 {
     const bool divides = space->side > 0;
-    space->step_count = space->call_count = 0;
+    space->step_count = space->call_count = space->listed_count = 0;
     for (space->count = 0; space->count < (divides ? 2u : 1u); space->count++)
         space->cubes[space->count] = (SpaceCube){.tape = *tape, .leaf = !divides, .rays = -1};
 }
@@ -30,15 +36,17 @@ void space_new(Space *space, const CellTape *tape, CellWork *work, const float l
         side = fmax(side, (double)high[k] - (double)low[k]);
     room               = room < LEAST_STEPS ? LEAST_STEPS : room > MOST_STEPS ? MOST_STEPS : room;
     const bool divides = side > 0 && side < 1e30;
-    *space             = (Space){.side       = divides ? (float)side : 0,
-                                 .margin     = margin,
-                                 .work       = work,
-                                 .most       = divides ? MOST_CUBES : 1,
-                                 .most_steps = divides ? room : 0,
-                                 .most_calls = (size_t)tape->call_count * CALLS_OF_CUBES};
+    *space             = (Space){.side        = divides ? (float)side : 0,
+                                 .margin      = margin,
+                                 .work        = work,
+                                 .most        = divides ? MOST_CUBES : 1,
+                                 .most_steps  = divides ? room : 0,
+                                 .most_calls  = (size_t)tape->call_count * CALLS_OF_CUBES,
+                                 .most_listed = tape->call_count ? MOST_LISTED : 0};
     space->cubes       = arena_new_array(arena, SpaceCube, space->most);
     space->steps       = arena_new_array(arena, CellStep, space->most_steps + 1);
     space->calls       = arena_new_array(arena, CellCall, space->most_calls + 1);
+    space->listed      = arena_new_array(arena, uint32_t, space->most_listed + 1);
     for (int k = 0; k < 3; k++)
         space->low[k] = low[k];
     clear(space, tape);
@@ -52,6 +60,22 @@ void space_clear_full(Space *space)
     space->full = false;
 }
 
+/* Keeps the instances of calls; false: there is no room. */
+static bool keep_instances(Space *space, CellCall *calls, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t *kept = space->listed + space->listed_count;
+        if (!calls[i].instances)
+            continue;
+        if (calls[i].instance_count > space->most_listed - space->listed_count)
+            return false;
+        memcpy(kept, calls[i].instances, calls[i].instance_count * sizeof *kept);
+        calls[i].instances = kept;
+        space->listed_count += calls[i].instance_count;
+    }
+    return true;
+}
+
 /* Keeps a tape that was made for a cube; false: there is no room. */
 static bool keep(Space *space, CellTape tape)
 {
@@ -62,12 +86,14 @@ static bool keep(Space *space, CellTape tape)
         return false;
     memcpy(steps, tape.steps, tape.count * sizeof *steps);
     memcpy(calls, tape.calls, tape.call_count * sizeof *calls);
+    if (!keep_instances(space, calls, tape.call_count))
+        return false;
     space->step_count += tape.count;
     space->call_count += tape.call_count;
     tape.steps                   = steps;
     tape.calls                   = calls;
     space->cubes[space->count++] = (SpaceCube){
-        .tape = tape, .leaf = tape.count < SHORT_TAPE, .rays = -1};
+        .tape = tape, .leaf = cell_cost(&tape) < SHORT_TAPE, .rays = -1};
     return true;
 }
 

@@ -22,9 +22,10 @@ typedef struct Space {
     CellWork  *work;
     SpaceCube *cubes; /* the first: all of space; the second: the outermost cube */
     uint32_t   count, most;
-    CellStep  *steps; /* of all tapes, */
-    CellCall  *calls; /* and their calls */
-    size_t     step_count, most_steps, call_count, most_calls;
+    CellStep  *steps;  /* of all tapes, */
+    CellCall  *calls;  /* and their calls */
+    uint32_t  *listed; /* and the instances of these */
+    size_t     step_count, most_steps, call_count, most_calls, listed_count, most_listed;
     bool       full; /* a cube was not divided, since there was no room */
 } Space;
 

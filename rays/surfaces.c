@@ -80,7 +80,7 @@ static void make_tape(SurfaceField *field, bool layers)
                                        false, 0, &field->arena);
     field->lanes.scalars = arena_new_array(&field->arena, double, field->lanes.scalar_count + 1);
     lane_tape_scalars(&field->lanes, field->state->values, field->lanes.scalars);
-    field->cells = cell_tape_new(&field->lanes, &field->arena);
+    field->cells = cell_tape_new(&field->lanes, field->state->values, &field->arena);
     field->rows  = arena_new_array(&field->arena, uint32_t, field->lanes.output_count + 1);
     cell_outputs(&field->cells, field->rows);
     assert(field->lanes.output_count == count * field->numbers + field->cuts);
@@ -311,7 +311,7 @@ static void find(const Question *q, const CellTape *tape, uint32_t level, const 
     size_t size = OF_BALL;
     for (uint32_t i = level + 1; i < LEVELS; i++)
         size *= CELL_LANES;
-    if (level < LEVELS && tape->count > SHORT_TAPE) {
+    if (level < LEVELS && cell_cost(tape) > SHORT_TAPE) {
         for (size_t done = 0, now; done < count; done += now) {
             now = count - done < size * CELL_LANES ? count - done : size * CELL_LANES;
             divide(q, tape, level, rows, first + done, now, size);

@@ -2,8 +2,8 @@
  * lane_cells.c: in a ball the cell tape of a scene tells the distance that the scene has there, up to the cap;
  * farther away it tells no less than the cap.
  *
- * Scenes are trees of shapes at random, and some that have other operations.  What is pruned for a smaller ball than
- * the one it is asked in must be seen to be wrong.
+ * Scenes are trees of shapes at random, figures of many corners or letters that are made solid, and some that have other
+ * operations.  What is pruned for a smaller ball than the one it is asked in must be seen to be wrong.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -20,7 +20,7 @@
 #include "compiler/scene/program.h"
 #include "tests/support/random.h"
 
-enum { TREES = 40, BALLS = 60, SHAPES = 24, DEPTH = 2 };
+enum { TREES = 40, BALLS = 60, SHAPES = 24, FIGURES = 12, DEPTH = 2 };
 /* Of single precision, for coordinates of this size. */
 static const double SIZE = 2, ROUNDING = 2e-5;
 
@@ -47,6 +47,29 @@ static const char *const others[] = {
     "show union([capsule([0, 0, 0], random_direction(i), 0.05 + 0.002 * i) for i in "
     "0..30]).rotate([0, 1, 0], 1).move([0.2, 0, 0]);",
     "show text(\"S8\", size: 1).extrude(0.3);",
+    "show sphere(1).displace(0.1 * noise(3 * p), 0.1);",
+    "show box([1, 1, 1]).displace(0.05 * noise(5 * [x, z]), 0.06) - sphere(0.6);",
+    "show union([sphere(0.1 + 0.0005 * i).move(1.3 * random_direction(i)) for i in 0..200], blend: "
+    "0.1);",
+    "show union([box([0.2, 0.1, 0.1 + 0.0005 * i]).rotate([1, 1, 0], i).move(1.3 * "
+    "random_direction(i)) "
+    "for i in 0..90], blend: 0.05, kind: \"exponential\");",
+    "show union([sphere(0.1 + 0.001 * i).move(1.3 * random_direction(i)) for i in 0..60], blend: "
+    "0.1, "
+    "kind: \"cubic\");",
+    "show union([sphere(0.1 + 0.001 * i).move(1.3 * random_direction(i)) for i in 0..60], blend: "
+    "0.1, "
+    "kind: \"chamfer\");",
+    "show union([sphere(0.1 + 0.001 * i).move(1.3 * random_direction(i)) for i in 0..60], blend: "
+    "0.1, "
+    "kind: \"circular\");",
+    "show helix(radius: 0.6, pitch: 0.5, turns: 4, width: 0.2);",
+    "show tube(spline([[-1.5, -1, 0], [-0.6, 0, 0.4], [0.6, 0.5, 0], [1, 1, -0.4]]), 0.1);",
+    "show sweep(star(5, 0.3, 0.15), spline([[0, -1, 0], [0.6, 0.3, 0], [0, 1, 0]]), twist: "
+    "360deg);",
+    "show cylinder(0.2, 1).round(0.05).move([1, 0, 0]).repeat_polar(5).repeat([0, 1.5, 0]);",
+    "show polygon([[0.8, -0.1], [1.3, -0.2], [1.5, 0], [1.3, 0.2], [0.8, 0.1], [0.7, 0]])"
+    ".repeat_polar(9, [0, 0, 1]).extrude(0.4);",
 };
 
 static size_t add_shape(char *to, size_t room)
@@ -85,6 +108,41 @@ static void random_tree(char *text, size_t room)
     snprintf(text + at, room - at, ";");
 }
 
+/* Letters, or a figure whose corners go around: one edge may leave it, another come back. */
+static size_t add_figure(char *to, size_t room)
+{
+    static const char solids[][24] = {".extrude(%.3f)", ".revolve(%.3f)"};
+    const unsigned    corners      = 5 + random_below(&chance, 60);
+    size_t            at           = 0;
+    if (random_below(&chance, 3) == 0) {
+        at += (size_t)snprintf(to, room, "text(\"%c%c\", size: 1.5)",
+                               'A' + random_below(&chance, 26), 'a' + random_below(&chance, 26));
+    } else {
+        at += (size_t)snprintf(to, room, "polygon([");
+        for (unsigned i = 0; i < corners; i++) {
+            const double angle = 6.2831853 * i / corners, radius = uniform(0.3, 1.4);
+            at += (size_t)snprintf(to + at, room - at, "%s[%.4f, %.4f]", i ? ", " : "",
+                                   radius * cos(angle), radius * sin(angle));
+        }
+        at += (size_t)snprintf(to + at, room - at, "])");
+    }
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+    at += (size_t)snprintf(to + at, room - at, solids[random_below(&chance, 2)], uniform(0.1, 1));
+#pragma GCC diagnostic pop
+    return at + (size_t)snprintf(to + at, room - at, ".rotate([%.3f, 1, %.3f], %.1fdeg)",
+                                 uniform(-1, 1), uniform(-1, 1), uniform(0, 360));
+}
+
+static void random_figures(char *text, size_t room)
+{
+    size_t at = (size_t)snprintf(text, room, "show ");
+    at += add_figure(text + at, room - at);
+    at += (size_t)snprintf(text + at, room - at, random_below(&chance, 2) ? " - " : " | ");
+    at += add_figure(text + at, room - at);
+    snprintf(text + at, room - at, ";");
+}
+
 /* ---- a scene and its cells ---- */
 
 typedef struct Opened {
@@ -113,7 +171,7 @@ static bool open_scene(Opened *o, const char *text)
     o->lanes = lane_tape_new_steep(&o->state->tapes.distance, roots, count, true, 0, &o->arena);
     o->lanes.scalars = arena_new_array(&o->arena, double, o->lanes.scalar_count + 1);
     lane_tape_scalars(&o->lanes, o->state->values, o->lanes.scalars);
-    o->cells = cell_tape_new(&o->lanes, &o->arena);
+    o->cells = cell_tape_new(&o->lanes, o->state->values, &o->arena);
     o->work  = cell_work_new(&o->cells, DEPTH, o->state->values, &o->arena);
     return true;
 }
@@ -145,6 +203,23 @@ static void random_in_ball(const double middle[3], double radius, double point[3
         point[k] = middle[k] + radius * offset[k];
 }
 
+/* All instruction sets give the same, bit for bit. */
+static const float *run_all_sets(Opened *o, const CellTape *tape, const float points[3][CELL_LANES])
+{
+    const LaneSet *sets;
+    float          first[CELL_LANES];
+    const float   *found = NULL;
+    for (size_t count = lane_sets(&sets), set = 0; set < count; set++) {
+        lane_use_set(&sets[set]);
+        found = cell_run(tape, o->work, DEPTH, points);
+        if (set == 0)
+            memcpy(first, found, sizeof first);
+        assert_memory_equal(first, found, sizeof first);
+    }
+    lane_use_set(NULL);
+    return found;
+}
+
 /* Compares a cell tape with the scene in the ball. */
 static void compare(Opened *o, const CellTape *tape, const double middle[3], double radius,
                     Count *count)
@@ -160,7 +235,9 @@ static void compare(Opened *o, const CellTape *tape, const double middle[3], dou
     }
     assert_int_equal(krs_distance(o->state, (const double(*)[3])exact, CELL_LANES, distances),
                      KRS_OK);
-    const float *found = cell_run(tape, o->work, DEPTH, (const float(*)[CELL_LANES])points);
+    const float *found = count->points % (4 * CELL_LANES) == 0
+                             ? run_all_sets(o, tape, (const float(*)[CELL_LANES])points)
+                             : cell_run(tape, o->work, DEPTH, (const float(*)[CELL_LANES])points);
     for (int i = 0; i < CELL_LANES; i++) {
         const double value = (double)found[i], cap = (double)tape->cap;
         const bool   near  = distances[i] < cap;
@@ -212,13 +289,13 @@ static Count try_scene(const char *text, double part)
 
 /* ---- tests ---- */
 
-static Count try_trees(double part)
+static Count try_random(void (*make)(char *text, size_t room), int scenes, double part)
 {
     Count all = {0};
     chance    = (Random){39};
-    for (int i = 0; i < TREES; i++) {
+    for (int i = 0; i < scenes; i++) {
         char text[8000];
-        random_tree(text, sizeof text);
+        make(text, sizeof text);
         const Count count = try_scene(text, part);
         all.points += count.points;
         all.wrong += count.wrong;
@@ -232,12 +309,21 @@ static Count try_trees(double part)
 static void trees_of_shapes(void **context)
 {
     (void)context;
-    const Count count = try_trees(1);
+    const Count count = try_random(random_tree, TREES, 1);
     print_message("%zu points, %zu beyond the cap; %.0f %% of the steps are left\n", count.points,
                   count.capped, 100.0 * (double)count.steps / (double)count.whole_steps);
     assert_int_equal(count.wrong, 0);
     assert_true(count.capped > count.points / 50);
     assert_true(2 * count.steps < count.whole_steps);
+}
+
+static void figures_made_solid(void **context)
+{
+    (void)context;
+    const Count count = try_random(random_figures, FIGURES, 1);
+    print_message("%zu points, %zu beyond the cap\n", count.points, count.capped);
+    assert_int_equal(count.wrong, 0);
+    assert_true(count.capped > count.points / 50);
 }
 
 static void other_scenes(void **context)
@@ -253,13 +339,14 @@ static void other_scenes(void **context)
 static void a_smaller_ball_is_seen(void **context)
 {
     (void)context;
-    assert_true(try_trees(0.5).wrong > 0);
+    assert_true(try_random(random_tree, TREES, 0.5).wrong > 0);
+    assert_true(try_random(random_figures, FIGURES, 0.5).wrong > 0);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(trees_of_shapes),
-                                       cmocka_unit_test(other_scenes),
-                                       cmocka_unit_test(a_smaller_ball_is_seen)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(trees_of_shapes), cmocka_unit_test(figures_made_solid),
+        cmocka_unit_test(other_scenes), cmocka_unit_test(a_smaller_ball_is_seen)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,16 +10,23 @@
 
 /* ---- instance groups ---- */
 
-const InstanceFunction *least_of_instances(const LaneTape *tape, const LaneCall *call)
+const InstanceFunction *distance_of_instances(const LaneTape *tape, const LaneCall *call)
 {
     const Graph *graph = tape->tape->graph;
-    if (!call->body || tape->tape->by_cells || call->body->tape.call_count > 0 ||
-        graph->items[call->node].op != OP_instance_distance)
+    if (!call->body || tape->tape->by_cells || graph->items[call->node].op != OP_instance_distance)
         return NULL;
     const InstanceFunction *function = &graph->instances->functions.items[call->body->function];
-    const InstanceTable    *table    = &graph->instances->tables.items[call->body->table];
-    const bool least = function->slope > 0 && function->state_count == 1 && !function->either &&
-                       !function->joins && !function->sums && function->type == TYPE_FLOAT;
+    return function->slope > 0 && function->type == TYPE_FLOAT ? function : NULL;
+}
+
+const InstanceFunction *least_of_instances(const LaneTape *tape, const LaneCall *call)
+{
+    const InstanceFunction *function = distance_of_instances(tape, call);
+    if (!function || call->body->tape.call_count > 0)
+        return NULL;
+    const InstanceTable *table = &tape->tape->graph->instances->tables.items[call->body->table];
+    const bool least = function->state_count == 1 && !function->either && !function->joins &&
+                       !function->sums;
     return least && table->bounds ? function : NULL;
 }
 
@@ -45,19 +52,14 @@ static double steepest_of(const CellStep *steps, uint32_t inputs, uint32_t row)
 static double steepest_of_call(const LaneTape *tape, const CellCall *call, const CellStep *steps,
                                uint32_t inputs)
 {
-    const InstanceFunction *function = least_of_instances(tape, call->call);
-    double                  square   = 0;
-    bool                    itself   = true;
-    if (!function)
-        return 0;
-    for (uint32_t c = 0; c < 3; c++) {
-        const double by = steepest_of(steps, inputs, call->from[1][c]);
-        if (by == 0)
-            return 0;
-        square += by * by;
-        itself = itself && call->from[1][c] == inputs + LANE_POINT + c;
+    const InstanceFunction *function = distance_of_instances(tape, call->call);
+    double                  by[3];
+    for (uint32_t c = 0; c < 3 && function; c++) {
+        by[c] = steepest_of(steps, inputs, call->from[1][c]);
+        by[c] = by[c] == 0 ? HUGE_VAL : by[c];
     }
-    return function->slope * (itself ? 1 : sqrt(square));
+    const double moves = function ? cell_call_moves(call, by, 1) : HUGE_VAL;
+    return isfinite(moves) ? function->slope * moves : 0;
 }
 
 /* Returns how steep a step is of which lane tapes know nothing, since it is made of calls: by
@@ -86,17 +88,19 @@ static double steepest_of_step(const LaneTape *tape, const CellStep *step, const
     return isfinite(most) ? most : 0;
 }
 
-CellTape cell_tape_new(const LaneTape *tape, Arena *arena)
+CellTape cell_tape_alone(const LaneTape *tape, CellCall **all_calls, Arena *arena)
 {
     const uint32_t inputs = (uint32_t)tape->scalar_count;
     CellStep      *steps  = arena_new_array(arena, CellStep, tape->count + 1);
     CellCall      *calls  = arena_new_array(arena, CellCall, tape->call_count + 1);
+    *all_calls            = calls;
     for (size_t i = 0; i < tape->count; i++) {
         const LaneStep *from  = &tape->steps[i];
         const bool      plain = from->op != LANE_CALL && from->op != LANE_PART;
         steps[i]              = (CellStep){.op            = from->op,
                                            .operand_count = plain ? from->operand_count : 0,
-                                           .steepest      = from->steepest};
+                                           .steepest      = from->steepest,
+                                           .component     = from->component};
         for (uint32_t k = 0; k < steps[i].operand_count; k++)
             steps[i].from[k] = row_of(from->operands[k], inputs);
         if (from->op == LANE_CALL)
@@ -123,24 +127,42 @@ CellTape cell_tape_new(const LaneTape *tape, Arena *arena)
                       .call_count = (uint32_t)tape->call_count,
                       .inputs     = inputs,
                       .output     = row_of(tape->outputs[0], inputs),
-                      .cap        = HUGE_VALF};
+                      .cap        = HUGE_VALF,
+                      .reach      = HUGE_VALF};
+}
+
+CellTape cell_tape_new(const LaneTape *tape, const NodeValue *values, Arena *arena)
+{
+    CellCall      *calls;
+    const CellTape made = cell_tape_alone(tape, &calls, arena);
+    cell_bodies_new(&made, calls, values, arena);
+    return made;
 }
 
 /* ---- what a thread needs ---- */
+
+static void fill_constants(const CellTape *tape, float *rows)
+{
+    for (size_t i = 0; i < tape->inputs; i++)
+        for (int lane = 0; lane < CELL_LANES; lane++)
+            rows[i * CELL_LANES + lane] = (float)tape->whole->scalars[i] + 0.0f;
+}
 
 static float *new_rows(const CellTape *tape, size_t count, Arena *arena)
 {
     enum { ALIGNMENT = 64 };
     char  *memory = arena_alloc(arena, count * CELL_LANES * sizeof(float) + ALIGNMENT, 1);
     float *rows   = (float *)(memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT);
-    for (size_t i = 0; i < tape->inputs; i++)
-        for (int lane = 0; lane < CELL_LANES; lane++)
-            rows[i * CELL_LANES + lane] = (float)tape->whole->scalars[i] + 0.0f;
+    fill_constants(tape, rows);
+    for (uint32_t i = 0; i < tape->call_count; i++) {
+        const CellBody *body = tape->calls[i].body;
+        if (body)
+            fill_constants(&body->tape, rows + (size_t)body->first_row * CELL_LANES);
+    }
     return rows;
 }
 
-/* What bodies of instances may add to all tapes that are made of one, and the steps of the longest body. */
-static size_t steps_of_bodies(const CellTape *tape, size_t *longest)
+size_t cell_steps_of_bodies(const CellTape *tape, size_t *longest)
 {
     size_t all = 0;
     *longest   = 0;
@@ -159,21 +181,25 @@ CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values,
 {
     CellWork    *work = arena_new(arena, CellWork);
     size_t       longest;
-    const size_t count = tape->count + steps_of_bodies(tape, &longest);
-    const size_t rows = (size_t)tape->inputs + LANE_INPUTS + count, calls = tape->call_count + 1;
-    *work = (CellWork){.values          = values,
-                       .rows            = arena_new_array(arena, float *, depth + 1),
-                       .needed          = arena_new_array(arena, bool, rows),
-                       .now             = arena_new_array(arena, uint32_t, rows),
-                       .caps            = arena_new_array(arena, float, rows),
-                       .floors          = arena_new_array(arena, float, rows),
-                       .same            = arena_new_array(arena, uint32_t, rows),
-                       .steps           = arena_new_array(arena, CellStep, count * depth + 1),
-                       .calls           = arena_new_array(arena, CellCall, calls * depth),
-                       .instances       = arena_alloc(arena, calls, sizeof *work->instances),
-                       .instance_counts = arena_new_array(arena, uint32_t, calls),
-                       .body_rows       = arena_new_array(arena, uint32_t, LANE_INPUTS + longest),
-                       .body_scalars    = arena_new_array(arena, uint32_t, longest + 1)};
+    const size_t count = tape->count + cell_steps_of_bodies(tape, &longest);
+    const size_t rows = cell_row_count(tape), calls = tape->call_count + 1;
+    const size_t lists = tape->call_count < MAX_LISTS ? tape->call_count : MAX_LISTS;
+    *work              = (CellWork){.values       = values,
+                                    .rows         = arena_new_array(arena, float *, depth + 1),
+                                    .needed       = arena_new_array(arena, bool, rows),
+                                    .now          = arena_new_array(arena, uint32_t, rows),
+                                    .caps         = arena_new_array(arena, float, rows),
+                                    .floors       = arena_new_array(arena, float, rows),
+                                    .same         = arena_new_array(arena, uint32_t, rows),
+                                    .steepest     = arena_new_array(arena, float, count + 1),
+                                    .ranges       = arena_new_array(arena, Range, count + 1),
+                                    .steps        = arena_new_array(arena, CellStep, count * depth + 1),
+                                    .calls        = arena_new_array(arena, CellCall, calls * depth),
+                                    .lists        = arena_new_array(arena, CellList, calls),
+                                    .most_listed  = lists * MAX_LISTED * depth,
+                                    .body_rows    = arena_new_array(arena, uint32_t, LANE_INPUTS + longest),
+                                    .body_scalars = arena_new_array(arena, uint32_t, longest + 1)};
+    work->listed       = arena_new_array(arena, uint32_t, work->most_listed + 1);
     for (uint32_t i = 0; i <= depth; i++)
         work->rows[i] = new_rows(tape, rows, arena);
     return work;

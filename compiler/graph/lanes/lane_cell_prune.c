@@ -12,60 +12,9 @@
 
 /* ---- bounds ---- */
 
-/* The ball of a lane. */
-typedef struct Ball {
-    const CellTape *tape;
-    const float    *rows; /* values in its middle: those of the lane */
-    float           radius, margin;
-} Ball;
-
-static bool is_constant(const CellTape *tape, uint32_t row) { return row < tape->inputs; }
-
-static const CellStep *step_of(const CellTape *tape, uint32_t row)
-{
-    const uint32_t first = tape->inputs + LANE_INPUTS;
-    return row < first ? NULL : &tape->steps[row - first];
-}
-
-/* How much a row may differ from its value in the middle; infinite: there is no bound. */
-static float reach_of(const Ball *ball, uint32_t row)
-{
-    const CellStep *step = step_of(ball->tape, row);
-    if (is_constant(ball->tape, row))
-        return 0;
-    if (!step)
-        return row < ball->tape->inputs + LANE_POINT + 3 ? ball->radius + ball->margin : HUGE_VALF;
-    if (step->op == LANE_NUMBER)
-        return 0;
-    return step->steepest > 0 ? step->steepest * (ball->radius + ball->margin) : HUGE_VALF;
-}
-
-static float value_of(const Ball *ball, uint32_t row)
-{
-    return ball->rows[(size_t)row * CELL_LANES];
-}
-
-static Range range_by_slope(const Ball *ball, uint32_t row)
-{
-    const double value = (double)value_of(ball, row), reach = (double)reach_of(ball, row);
-    return isfinite(value) && isfinite(reach) ? (Range){value - reach, value + reach} : ANYTHING;
-}
-
-/* Finds the range of a row by its slope, or else by the ranges of the operands. */
-static Range range_of_row(const Ball *ball, uint32_t row)
-{
-    const CellStep *step = step_of(ball->tape, row);
-    if (!step || step->steepest > 0 || step->op >= OP_COUNT || !number_rows[step->op].range)
-        return range_by_slope(ball, row);
-    Range o[MAX_OPERANDS] = {{0, 0}, {0, 0}, {0, 0}, {0, 0}};
-    for (uint32_t k = 0; k < step->operand_count; k++)
-        o[k] = range_by_slope(ball, step->from[k]);
-    return number_rows[step->op].range(o);
-}
-
 float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float margin)
 {
-    return reach_of(&(Ball){tape, NULL, radius, margin}, row);
+    return reach_of(&(Ball){tape, NULL, radius, margin, NULL, NULL}, row);
 }
 
 float cell_reach(const CellTape *tape, float radius, float margin)
@@ -102,6 +51,15 @@ static void need_all(Pruning *p, const CellStep *step)
         need(p, step->from[k], HUGE_VALF, -HUGE_VALF);
 }
 
+/* How much less a row may count as than in the middle.  Of a component without a slope the surface is no nearer than
+   that: this is what rays go by. */
+static float reach_below(const Ball *ball, uint32_t row)
+{
+    const CellStep *step  = step_of(ball->tape, row);
+    const float     reach = reach_of(ball, row), moves = ball->radius + ball->margin;
+    return step && step->component && moves < reach ? moves : reach;
+}
+
 /* Notes what a minimum needs, or with sign -1 a maximum.  Operands that are above the cap in all of
    the ball are not needed, but for one. */
 static void need_of_least(Pruning *p, const CellStep *step, uint32_t row, float sign)
@@ -110,14 +68,16 @@ static void need_of_least(Pruning *p, const CellStep *step, uint32_t row, float 
     const uint32_t a = step->from[0], b = step->from[1];
     const float    value_a = sign * value_of(&p->ball, a), value_b = sign * value_of(&p->ball, b);
     const float    reach_a = reach_of(&p->ball, a), reach_b = reach_of(&p->ball, b);
-    float          cap = sign > 0 ? work->caps[row] : -work->floors[row];
+    const float    below_a = sign > 0 ? reach_below(&p->ball, a) : reach_a,
+                below_b    = sign > 0 ? reach_below(&p->ball, b) : reach_b;
+    float cap              = sign > 0 ? work->caps[row] : -work->floors[row];
     if (value_a + reach_a < cap)
         cap = value_a + reach_a;
     if (value_b + reach_b < cap)
         cap = value_b + reach_b;
-    bool drops_a = value_a - reach_a > cap, drops_b = value_b - reach_b > cap;
+    bool drops_a = value_a - below_a > cap, drops_b = value_b - below_b > cap;
     if (drops_a && drops_b) {
-        drops_a = value_a - reach_a > value_b - reach_b;
+        drops_a = value_a - below_a > value_b - below_b;
         drops_b = !drops_a;
     }
     work->same[row] = drops_a ? b : drops_b ? a : row;
@@ -141,7 +101,7 @@ static uint32_t only_operand(const Pruning *p, const CellStep *step, uint32_t ro
     if (!known || !known->chooses || is_arithmetic(step->op))
         return row;
     for (uint32_t k = 0; k < step->operand_count; k++)
-        o[k] = range_of_row(&p->ball, step->from[k]);
+        o[k] = cell_range(&p->ball, step->from[k]);
     const unsigned chosen = known->chooses(o);
     for (uint32_t k = 0; k < step->operand_count; k++)
         if (chosen == 1u << k && isfinite(o[k].low) && isfinite(o[k].high))
@@ -149,45 +109,53 @@ static uint32_t only_operand(const Pruning *p, const CellStep *step, uint32_t ro
     return row;
 }
 
-/* How far a box is from a range of points at least. */
-static double distance_of_boxes(const Box *box, const Range at[3])
+/* Few bodies become steps, where that is possible. */
+static bool bodies_expand(const CellTape *tape, const CellCall *call, uint32_t count)
 {
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        const double off = max2(max2(box->axis[k].low - at[k].high, at[k].low - box->axis[k].high),
-                                0);
-        square += off * off;
-    }
-    return sqrt(square) * (1 - 1e-12);
+    return least_of_instances(tape->whole, call->call) && count <= MAX_CELL_INSTANCES &&
+           count * steps_of_instance(call->call->body) <= MAX_BODY_STEPS;
 }
 
-/* Lists the instances of a call that may be the nearest in the ball; none: it stays a call. */
+/* The distance to the instances; of a call that is none, that of another one at the same point, if there is any. */
+static Range distance_of_call(const Pruning *p, const CellCall *call, uint32_t row)
+{
+    const CellTape *tape = p->ball.tape;
+    if (!call->body || distance_of_instances(tape->whole, call->call))
+        return cell_range(&p->ball, row);
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const CellStep *step  = &tape->steps[i];
+        const CellCall *other = &tape->calls[step->op == LANE_CALL ? step->from[0] : 0];
+        if (step->op == LANE_CALL && other->body && other->body->table == call->body->table &&
+            distance_of_instances(tape->whole, other->call) &&
+            memcmp(other->from[1], call->from[1], 3 * sizeof other->from[1][0]) == 0)
+            return cell_range(&p->ball, tape->inputs + LANE_INPUTS + i);
+    }
+    return ANYTHING;
+}
+
+/* Lists the instances of a call that may count in the ball; else it has those that it had. */
 static void find_instances(Pruning *p, const CellStep *step, uint32_t row)
 {
-    const CellTape *tape  = p->ball.tape;
-    const CellCall *call  = &tape->calls[step->from[0]];
-    uint32_t       *found = p->work->instances[step->from[0]], count = 0;
-    const Range     nearest = range_by_slope(&p->ball, row);
-    Range           at[3];
-    p->work->instance_counts[step->from[0]] = 0;
-    if (!least_of_instances(tape->whole, call->call) || !isfinite(nearest.high))
+    const CellTape *tape = p->ball.tape;
+    const CellCall *call = &tape->calls[step->from[0]];
+    CellWork       *work = p->work;
+    CellList       *list = &work->lists[step->from[0]];
+    CellView        view = {.value = distance_of_call(p, call, row)};
+    double          by[3];
+    uint32_t        count;
+    *list = (CellList){call->instances, call->instance_count, false};
+    if (!call->body || work->most_listed - work->listed_count < MAX_LISTED)
         return;
-    const InstanceTable *table =
-        &tape->whole->tape->graph->instances->tables.items[call->call->body->table];
     for (int k = 0; k < 3; k++) {
-        at[k] = range_by_slope(&p->ball, call->from[1][k]);
-        if (!isfinite(at[k].high))
-            return;
+        view.at[k] = cell_range(&p->ball, call->from[1][k]);
+        by[k]      = (double)reach_of(&p->ball, call->from[1][k]);
     }
-    for (uint32_t i = 0; i < table->rows; i++) {
-        if (distance_of_boxes(&table->bounds[i], at) > nearest.high * table->stretch)
-            continue;
-        if (count == MAX_CELL_INSTANCES ||
-            (count + 1) * steps_of_instance(call->call->body) > MAX_BODY_STEPS)
-            return;
-        found[count++] = i;
-    }
-    p->work->instance_counts[step->from[0]] = count;
+    view.radius     = cell_call_moves(call, by, (double)p->ball.radius + (double)p->ball.margin);
+    uint32_t *found = work->listed + work->listed_count;
+    if (!cell_find_instances(call, &view, found, MAX_LISTED, &count))
+        return;
+    *list = (CellList){found, count, bodies_expand(tape, call, count)};
+    work->listed_count += count;
 }
 
 static void need_of_call(Pruning *p, const CellStep *step, uint32_t row)
@@ -275,7 +243,9 @@ static uint32_t simpler(const Pruning *p, const CellStep *step, uint32_t row)
 
 static CellStep moved_step(Pruning *p, const CellStep *from, CellCall *calls, uint32_t *call_count)
 {
-    CellStep step = *from;
+    CellStep    step     = *from;
+    const float steepest = p->ball.steepest[from - p->ball.tape->steps];
+    step.steepest        = isfinite(steepest) ? steepest : 0;
     for (uint32_t k = 0; k < step.operand_count; k++)
         step.from[k] = moved(p, step.from[k]);
     if (step.op != LANE_CALL)
@@ -285,7 +255,9 @@ static CellStep moved_step(Pruning *p, const CellStep *from, CellCall *calls, ui
     for (uint32_t k = 0; k < MAX_OPERANDS; k++)
         for (uint32_t c = 0; c < 4 && call->from[k][c] != NODE_NONE; c++)
             call->from[k][c] = moved(p, call->from[k][c]);
-    step.from[0] = (*call_count)++;
+    call->instances      = p->work->lists[step.from[0]].instances;
+    call->instance_count = p->work->lists[step.from[0]].count;
+    step.from[0]         = (*call_count)++;
     return step;
 }
 
@@ -360,7 +332,9 @@ static uint32_t add_instance(Pruning *p, CellTape *to, const CellCall *call, uin
 static uint32_t add_instances(Pruning *p, CellTape *to, const CellStep *step)
 {
     const CellCall         *call     = &p->ball.tape->calls[step->from[0]];
+    const CellList         *list     = &p->work->lists[step->from[0]];
     const LaneTape         *body     = &call->call->body->tape;
+    const float             steepest = p->ball.steepest[step - p->ball.tape->steps];
     const InstanceFunction *function = least_of_instances(p->ball.tape->whole, call->call);
     for (size_t i = 0; i < body->scalar_count; i++)
         p->work->body_scalars[i] = add_number(
@@ -369,9 +343,9 @@ static uint32_t add_instances(Pruning *p, CellTape *to, const CellStep *step)
                 ? body->sources[i].number
                 : p->work->values[body->sources[i].node].v[body->sources[i].component]);
     uint32_t state = add_number(p, to, function->states[0].first[0]);
-    for (uint32_t i = 0; i < p->work->instance_counts[step->from[0]]; i++)
-        state = add_instance(p, to, call, p->work->instances[step->from[0]][i], state,
-                             step->steepest);
+    for (uint32_t i = 0; i < list->count; i++)
+        state = add_instance(p, to, call, list->instances[i], state,
+                             isfinite(steepest) ? steepest : 0);
     return state;
 }
 
@@ -390,7 +364,7 @@ static void move_step(Pruning *p, CellTape *to, uint32_t i)
         work->now[row] = moved(p, work->same[row]);
         return;
     }
-    if (from->op == LANE_CALL && work->instance_counts[from->from[0]] > 0) {
+    if (from->op == LANE_CALL && work->lists[from->from[0]].expands) {
         work->now[row] = add_instances(p, to, from);
         return;
     }
@@ -402,11 +376,13 @@ static void move_step(Pruning *p, CellTape *to, uint32_t i)
 }
 
 /* The shorter tape, of no steps yet. */
-static CellTape begin_shorter(const CellTape *tape, CellWork *work)
+static CellTape begin_shorter(const Ball *ball, CellWork *work)
 {
-    CellTape to = *tape;
-    to.steps    = work->steps + work->step_count;
-    to.calls    = work->calls + work->call_count;
+    const CellTape *tape = ball->tape;
+    CellTape        to   = *tape;
+    cell_find_slopes(ball, work->steepest, work->ranges);
+    to.steps = work->steps + work->step_count;
+    to.calls = work->calls + work->call_count;
     to.count = to.call_count = 0;
     memset(work->needed, 0,
            (tape->inputs + LANE_INPUTS + (size_t)tape->count) * sizeof *work->needed);
@@ -430,22 +406,25 @@ static void move_steps(Pruning *p, CellTape *to)
 CellTape cell_prune(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
                     float radius, float margin)
 {
-    Pruning     p    = {{tape, work->rows[depth] + lane, radius, margin}, work};
-    CellTape    to   = begin_shorter(tape, work);
+    Pruning     p = {{tape, work->rows[depth] + lane, radius, margin, work->steepest, work->ranges},
+                     work};
+    CellTape    to   = begin_shorter(&p.ball, work);
     const float most = value_of(&p.ball, tape->output) + reach_of(&p.ball, tape->output);
     const float wide = 2 * radius;
     to.cap           = most < wide || tape->cap < wide ? tape->cap : wide;
     need(&p, tape->output, most < wide ? most : wide, -HUGE_VALF);
     move_steps(&p, &to);
     to.output = moved(&p, tape->output);
+    to.reach  = reach_of(&p.ball, tape->output);
     return to;
 }
 
 CellTape cell_prune_rows(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
                          float radius, float margin, uint32_t *rows, size_t count)
 {
-    Pruning  p  = {{tape, work->rows[depth] + lane, radius, margin}, work};
-    CellTape to = begin_shorter(tape, work);
+    Pruning  p  = {{tape, work->rows[depth] + lane, radius, margin, work->steepest, work->ranges},
+                   work};
+    CellTape to = begin_shorter(&p.ball, work);
     for (size_t i = 0; i < count; i++)
         need(&p, rows[i], HUGE_VALF, -HUGE_VALF);
     move_steps(&p, &to);
@@ -454,10 +433,14 @@ CellTape cell_prune_rows(const CellTape *tape, CellWork *work, uint32_t depth, u
     return to;
 }
 
-CellMark cell_mark(const CellWork *work) { return (CellMark){work->step_count, work->call_count}; }
+CellMark cell_mark(const CellWork *work)
+{
+    return (CellMark){work->step_count, work->call_count, work->listed_count};
+}
 
 void cell_release(CellWork *work, CellMark mark)
 {
-    work->step_count = mark.steps;
-    work->call_count = mark.calls;
+    work->step_count   = mark.steps;
+    work->call_count   = mark.calls;
+    work->listed_count = mark.listed;
 }

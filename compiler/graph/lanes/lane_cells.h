@@ -12,6 +12,9 @@
  * the distance leaves the ball by such a step.
  *
  * A step has a row of numbers for itself, so all values are there when cells are bounded.
+ *
+ * Of an instance function the bodies of few near instances become steps.  Else its call keeps a list of those that may
+ * count in the ball, and all lanes visit these together.
  */
 #ifndef KRS_LANE_CELLS_H
 #define KRS_LANE_CELLS_H
@@ -26,11 +29,15 @@ typedef struct CellStep {
     uint16_t op, operand_count;
     uint32_t from[MAX_OPERANDS]; /* 0 behind the last; of LANE_CALL the number of the call */
     float    steepest;           /* as of LaneStep */
+    bool     component;
 } CellStep;
 
 typedef struct CellCall {
-    const LaneCall *call;
-    uint32_t        from[MAX_OPERANDS][4]; /* rows; NODE_NONE behind the last */
+    const LaneCall        *call;
+    const struct CellBody *body;      /* of an instance function, in single precision; or NULL */
+    const uint32_t        *instances; /* the only ones that may count in the ball; NULL: any may */
+    uint32_t               instance_count;
+    uint32_t               from[MAX_OPERANDS][4]; /* rows; NODE_NONE behind the last */
 } CellCall;
 
 typedef struct CellTape {
@@ -41,14 +48,15 @@ typedef struct CellTape {
     uint32_t        inputs; /* the row of the first input: the number of constants */
     uint32_t        output; /* the row of the distance, which is output 0 */
     float           cap;    /* infinite: it is right all over the ball */
+    float reach; /* how much the distance differs in the ball from that in its middle, at most */
 } CellTape;
 
 /* The work of one thread; cell_work_new makes it. */
 typedef struct CellWork CellWork;
 
-/* The cell tape of output 0 for all of space; the lane tape lives as long, and its scalars are known when
-   works are made. */
-CellTape cell_tape_new(const LaneTape *tape, Arena *arena);
+/* The cell tape of output 0 for all of space; the lane tape lives as long, and its scalars are known.  Values are those
+   of the frame. */
+CellTape cell_tape_new(const LaneTape *tape, const NodeValue *values, Arena *arena);
 
 /* What one thread needs for cells within cells: `depth` of them, each within the one before.  Values are those of the
    frame, its own if the tape reads tables. */
@@ -76,6 +84,9 @@ const float *cell_run_surfaces(const CellTape *tape, CellWork *work, uint32_t de
 /* How much a row differs in a ball from its value in the middle, at most. */
 float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float margin);
 
+/* How many steps all lanes take by it, those for instances of lists included. */
+size_t cell_cost(const CellTape *tape);
+
 /* How much the distance differs in a ball from that in its middle, at most. */
 float cell_reach(const CellTape *tape, float radius, float margin);
 
@@ -83,7 +94,7 @@ float cell_reach(const CellTape *tape, float radius, float margin);
    `margin` is what rounding may make of coordinates.  The new tape lives until its mark, which was
    taken before, is released.  As many may live as the work has depth. */
 typedef struct CellMark {
-    size_t steps, calls;
+    size_t steps, calls, listed;
 } CellMark;
 CellMark cell_mark(const CellWork *work);
 void     cell_release(CellWork *work, CellMark mark);

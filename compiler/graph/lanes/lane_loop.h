@@ -27,8 +27,50 @@ LESSER(float, float)
 #define fmax(a, b) _Generic((a) + (b), float : float_greatest, default : double_greatest)(a, b)
 
 #include "compiler/graph/lanes/lane_call.h"
-#include "compiler/graph/lanes/lane_cells.h"
+#include "compiler/graph/lanes/lane_cell_work.h"
 #include "compiler/graph/op_values.h"
+
+#include "compiler/graph/lanes/lane_math.h"
+
+/* In single precision functions that the C library would be called for are loops, too. */
+#undef sin
+#undef cos
+#undef tan
+#undef asin
+#undef acos
+#undef atan
+#undef sinh
+#undef cosh
+#undef tanh
+#undef exp
+#undef exp2
+#undef log
+#undef log2
+#undef log1p
+#undef hypot
+#define OF_SINGLE(a, single, other) _Generic((a), float : single, default : other)
+#define sin(a)                      OF_SINGLE(a, lane_sin, sin)(a)
+#define cos(a)                      OF_SINGLE(a, lane_cos, cos)(a)
+#define tan(a)                      OF_SINGLE(a, lane_tan, tan)(a)
+#define asin(a)                     OF_SINGLE(a, lane_asin, asin)(a)
+#define acos(a)                     OF_SINGLE(a, lane_acos, acos)(a)
+#define atan(a)                     OF_SINGLE(a, lane_atan, atan)(a)
+#define sinh(a)                     OF_SINGLE(a, lane_sinh, sinh)(a)
+#define cosh(a)                     OF_SINGLE(a, lane_cosh, cosh)(a)
+#define tanh(a)                     OF_SINGLE(a, lane_tanh, tanh)(a)
+#define exp(a)                      OF_SINGLE(a, lane_exp, exp)(a)
+#define exp2(a)                     OF_SINGLE(a, lane_exp2, exp2)(a)
+#define log(a)                      OF_SINGLE(a, lane_log, log)(a)
+#define log2(a)                     OF_SINGLE(a, lane_log2, log2)(a)
+#define log1p(a)                    OF_SINGLE(a, lane_log1p, log1p)(a)
+#define hypot(a, b)                 OF_SINGLE((a) + (b), lane_hypot, hypot)(a, b)
+#define value_sign(a)               OF_SINGLE(a, lane_sign, value_sign)(a)
+#define value_unit(a)               OF_SINGLE(a, lane_unit, value_unit)(a)
+#define value_mod(a, b)             OF_SINGLE((a) + (b), lane_mod, value_mod)(a, b)
+#define value_pow(a, b)             OF_SINGLE((a) + (b), lane_pow, value_pow)(a, b)
+#define value_atan2(a, b)           OF_SINGLE((a) + (b), lane_atan2, value_atan2)(a, b)
+#define value_smoothstep(a, b, c)   OF_SINGLE((a) + (b), lane_smoothstep, value_smoothstep)(a, b, c)
+#define value_stairs(a, b, k, n)    OF_SINGLE((a) + (b), lane_stairs, value_stairs)(a, b, k, n)
 
 #ifdef __clang__
 #define LANES_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
@@ -251,11 +293,67 @@ void LANE_LOOP(const LaneTape *tape, const LaneWork *work, size_t points)
 #ifdef CELL_LOOP
 /* ---- cell tapes ---- */
 
+/* All lanes of a cell tape.  gcc would else unroll the loop before it looks for vectors. */
+#ifdef __clang__
+#define ALL_LANES EACH_LANE(CELL_LANES / LANE_BLOCK)
+#else
+#define ALL_LANES LANES_INDEPENDENT _Pragma("GCC unroll 1") for (size_t i = 0; i < CELL_LANES; i++)
+#endif
+
+#include "compiler/graph/lanes/lane_cell_calls.h"
+
+/* What the operation behind the bodies makes of the states. */
+static bool LOCAL(cell_joined)(const CellTape *tape, const CellCall *call, CellStates states,
+                               REAL *to)
+{
+    const InstanceFunction *function = call->body->function;
+    const Graph            *graph    = tape->whole->tape->graph;
+    const Node  node = graph->instances->bodies.items[function->first_body + function->state_count];
+    const REAL *x[16] = {NULL};
+    uint32_t    count = 0;
+    for (uint32_t k = 0; k < graph->items[node].operand_count; k++)
+        for (uint32_t c = 0; c < components(function->states[k].type); c++)
+            x[count++] = states[4 * k + c];
+    return LOCAL(call_of_lanes)((Op)graph->items[node].op, x, &to);
+}
+
+/* An instance function over the instances of its list. */
+static void LOCAL(cell_instances)(const CellTape *tape, NodeValue *values, const CellCall *call,
+                                  REAL *rows, REAL *to)
+{
+    _Alignas(64) CellStates states;
+    const InstanceFunction *function = call->body->function;
+    cell_visit(call, values, rows, states, CELL_LOOP);
+    if (function->sums) {
+        const REAL *least = states[0], *sum = states[4], *width = states[8];
+        ALL_LANES { to[i] = least[i] - width[i] * lane_log(sum[i] > 1 ? sum[i] : 1); }
+    } else if (!function->joins) {
+        memcpy(to, states, call->call->parts * sizeof states[0]);
+    } else if (!LOCAL(cell_joined)(tape, call, states, to)) {
+        cell_join(call, tape->whole->tape->graph, states, to);
+    }
+}
+
 static void LOCAL(cell_call)(const CellTape *tape, NodeValue *values, const CellCall *call,
                              REAL *rows, REAL *to)
 {
     const LaneTape *whole = tape->whole;
     const Expr     *e     = &whole->tape->graph->items[call->call->node];
+    const REAL     *x[16] = {NULL};
+    REAL           *parts[4];
+    size_t          count = 0;
+    if (call->instances) {
+        LOCAL(cell_instances)(tape, values, call, rows, to);
+        return;
+    }
+    for (uint32_t k = 0; k < MAX_OPERANDS; k++)
+        for (uint32_t c = 0; c < 4 && call->from[k][c] != NODE_NONE; c++)
+            x[count++] = rows + (size_t)call->from[k][c] * CELL_LANES;
+    for (uint32_t c = 0; c < 4; c++)
+        parts[c] = to + (size_t)c * CELL_LANES;
+    if (LOCAL(call_of_lanes)((Op)e->op, x, parts) ||
+        (e->op == OP_row && cell_read_rows(whole->tape->graph, e, values, x[1], to)))
+        return;
     for (size_t i = 0; i < CELL_LANES; i++) {
         NodeValue operands[MAX_OPERANDS] = {0};
         for (uint32_t k = 0; k < e->operand_count; k++)
@@ -266,13 +364,6 @@ static void LOCAL(cell_call)(const CellTape *tape, NodeValue *values, const Cell
             to[c * CELL_LANES + i] = (REAL)value.v[c];
     }
 }
-
-/* All lanes of a cell tape.  gcc would else unroll the loop before it looks for vectors. */
-#ifdef __clang__
-#define ALL_LANES EACH_LANE(CELL_LANES / LANE_BLOCK)
-#else
-#define ALL_LANES LANES_INDEPENDENT _Pragma("GCC unroll 1") for (size_t i = 0; i < CELL_LANES; i++)
-#endif
 
 /* The row of an operand; its lanes. */
 #define CELL_ROW(k) (rows + (size_t)step->from[k] * CELL_LANES)
@@ -332,7 +423,10 @@ void CELL_LOOP(const CellTape *tape, NodeValue *values, REAL *rows)
         case LANE_CALL:
             LOCAL(cell_call)(tape, values, &tape->calls[step->from[0]], rows, to);
             break;
-        case LANE_PART: break;
+        case LANE_PART:
+        case LANE_INSTANCE:
+        case LANE_ROW:
+        case LANE_STATE: break; /* who runs the body has filled the row */
         case LANE_NUMBER: LOCAL(cell_number)(step, to); break;
         default: assert(!"no step");
         }

@@ -216,8 +216,11 @@ static void emit_call(Builder *b, Node node, uint32_t *to)
 {
     const Expr *e    = &b->graph->items[node];
     LaneCall    call = {.node = node, .parts = components(e->type)};
-    if (is_call((Op)e->op))
+    if (is_call((Op)e->op)) {
         call.body = b->bodies[(size_t)b->graph->items[e->operands[0]].number[0]];
+        if (b->steepest && isfinite(b->steepest[e->operands[1]]))
+            call.steepest = (float)(b->steepest[e->operands[1]] * (1 + 1e-6));
+    }
     for (uint32_t k = 0; k < e->operand_count; k++)
         memcpy(call.operands[k], parts_of(b, e->operands[k])->of, sizeof call.operands[k]);
     array_push(b->arena, &b->to->calls, call);
@@ -308,6 +311,11 @@ static void add_outputs(Builder *b, Node root)
 static uint32_t emit_least(Builder *b, const Node *roots, size_t count, size_t cuts)
 {
     assert(count > cuts);
+    for (size_t i = 0; i < count - cuts; i++) {
+        const uint32_t root = parts_of(b, roots[i])->of[0];
+        if (!(root & LANE_SCALAR) && root >= LANE_INPUTS)
+            b->to->steps.items[root - LANE_INPUTS].component = true;
+    }
     uint32_t least = parts_of(b, roots[0])->of[0];
     for (size_t i = 1; i < count - cuts; i++)
         least = emit2(b, LANE_LESSER, least, parts_of(b, roots[i])->of[0]);

@@ -56,6 +56,7 @@ typedef struct LaneStep {
         steepest; /* it changes no faster than that with the point, and jumps nowhere; 0: not known */
     uint32_t
         origin; /* 1 and the step of the tape before all pruning that has the same value; 0: not known */
+    bool component; /* of `least`: no surface of the component is nearer than its value */
     uint32_t
         kin; /* the same for steps that are one step of the tape, or of a body, at different instances */
 } LaneStep;
@@ -73,9 +74,11 @@ typedef struct LaneCall {
     const struct LaneBody *body; /* in double precision; or NULL */
     const uint32_t *instances;   /* of a pruned tape: the only ones that may count; NULL: any may */
     uint32_t        instance_count;
-    uint32_t        parts; /* components of the result, each a step */
-    uint32_t        operands[MAX_OPERANDS][4];
-    uint32_t        from[MAX_OPERANDS][4], to[4]; /* rows */
+    float
+        steepest; /* of an instance function: its point changes no faster than that; 0: not known */
+    uint32_t parts; /* components of the result, each a step */
+    uint32_t operands[MAX_OPERANDS][4];
+    uint32_t from[MAX_OPERANDS][4], to[4]; /* rows */
 } LaneCall;
 
 /* The source of a scalar: a component of a node of the frame, or, with NODE_NONE, a number. */
