@@ -128,6 +128,35 @@ size_t cell_cost(const CellTape *tape)
     return cost;
 }
 
+/* ---- how far instances are ---- */
+
+/* How far a curve is at least: it is not farther from its chord than a quarter of its bend. */
+static double distance_to_arc(const InstanceArc *arc, const double point[2])
+{
+    double chord[2], from[2], square = 0, along = 0;
+    for (int k = 0; k < 2; k++) {
+        chord[k] = 2 * arc->tangent[k] + arc->bend[k];
+        from[k]  = point[k] - arc->start[k];
+        square += chord[k] * chord[k];
+        along += chord[k] * from[k];
+    }
+    const double t = square > 0 ? min2(max2(along / square, 0), 1) : 0;
+    const double x = from[0] - t * chord[0], y = from[1] - t * chord[1];
+    return sqrt(x * x + y * y) -
+           0.25 * sqrt(arc->bend[0] * arc->bend[0] + arc->bend[1] * arc->bend[1]);
+}
+
+static double distance_of_boxes(const Box *box, const CellView *view)
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        const double off = max2(
+            max2(box->axis[k].low - view->at[k].high, view->at[k].low - box->axis[k].high), 0);
+        square += off * off;
+    }
+    return sqrt(square) * (1 - 1e-12);
+}
+
 /* ---- in all lanes ---- */
 
 static void fill(float *row, float number)
@@ -174,24 +203,88 @@ static void begin_visit(const CellCall *call, const float *rows, float *inner, C
             fill(states[4 * k + c], (float)body->function->states[k].first[c]);
 }
 
-void cell_visit(const CellCall *call, NodeValue *values, float *rows, CellStates states,
-                LaneCellRun *run)
+/* Takes one more instance into the states. */
+static void visit(const CellCall *call, NodeValue *values, uint32_t instance, float *inner,
+                  CellStates states, LaneCellRun *run)
 {
     const CellBody *body  = call->body;
     const uint32_t  count = 4 * body->function->state_count;
-    const size_t    row   = CELL_LANES * sizeof *rows;
+    const size_t    row   = CELL_LANES * sizeof *inner;
+    read_instance(body, values, instance, inner);
+    for (uint32_t k = 0; k < count; k++)
+        if (body->states[k])
+            memcpy(inner + (size_t)body->states[k] * CELL_LANES, states[k], row);
+    run(&body->tape, values, inner);
+    for (uint32_t k = 0; k < count; k++)
+        if (body->outputs[k] != NODE_NONE)
+            memcpy(states[k], inner + (size_t)body->outputs[k] * CELL_LANES, row);
+}
+
+/* The box around the points of a call. */
+static CellView find_box(const CellCall *call, const float *rows)
+{
+    CellView view = {.radius = 0};
+    for (uint32_t c = 0; c < 3; c++) {
+        const float *x  = rows + (size_t)call->from[1][c] * CELL_LANES;
+        Range        at = range_of((double)x[0]);
+        for (int i = 1; i < CELL_LANES; i++)
+            at = (Range){min2(at.low, (double)x[i]), max2(at.high, (double)x[i])};
+        view.at[c] = at;
+    }
+    return view;
+}
+
+/* What an instance must be nearer than to count in some lane, with room for rounding. */
+static double farthest_of(const float *state, double size)
+{
+    double farthest = 0;
+    for (int i = 0; i < CELL_LANES; i++)
+        farthest = max2(farthest, fabs((double)state[i]));
+    return farthest + 1e-5 * (farthest + size);
+}
+
+/* Visits the nearest one first, and then those that may be nearer than what is found.  Points are near each other, more so
+   than all of the ball. */
+static void visit_nearest(const CellCall *call, NodeValue *values, const CellView *view,
+                          float *inner, CellStates states, LaneCellRun *run)
+{
+    const InstanceTable *table     = call->body->table;
+    const double         middle[2] = {0.5 * (view->at[0].low + view->at[0].high),
+                                      0.5 * (view->at[1].low + view->at[1].high)};
+    const double         radius    = hypot(0.5 * (view->at[0].high - view->at[0].low),
+                                           0.5 * (view->at[1].high - view->at[1].low));
+    const double         size      = fabs(middle[0]) + fabs(middle[1]) + radius;
+    double               least[MAX_LISTED];
+    uint32_t             first = 0;
+    for (uint32_t i = 0; i < call->instance_count; i++) {
+        const uint32_t instance = call->instances[i];
+        least[i] = table->arcs ? distance_to_arc(&table->arcs[instance], middle) - radius
+                               : distance_of_boxes(&table->bounds[instance], view) / table->stretch;
+        first    = least[i] < least[first] ? i : first;
+    }
+    visit(call, values, call->instances[first], inner, states, run);
+    double farthest = farthest_of(states[0], size);
+    for (uint32_t i = 0; i < call->instance_count; i++)
+        if (i != first && !(least[i] > farthest)) {
+            visit(call, values, call->instances[i], inner, states, run);
+            farthest = farthest_of(states[0], size);
+        }
+}
+
+void cell_visit(const CellCall *call, NodeValue *values, float *rows, CellStates states,
+                LaneCellRun *run)
+{
+    enum { FEW = 3 };
+    const CellBody *body  = call->body;
     float          *inner = rows + (size_t)body->first_row * CELL_LANES;
     begin_visit(call, rows, inner, states);
-    for (uint32_t i = 0; i < call->instance_count; i++) {
-        read_instance(body, values, call->instances[i], inner);
-        for (uint32_t k = 0; k < count; k++)
-            if (body->states[k])
-                memcpy(inner + (size_t)body->states[k] * CELL_LANES, states[k], row);
-        run(&body->tape, values, inner);
-        for (uint32_t k = 0; k < count; k++)
-            if (body->outputs[k] != NODE_NONE)
-                memcpy(states[k], inner + (size_t)body->outputs[k] * CELL_LANES, row);
+    if (body->sharp && call->instance_count > FEW && (body->table->arcs || body->table->bounds)) {
+        const CellView view = find_box(call, rows);
+        visit_nearest(call, values, &view, inner, states, run);
+        return;
     }
+    for (uint32_t i = 0; i < call->instance_count; i++)
+        visit(call, values, call->instances[i], inner, states, run);
 }
 
 bool cell_read_rows(const Graph *graph, const Expr *row, const NodeValue *values,
@@ -237,33 +330,6 @@ double cell_call_moves(const CellCall *call, const double by[3], double point)
                : moves;
 }
 
-/* How far a curve is at least: it is not farther from its chord than a quarter of its bend. */
-static double distance_to_arc(const InstanceArc *arc, const double point[2])
-{
-    double chord[2], from[2], square = 0, along = 0;
-    for (int k = 0; k < 2; k++) {
-        chord[k] = 2 * arc->tangent[k] + arc->bend[k];
-        from[k]  = point[k] - arc->start[k];
-        square += chord[k] * chord[k];
-        along += chord[k] * from[k];
-    }
-    const double t = square > 0 ? min2(max2(along / square, 0), 1) : 0;
-    const double x = from[0] - t * chord[0], y = from[1] - t * chord[1];
-    return sqrt(x * x + y * y) -
-           0.25 * sqrt(arc->bend[0] * arc->bend[0] + arc->bend[1] * arc->bend[1]);
-}
-
-static double distance_of_boxes(const Box *box, const Range at[3])
-{
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        const double off = max2(max2(box->axis[k].low - at[k].high, at[k].low - box->axis[k].high),
-                                0);
-        square += off * off;
-    }
-    return sqrt(square) * (1 - 1e-12);
-}
-
 bool cell_find_instances(const CellCall *call, const CellView *view, uint32_t *instances,
                          uint32_t most, uint32_t *count)
 {
@@ -285,7 +351,7 @@ bool cell_find_instances(const CellCall *call, const CellView *view, uint32_t *i
     for (uint32_t i = 0; i < all; i++) {
         const uint32_t instance = call->instances ? call->instances[i] : i;
         if (table->arcs ? distance_to_arc(&table->arcs[instance], middle) > farthest
-                        : distance_of_boxes(&boxes[instance], view->at) > reach)
+                        : distance_of_boxes(&boxes[instance], view) > reach)
             continue;
         if (*count == most)
             return false;
