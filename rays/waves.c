@@ -84,6 +84,28 @@ static void end_blocked(const Wave *wave, RayBlock *block, const bool marched[RA
     }
 }
 
+/* How far a point is from the box around all that is marched, at least. */
+static float distance_to_box(const RayField *field, const float point[3])
+{
+    float square = 0;
+    for (int k = 0; k < 3; k++) {
+        const float off = fmaxf(fmaxf(field->low[k] - point[k], point[k] - field->high[k]), 0);
+        square += off * off;
+    }
+    return 0.9999f * sqrtf(square);
+}
+
+/* Cones go on outside of the box.  Where that is farther away than they are wide, it is asked in place of all that is in
+   it. */
+static bool is_beside(const Wave *wave, const RayBlock *block, uint32_t i, const float point[3],
+                      float t, float *distance)
+{
+    if (!wave->rule->cones || !(wave->space->side > 0))
+        return false;
+    *distance = distance_to_box(wave->field, point);
+    return *distance > 2 * (block->cone[i] * t + block->margin[i]);
+}
+
 /* Lists the rays of a block by cubes; false: none marches. */
 static bool sort_rays(Wave *wave, uint32_t b)
 {
@@ -92,10 +114,12 @@ static bool sort_rays(Wave *wave, uint32_t b)
     for (uint32_t i = 0; i < RAYS_OF_BLOCK && rays > 0; i++) {
         if (block->state[i] != RAY_MARCHES && block->state[i] != RAY_REFINES)
             continue;
-        const float    point[3] = {wave->points[b][0][i], wave->points[b][1][i],
-                                   wave->points[b][2][i]};
-        const uint32_t number   = space_find(wave->space, point);
-        SpaceCube     *cube     = &wave->space->cubes[number];
+        const float point[3] = {wave->points[b][0][i], wave->points[b][1][i],
+                                wave->points[b][2][i]};
+        if (is_beside(wave, block, i, point, wave->at[b][i], &wave->distances[b][i]))
+            continue;
+        const uint32_t number = space_find(wave->space, point);
+        SpaceCube     *cube   = &wave->space->cubes[number];
         if (cube->rays < 0)
             wave->cubes[wave->cube_count++] = number;
         wave->next[b * RAYS_OF_BLOCK + i] = cube->rays;
