@@ -302,7 +302,7 @@ static KrsPurpose purpose_of(const Render *render)
     return how->integrator != KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PATHS
            : lanes                                   ? KRS_FOR_LANES
            : small                                   ? KRS_FOR_SMALL_PICTURES
-                                                     : KRS_FOR_PICTURES;
+                                                     : KRS_FOR_FIRST_PICTURES;
 }
 
 /* The scene has literals so far. */

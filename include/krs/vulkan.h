@@ -108,10 +108,13 @@ typedef enum KrsPurpose {
     KRS_FOR_PICTURES,       /* krs_render, by the integrator preview */
     KRS_FOR_QUESTIONS,      /* krs_device_probe, krs_device_raycast */
     KRS_FOR_PATHS,          /* krs_render, by the integrators direct and path */
-    KRS_FOR_SMALL_PICTURES, /* as KRS_FOR_PICTURES, of few rays in all: fewer shaders, which are ready
-                               earlier, and are slower.  Pictures differ within the permitted error */
-    KRS_FOR_LANES /* as KRS_FOR_PICTURES, by the executor LANES: no shader contains the scene, unless it
-                     has mirrors or glass */
+    KRS_FOR_SMALL_PICTURES, /* as KRS_FOR_FIRST_PICTURES, of few rays in all: fewer shaders, which are
+                               ready earlier, and are slower.  Pictures differ within the permitted error */
+    KRS_FOR_LANES, /* as KRS_FOR_PICTURES, by the executor LANES: no shader contains the scene, unless it
+                      has mirrors or glass */
+    KRS_FOR_FIRST_PICTURES /* as KRS_FOR_PICTURES, but shaders are compiled only when a picture is asked for,
+                              and by the executor DEFAULT not before lanes would take longer than
+                              compilers and shaders together */
 } KrsPurpose;
 
 /* Compiles the scene's shaders, for a purpose.  The scene must outlive the rendering.  On any status

@@ -175,6 +175,14 @@ static ShaderCode take_code(ShaderBuild *build)
     return code;
 }
 
+bool shader_is_known(Gpu *gpu, const ShaderSource *source)
+{
+    ShaderBuild build;
+    const bool  known = begin(gpu, &build, source) && (build.found || build.shared);
+    release(gpu, &build);
+    return known;
+}
+
 bool shader_compile_all(Gpu *gpu, const ShaderRequest *requests, size_t count, ShaderCode *codes,
                         double *spirv_ms)
 {

@@ -67,6 +67,8 @@ typedef struct ShaderRequest {
     ShaderSource source;
 } ShaderRequest;
 
+/* Tells whether a shader of this text is in the cache, or was made by this process. */
+bool shader_is_known(Gpu *gpu, const ShaderSource *source);
 /* The two halves of it: several shaders are compiled at the same time, and become pipelines of a
    device.  Codes are the caller's to release, in either case; a shader that was not made is
    zero. */

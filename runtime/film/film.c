@@ -11,6 +11,7 @@
 
 #include "runtime/tracer/band.h"
 #include "runtime/integrators/integrators.h"
+#include "runtime/film/executor.h"
 #include "runtime/film/resident.h"
 #include "runtime/film/inputs.h"
 #include "runtime/film/lights.h"
@@ -321,7 +322,7 @@ static KrsStatus add_moment(KrsFilm *film, const Addition *a)
                .part_begun     = a->part_begun,
                .part           = a->part,
                .stats          = &film->sums->stats};
-    if (!job_read_frame(&job, a->state, a->camera))
+    if (!job_read_frame(&job, a->state, a->camera) || !executor_choose(&job, a->samples))
         return job.gpu->status;
     film->rendering->catches = plate_catches(film);
     Plan plan                = {.gpu = job.gpu};

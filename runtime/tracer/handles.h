@@ -51,6 +51,13 @@ typedef struct LaneFields {
     struct SurfaceField *surfaces;
 } LaneFields;
 
+/* Milliseconds of a sample of a pixel, by lanes and by shaders, of compilers, and what lanes have taken longer than shaders
+   would have. */
+typedef struct LaneTimes {
+    bool   known;
+    double lanes, shaders, compile, lost;
+} LaneTimes;
+
 /* Shaders that are made while the host does other work (prewarm_thread.c). */
 typedef struct PrewarmThread PrewarmThread;
 
@@ -128,11 +135,13 @@ struct KrsRendering {
     /* The largest number that any shaders have room for. */
     uint32_t   max_zone_slots;
     bool       camera_relative; /* this frame's points are relative to the camera */
-    KrsPurpose purpose;
-    RayKind    scene_rays; /* the kind for the scene's own cameras */
-    RayKind    rays;       /* the kind for this frame */
-    bool       snaps;      /* this frame's hits are snapped, as those of paths */
-    bool       catches;    /* this frame's plate catches shadows */
+    KrsPurpose purpose;         /* KRS_FOR_FIRST_PICTURES is KRS_FOR_PICTURES, deferred */
+    bool       defers;          /* shaders of a scene are made when a picture needs them */
+    bool       deferred;        /* they have not been made so far (film/executor.h) */
+    RayKind    scene_rays;      /* the kind for the scene's own cameras */
+    RayKind    rays;            /* the kind for this frame */
+    bool       snaps;           /* this frame's hits are snapped, as those of paths */
+    bool       catches;         /* this frame's plate catches shadows */
     double     spirv_ms, pipeline_ms;
 
     VkDescriptorPool pool;
@@ -153,6 +162,7 @@ struct KrsRendering {
     Buffer       points, answers;             /* for point_query.comp */
     Buffer       query_rays, ray_hits, taken; /* for query.comp */
     LaneFields   lane_fields;
+    LaneTimes    lane_times; /* (film/executor.h) */
     /* The items of a slice, as learned, for each phase; [1]: for shaders with the scene. */
     double items_at_once[KRS_PHASE_COUNT][2];
 };

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <time.h>
 
 #include "compiler/base/parallel.h"
 #include "runtime/tracer/dispatch.h"
@@ -192,6 +193,16 @@ static RayRule rule_of(const Job *job)
                      .plain        = job->rendering->program->plain};
 }
 
+/* Begins blocks [first, first + count) of a tile. */
+static void begin_blocks(const Slice *slice, size_t part, uint32_t tile, uint32_t first,
+                         uint32_t count, RayBlock *blocks)
+{
+    for (uint32_t b = 0; b < count; b++) {
+        begin_block(slice, corner_of(slice, tile, first + b), &blocks[b]);
+        ray_field_meet_planes(slice->field, part, slice->job->frame.farthest, &blocks[b]);
+    }
+}
+
 static void march_tiles(void *task, size_t part, size_t parts)
 {
     Slice        *slice  = task;
@@ -199,10 +210,7 @@ static void march_tiles(void *task, size_t part, size_t parts)
     RayBlock     *blocks = slice->blocks[part];
     (void)parts;
     for (uint32_t tile; (tile = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
-        for (uint32_t b = 0; b < BLOCKS_OF_TILE; b++) {
-            begin_block(slice, corner_of(slice, tile, b), &blocks[b]);
-            ray_field_meet_planes(slice->field, part, slice->job->frame.farthest, &blocks[b]);
-        }
+        begin_blocks(slice, part, tile, 0, BLOCKS_OF_TILE, blocks);
         slice->evaluations[part] += ray_field_march(slice->field, part, blocks, BLOCKS_OF_TILE,
                                                     &rule);
         for (uint32_t b = 0; b < BLOCKS_OF_TILE; b++)
@@ -330,6 +338,48 @@ bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work)
     const bool good = run_slices(job, &slice, KRS_PHASE_PRIMARY, tiles[0] * tiles[1], march_tiles);
     add_counts(job, &slice);
     return good;
+}
+
+/* Milliseconds of this thread. */
+static double thread_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+/* Quarters of tiles are taken far apart, as some have nothing; before them a smaller part, where a quarter would take too
+   long. */
+bool lane_rays_try(Job *job, RayField *field, double budget_ms, LaneTrial *trial)
+{
+    enum { FIRST = 4, QUARTER = BLOCKS_OF_TILE / 4 };
+    const uint32_t size[2] = {job->options.width, job->options.height};
+    WorkBlock      whole   = {.extent = {size[0], size[1]}, .offset = {0.5f, 0.5f}};
+    Slice          slice   = {.job = job, .field = field, .work = &whole};
+    const RayRule  rule    = rule_of(job);
+    RayBlock      *blocks  = gpu_alloc(job->gpu, QUARTER, sizeof *blocks, "march rays");
+    uint32_t       tried = 0, count = FIRST;
+    double         rays = 0;
+    if (!blocks)
+        return false;
+    place_box(&slice);
+    slice.across         = (size[0] + SIDE - 1) / SIDE;
+    const uint32_t tiles = slice.across * ((size[1] + SIDE - 1) / SIDE);
+    const uint64_t step  = rendering_spread(job->rendering, tiles);
+    const double   start = thread_ms();
+    for (*trial = (LaneTrial){0}; tried < tiles && trial->ms < budget_ms;
+         tried++, count = QUARTER) {
+        const uint32_t tile = (uint32_t)((tiles / 2 + tried * step) % tiles);
+        begin_blocks(&slice, 0, tile, tried % 4 * QUARTER, count, blocks);
+        trial->evaluations += (double)ray_field_march(field, 0, blocks, count, &rule);
+        trial->ms = thread_ms() - start;
+        rays += (double)count * RAYS_OF_BLOCK;
+    }
+    const double times = (double)size[0] * size[1] / rays;
+    trial->ms *= times;
+    trial->evaluations *= times;
+    gpu_release(job->gpu, blocks);
+    return true;
 }
 
 bool lane_rays_march_secondary(Job *job, RayField *field, KrsPhase phase, uint32_t items,

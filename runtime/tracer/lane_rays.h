@@ -20,6 +20,14 @@ bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work);
 bool lane_rays_march_secondary(Job *job, RayField *field, KrsPhase phase, uint32_t count,
                                const WorkBlock *work);
 
+/* What a trial tells of all primary rays of a picture: milliseconds of one processor, and distances. */
+typedef struct LaneTrial {
+    double ms, evaluations;
+} LaneTrial;
+
+/* Marches small parts of the picture, for about so many milliseconds; false with the failure noted. */
+bool lane_rays_try(Job *job, RayField *field, double budget_ms, LaneTrial *trial);
+
 /* The slot of a pixel, which is counted in the band: as in hit_lists.glsl. */
 uint32_t lane_rays_slot(const WorkBlock *work, const uint32_t pixel[2]);
 

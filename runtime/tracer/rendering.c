@@ -159,8 +159,10 @@ KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPur
     KrsRendering *rendering = gpu_alloc(&renderer->gpu, 1, sizeof *rendering, "prepare the scene");
     if (!rendering)
         return renderer->gpu.status;
-    rendering->renderer    = renderer;
-    rendering->purpose     = purpose;
+    rendering->renderer = renderer;
+    rendering->purpose  = purpose == KRS_FOR_FIRST_PICTURES ? KRS_FOR_PICTURES : purpose;
+    rendering->defers = rendering->deferred = purpose == KRS_FOR_FIRST_PICTURES ||
+                                              purpose == KRS_FOR_SMALL_PICTURES;
     rendering->snaps       = purpose == KRS_FOR_PATHS;
     rendering->spirv_ms    = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
@@ -169,12 +171,14 @@ KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPur
         for (int has_scene = 0; has_scene < 2; has_scene++)
             rendering->items_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
     if (!sets_create(rendering) || !buffers_create(rendering) ||
-        !shaders_create(rendering, purpose)) {
+        !shaders_create(rendering, rendering->purpose)) {
         KrsStatus status = renderer->gpu.status;
         prewarm_end(renderer); /* it may still use the queue */
         krs_rendering_free(rendering);
         return status;
     }
+    if (rendering->deferred)
+        prewarm_end(renderer); /* pictures use the queue before shaders are made */
     *out = rendering;
     return KRS_OK;
 }
@@ -189,8 +193,9 @@ static void drop_scene(Gpu *gpu, KrsRendering *dropped)
     lane_fields_free(&dropped->lane_fields);
 }
 
-/* Takes the rendering over to a scene.  What the scene before has stays, for the case that this fails. */
-static bool change_scene(KrsRendering *rendering, const KrsScene *scene)
+/* Takes the rendering over to a scene; `stays`: its shaders are the same.  What the scene before has stays, for the case that
+   this fails. */
+static bool change_scene(KrsRendering *rendering, const KrsScene *scene, bool stays)
 {
     rendering->parameters = rendering->table_rows = rendering->table_cells = (Buffer){0};
     rendering->table_inputs                                                = NULL;
@@ -198,6 +203,10 @@ static bool change_scene(KrsRendering *rendering, const KrsScene *scene)
     rendering->zone_slots = rendering->max_zone_slots = 0;
     rendering->camera_relative                        = false;
     set_scene(rendering, scene);
+    if (!stays) {
+        rendering->deferred   = rendering->defers;
+        rendering->lane_times = (LaneTimes){0};
+    }
     return scene_buffers_create(rendering) && shaders_create(rendering, rendering->purpose);
 }
 
@@ -220,7 +229,7 @@ KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
         shaders_adopt(&rendering->shaders, scene);
     else
         rendering->shaders = (ShaderMap){0};
-    const bool      ready   = change_scene(rendering, scene);
+    const bool      ready   = change_scene(rendering, scene, stay);
     const KrsStatus status  = gpu->status;
     KrsRendering    dropped = ready ? before : *rendering;
     if (!stay)

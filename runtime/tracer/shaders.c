@@ -304,29 +304,48 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
         request_paths(requests, trace, schedule);
 }
 
-bool shaders_create(KrsRendering *rendering, KrsPurpose purpose)
+/* Requests the shaders for a purpose. */
+static void request_all(Requests *requests, KrsPurpose purpose)
 {
-    KrsTrace    trace    = KRS_TRACE_DEFAULT;
-    KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
-    Requests    requests = {.rendering = rendering};
+    KrsRendering *rendering = requests->rendering;
+    KrsTrace      trace     = KRS_TRACE_DEFAULT;
+    KrsSchedule   schedule  = KRS_SCHEDULE_DEFAULT;
     rendering_choose(rendering, &trace, &schedule);
-    request_sceneless(&requests, purpose);
+    request_sceneless(requests, purpose);
     if (purpose == KRS_FOR_LANES ||
         (is_for_pictures(purpose) && krs_scene_too_large(rendering->scene))) {
         const bool found = surface_field_suits(rendering->scene);
-        request(&requests, "shade.comp",
+        request(requests, "shade.comp",
                 found ? variant_of_shade_found(rendering) : variant_of_shade(rendering));
         if (!found)
-            request(&requests, "occluders.comp", variant_of_occluders(rendering));
+            request(requests, "occluders.comp", variant_of_occluders(rendering));
     } else if (is_for_pictures(purpose)) {
-        request_pictures(&requests, trace, schedule_of_shader(schedule));
+        request_pictures(requests, trace, schedule_of_shader(schedule));
     } else if (purpose == KRS_FOR_PATHS) {
-        request_marches(&requests, trace, schedule_of_shader(schedule));
-        request_paths(&requests, trace, schedule_of_shader(schedule));
+        request_marches(requests, trace, schedule_of_shader(schedule));
+        request_paths(requests, trace, schedule_of_shader(schedule));
     } else {
-        request(&requests, "query.comp", variant_of_questions(rendering, schedule));
-        request(&requests, "point_query.comp", variant_of_point_query(rendering));
+        request(requests, "query.comp", variant_of_questions(rendering, schedule));
+        request(requests, "point_query.comp", variant_of_point_query(rendering));
     }
+}
+
+bool shaders_are_known(KrsRendering *rendering)
+{
+    Requests      requests = {.rendering = rendering};
+    ShaderSource *last     = NULL;
+    request_all(&requests, rendering->purpose);
+    for (size_t i = 0; i < requests.count; i++)
+        last = requests.items[i].source.scene ? &requests.items[i].source : last;
+    return !requests.failed && last && shader_is_known(&rendering->renderer->gpu, last);
+}
+
+bool shaders_create(KrsRendering *rendering, KrsPurpose purpose)
+{
+    Requests requests = {.rendering = rendering};
+    if (rendering->deferred && purpose == rendering->purpose)
+        return true;
+    request_all(&requests, purpose);
     return !requests.failed &&
            shaders_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
                         &rendering->spirv_ms, &rendering->pipeline_ms);

@@ -40,7 +40,11 @@ typedef struct PathShaders {
 bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
                      PathShaders *shaders);
 
-/* Makes the shaders for a purpose, pictures with default options or queries, unless they exist. */
+/* Tells whether the shaders that a rendering defers have been compiled before, here or as the cache knows: looks for one
+   of them. */
+bool shaders_are_known(KrsRendering *rendering);
+/* Makes the shaders for a purpose, pictures with default options or queries, unless they exist, or are
+   those that a rendering defers. */
 bool shaders_create(KrsRendering *rendering, KrsPurpose purpose);
 /* Makes a map that of an edited scene with the same shaders. */
 void shaders_adopt(ShaderMap *map, const KrsScene *scene);

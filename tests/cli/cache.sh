@@ -6,7 +6,7 @@ plan 26
 export XDG_CACHE_HOME="$work/caches"
 cache=$XDG_CACHE_HOME/krs
 
-picture() { run render ball.krs --size 41x33 "$@"; }
+picture() { run render ball.krs --rays kernels --size 41x33 "$@"; }
 # What is in a folder, with the numbers of the files: a file that is written again has another.
 files() { (cd "$1" 2>/dev/null && stat -c '%n %i' -- *) | sort; }
 count() { files "$1" | wc -l; }
@@ -43,7 +43,7 @@ picture --quiet --time 2 --samples 3 --seed 5 --crop 1,2,20,20 -o c.exr
 [ "$status" -eq 0 ] && files "$cache" | cmp -s - first
 result $? "time, samples, seed and crop compile nothing"
 sed 's/sphere(radius)/sphere(radius) - box([1, 1, 1])/' ball.krs >other.krs
-run render other.krs --size 41x33 --quiet -o c.exr
+run render other.krs --rays kernels --size 41x33 --quiet -o c.exr
 [ "$status" -eq 0 ] && [ "$(count "$cache")" -gt "$(wc -l <first)" ] &&
     [ "$(files "$cache" | comm -12 - first | wc -l)" -eq "$(wc -l <first)" ]
 result $? "another scene has entries of its own"
@@ -52,7 +52,7 @@ result $? "another scene has entries of its own"
 files "$cache" >others
 mkdir -p elsewhere/deep
 known() {
-    run render "$1" --size 41x33 --quiet -o c.exr
+    run render "$1" --rays kernels --size 41x33 --quiet -o c.exr
     [ "$status" -eq 0 ] && files "$cache" | cmp -s - others
 }
 { printf '// A comment, */ and /* another.\n\n/* several\nlines */\n'; cat other.krs; } >commented.krs
@@ -66,9 +66,9 @@ odd=$(printf 'odd\nname') && cp other.krs "$odd.krs" && known "$odd.krs"
 result $? "nor one with a line break in its name"
 
 echo 'show field(y - 0.1 * sin(time * x)).within(box([2, 1, 2]));' >wave.krs
-run render wave.krs --size 41x33 --quiet --time 1 -o one.exr
+run render wave.krs --rays kernels --size 41x33 --quiet --time 1 -o one.exr
 files "$cache" >waves
-run render wave.krs --size 41x33 --quiet --time 9 -o nine.exr
+run render wave.krs --rays kernels --size 41x33 --quiet --time 9 -o nine.exr
 [ "$status" -eq 0 ] && files "$cache" | cmp -s - waves && ! cmp -s one.exr nine.exr
 result $? "slopes of other frames compile nothing"
 
@@ -95,7 +95,7 @@ for kind in emptied truncated lengthened overwritten replaced; do
     [ "$healed" -eq 0 ] && silent e.exr && files "$cache" | cmp -s - after &&
         [ "$(comm -13 before after | wc -l)" -eq "$(wc -l <first)" ]
     result $? "a cache whose files are $kind heals"
-    run render other.krs --size 41x33 --quiet -o c.exr
+    run render other.krs --rays kernels --size 41x33 --quiet -o c.exr
     files "$cache" >before
 done
 
@@ -118,20 +118,20 @@ for place in file file/krs /dev/null/krs /proc/self locked/krs; do
 done
 [ "$kept" -eq 0 ] && [ "$(cat file)" = file ]
 result $? "folders that cannot be written are no mistake"
-env -u XDG_CACHE_HOME -u HOME "$krs" render ball.krs --quiet --size 41x33 -o g.exr >out 2>err
+env -u XDG_CACHE_HOME -u HOME "$krs" render ball.krs --rays kernels --quiet --size 41x33 -o g.exr >out 2>err
 status=$?
 silent g.exr
 result $? "neither is a user without a home"
 (
     unset XDG_CACHE_HOME
-    HOME=$work/home "$krs" render ball.krs --quiet --size 41x33 -o g.exr >out 2>err
+    HOME=$work/home "$krs" render ball.krs --rays kernels --quiet --size 41x33 -o g.exr >out 2>err
 )
 status=$?
 silent g.exr && [ "$(count "$work/home/.cache/krs")" -eq "$(wc -l <first)" ]
 result $? "without XDG_CACHE_HOME it is in the home"
 (
     XDG_CACHE_HOME=relative
-    HOME=/proc/self "$krs" render ball.krs --quiet --size 41x33 -o g.exr >out 2>err
+    HOME=/proc/self "$krs" render ball.krs --rays kernels --quiet --size 41x33 -o g.exr >out 2>err
 )
 status=$?
 silent g.exr && [ ! -e relative/krs ]

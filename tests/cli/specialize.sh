@@ -15,7 +15,7 @@ scene() { # radius, what is behind the sphere
 picture() { # how, the output, options
     how=$1 file=$2
     shift 2
-    run render scene.krs --size 24x16 --quiet --stats json --specialize "$how" -o "$file" "$@"
+    run render scene.krs --rays kernels --size 24x16 --quiet --stats json --specialize "$how" -o "$file" "$@"
 }
 compiled() { [ "$status" -eq 0 ] && [ ! -s err ] && grep -q '"cached": false' out; }
 compiled_nothing() { [ "$status" -eq 0 ] && [ ! -s err ] && ! grep -q '"cached": false' out; }
@@ -74,10 +74,10 @@ sizes | cmp -s - apart && compiled_nothing
 result $? "samples count where there are pixels"
 
 printf 'let x = 1;\nshow sphere(x);\n' >scene.krs
-run render scene.krs --size 8x8 --specialize auto -o a.exr
+run render scene.krs --rays kernels --size 8x8 --specialize auto -o a.exr
 [ "$status" -eq 0 ] && [ "$(grep -c W0201 err)" -eq 1 ] && grep -qx '1 warning' err
 result $? "what is odd in a scene is said once"
 printf 'show sphere(2 *);\n' >scene.krs
-run render scene.krs --size 8x8 --specialize auto -o a.exr
+run render scene.krs --rays kernels --size 8x8 --specialize auto -o a.exr
 [ "$status" -eq 1 ] && [ "$(grep -c '^error' err)" -eq 1 ] && grep -qx '1 error' err
 result $? "so is what is wrong"

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -337,6 +338,51 @@ static void what_is_kept_changes_nothing(void **context)
     close_scene(&kept);
 }
 
+/* How many shaders that march rays of a scene a rendering has made, after so many samples. */
+static size_t shaders_with_scene(KrsRendering *rendering, KrsState *state, KrsExecutor executor,
+                                 uint32_t samples)
+{
+    KrsShaderStats         shaders[32];
+    size_t                 found   = 0;
+    const KrsRenderOptions options = {
+        .width = 96, .height = 54, .samples = samples, .methods.executor = executor};
+    KrsPicture *picture;
+    assert_int_equal(krs_render(rendering, state, &options, &picture), KRS_OK);
+    krs_picture_free(picture);
+    const size_t count = krs_rendering_shaders(rendering, shaders, 32);
+    for (size_t i = 0; i < count; i++)
+        found += strncmp(shaders[i].name, "trace.comp", 10) == 0;
+    return found;
+}
+
+/* A first picture is made without shaders of the scene, unless they are asked for, or so many samples are that compilers take
+   less time than lanes do.  Numbers keep the text out of the cache. */
+static void first_pictures_wait_for_no_compiler(void **context)
+{
+    static const uint32_t many = 1024;
+    char                  text[128];
+    (void)context;
+    for (int i = 0; i < 3; i++) {
+        KrsScene     *scene;
+        KrsState     *state;
+        KrsRendering *rendering;
+        snprintf(text, sizeof text, "show torus(1, 0.3) | sphere(0.5%d%d);", i, (int)getpid());
+        assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+        assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+        assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_FIRST_PICTURES, &rendering),
+                         KRS_OK);
+        if (i < 2)
+            assert_int_equal(shaders_with_scene(rendering, state, KRS_EXECUTOR_DEFAULT, 1), 0);
+        if (i == 0)
+            assert_true(shaders_with_scene(rendering, state, KRS_EXECUTOR_DEFAULT, many) > 0);
+        else
+            assert_true(shaders_with_scene(rendering, state, KRS_EXECUTOR_KERNELS, 1) > 0);
+        krs_rendering_free(rendering);
+        krs_state_free(state);
+        krs_scene_free(scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures_are_the_same),
@@ -344,6 +390,7 @@ int main(void)
                                        cmocka_unit_test(what_lanes_do_not_know_is_refused),
                                        cmocka_unit_test(what_is_too_large_for_shaders_is_drawn),
                                        cmocka_unit_test(crops_are_parts_of_the_whole),
-                                       cmocka_unit_test(what_is_kept_changes_nothing)};
+                                       cmocka_unit_test(what_is_kept_changes_nothing),
+                                       cmocka_unit_test(first_pictures_wait_for_no_compiler)};
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);
 }

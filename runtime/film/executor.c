@@ -1,0 +1,92 @@
+/*
+ * executor.c: who marches the rays of a film.
+ *
+ * Lanes of the host trace at once.  Shaders take less time for most scenes, but compilers take theirs first.  So small parts of a
+ * picture are marched by lanes, and shaders are compiled only when lanes would take longer than compilers and shaders do,
+ * the pictures before counted.  So together they take at most twice as long as who would have been the better choice.
+ */
+#include "runtime/film/executor.h"
+
+#include "compiler/base/parallel.h"
+#include "runtime/tracer/lane_fields.h"
+#include "runtime/tracer/lane_rays.h"
+#include "runtime/tracer/rendering.h"
+#include "runtime/tracer/shaders.h"
+
+/* How long small parts are marched, at about. */
+#define TRIAL_MS 10
+/* Where primary rays take one part of the time, those to a light that casts shadows and those over the
+   hemisphere take so many. */
+#define SHADOW_RAYS    0.8
+#define OCCLUSION_RAYS 3.0
+/* Milliseconds of compilers for the shaders of a picture, and for each byte of the scene's text.  Measured on two cores with
+   Mesa 22.3 for all examples; the text of most takes longer (bench/results/2026-11-30-compare-llvmpipe.md). */
+#define COMPILE_MS         400.0
+#define COMPILE_MS_OF_BYTE 8e-3
+/* The part of it that shaders take which the caches have. */
+#define KNOWN 0.15
+/* Multiplications and additions of shaders in a millisecond, with those that they skip. */
+#define FLOPS_OF_MS 4e7
+
+static double compile_ms(KrsRendering *rendering)
+{
+    const double fresh = COMPILE_MS + COMPILE_MS_OF_BYTE * (double)rendering->program->glsl_length;
+    return shaders_are_known(rendering) ? KNOWN * fresh : fresh;
+}
+
+/* Measures what a sample of a pixel takes; false with the failure noted. */
+static bool try_lanes(Job *job, LaneTimes *times)
+{
+    const double pixels = (double)job->options.width * job->options.height;
+    RayField    *field  = lane_fields_rays(job->rendering, job->state, lane_rays_know_planes(job));
+    double       parts  = 1 + (job->options.no_occlusion ? 0 : OCCLUSION_RAYS);
+    LaneTrial    trial;
+    for (size_t i = 0; i < job->view.light_count; i++)
+        parts += job->view.lights[i].shadow ? SHADOW_RAYS : 0;
+    if (!field || !lane_rays_try(job, field, TRIAL_MS, &trial))
+        return false;
+    *times = (LaneTimes){.compile = compile_ms(job->rendering),
+                         .known   = true,
+                         .lanes   = parts * trial.ms / pixels / (double)parallel_parts(),
+                         .shaders = parts * trial.evaluations * job->rendering->program->flops /
+                                    pixels / FLOPS_OF_MS};
+    return true;
+}
+
+/* Tells whether lanes go on; false with *failed where memory has run out. */
+static bool lanes_are_faster(Job *job, uint32_t samples, bool *failed)
+{
+    KrsRendering *r     = job->rendering;
+    LaneTimes    *times = &r->lane_times;
+    if (!times->known && !try_lanes(job, times)) {
+        *failed = true;
+        return false;
+    }
+    const double rays = (double)job->options.width * job->options.height * samples;
+    times->lost += rays * (times->lanes - times->shaders);
+    return times->lost <= times->compile;
+}
+
+/* Compiles what was left for later. */
+static bool compile(KrsRendering *r)
+{
+    if (!r->deferred)
+        return true;
+    r->deferred = false;
+    return shaders_create(r, r->purpose);
+}
+
+bool executor_choose(Job *job, uint32_t samples)
+{
+    KrsRendering *r        = job->rendering;
+    KrsExecutor  *executor = &job->options.methods.executor;
+    bool          failed   = false;
+    if (*executor == KRS_EXECUTOR_DEFAULT) {
+        const bool lanes = (r->deferred || r->purpose == KRS_FOR_LANES) && !lane_rays_refuse(job) &&
+                           surface_field_suits(r->scene) &&
+                           (!r->deferred || lanes_are_faster(job, samples, &failed));
+        *executor = lanes ? KRS_EXECUTOR_LANES : KRS_EXECUTOR_KERNELS;
+    }
+    return !failed &&
+           (*executor == KRS_EXECUTOR_LANES ? shaders_create(r, KRS_FOR_LANES) : compile(r));
+}
