@@ -82,6 +82,7 @@ static void find_truth(const Setting *setting)
 /* ---- Pictures ---- */
 
 typedef struct Fixture {
+    const Room   *room;
     Product       product;
     KrsRendering *rendering;
 } Fixture;
@@ -89,10 +90,10 @@ typedef struct Fixture {
 static Fixture open_fixture(const Room *room)
 {
     static SceneText text;
-    const char      *where = room->lamp ? "position" : "direction";
-    const char      *wide  = room->lamp ? "radius" : "softness";
-    Fixture          fixture;
-    text.length = 0;
+    const char      *where   = room->lamp ? "position" : "direction";
+    const char      *wide    = room->lamp ? "radius" : "softness";
+    Fixture          fixture = {.room = room};
+    text.length              = 0;
     for (int i = 0; i < ROOM_NUMBERS && room->numbers[i].high > room->numbers[i].low; i++)
         scene_write(&text, "param %c = %g in [%.17g, %.17g];\n", 'a' + i,
                     (room->numbers[i].low + room->numbers[i].high) / 2, room->numbers[i].low,
@@ -131,15 +132,22 @@ static void set_numbers(Fixture *fixture, const Setting *setting)
     assert_int_equal(krs_state_set(state, "wide", &setting->wide, 1), KRS_OK);
 }
 
-static KrsPicture *take_picture(Fixture *fixture, KrsShadows shadows, uint32_t samples)
+/* NULL: lanes cannot march rays of the room. */
+static KrsPicture *take_picture(Fixture *fixture, KrsShadows shadows, KrsExecutor executor,
+                                uint32_t samples)
 {
-    KrsRenderOptions options = {.width        = WIDTH,
-                                .height       = HEIGHT,
-                                .samples      = samples,
-                                .shadows      = shadows,
-                                .no_occlusion = true};
+    KrsRenderOptions options = {.width            = WIDTH,
+                                .height           = HEIGHT,
+                                .samples          = samples,
+                                .shadows          = shadows,
+                                .no_occlusion     = true,
+                                .methods.executor = executor};
     KrsPicture      *picture;
-    if (krs_render(fixture->rendering, fixture->product.state, &options, &picture) != KRS_OK)
+    const KrsStatus  status = krs_render(fixture->rendering, fixture->product.state, &options,
+                                         &picture);
+    if (status == KRS_BAD_ARGUMENT && executor == KRS_EXECUTOR_LANES)
+        return NULL;
+    if (status != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
     return picture;
@@ -243,23 +251,35 @@ static bool light_is_right(const char *name, const KrsPicture *one, const KrsPic
     return right;
 }
 
+/* Tells whether a setting is lit right by an executor, where that can march its rays. */
+static bool is_lit_right(Fixture *fixture, KrsExecutor executor, int setting, int *lit)
+{
+    KrsPicture *one = take_picture(fixture, SHADOWS, executor, 1), *four;
+    char        name[80];
+    if (!one)
+        return true;
+    four = take_picture(fixture, SHADOWS, executor, PLACES);
+    snprintf(name, sizeof name, "%s by %s, %d", fixture->room->name, krs_executor_names[executor],
+             setting);
+    const bool right = light_is_right(name, one, four);
+    krs_picture_free(one);
+    krs_picture_free(four);
+    *lit += 1;
+    return right;
+}
+
 /* How many settings of a room come out wrong. */
-static size_t count_wrong(const Room *room, KrsShadows shadows)
+static size_t count_wrong(const Room *room, int lit[KRS_EXECUTOR_COUNT])
 {
     Random  random  = {(uint64_t)(room - rooms) + 1};
     Fixture fixture = open_fixture(room);
     size_t  wrong   = 0;
     for (int i = 0; i < SETTINGS; i++) {
-        char    name[80];
         Setting setting = setting_choose(room, &random);
         set_numbers(&fixture, &setting);
         find_truth(&setting);
-        KrsPicture *one  = take_picture(&fixture, shadows, 1);
-        KrsPicture *four = take_picture(&fixture, shadows, PLACES);
-        snprintf(name, sizeof name, "%s, %d", room->name, i);
-        wrong += !light_is_right(name, one, four);
-        krs_picture_free(one);
-        krs_picture_free(four);
+        for (KrsExecutor e = KRS_EXECUTOR_KERNELS; e < KRS_EXECUTOR_COUNT; e++)
+            wrong += !is_lit_right(&fixture, e, i, &lit[e]);
     }
     close_fixture(&fixture);
     return wrong;
@@ -267,11 +287,14 @@ static size_t count_wrong(const Room *room, KrsShadows shadows)
 
 static void rooms_are_lit_right(void **state)
 {
+    size_t wrong                   = 0;
+    int    lit[KRS_EXECUTOR_COUNT] = {0};
     (void)state;
-    size_t wrong = 0;
     for (int i = 0; i < ROOMS; i++)
-        wrong += count_wrong(&rooms[i], SHADOWS);
+        wrong += count_wrong(&rooms[i], lit);
     assert_int_equal(wrong, 0);
+    assert_int_equal(lit[KRS_EXECUTOR_KERNELS], ROOMS * SETTINGS);
+    assert_true(lit[KRS_EXECUTOR_LANES] > ROOMS * SETTINGS / 2);
 }
 
 /* A fault planted in a right picture: red light is multiplied by this. */
@@ -297,8 +320,8 @@ static void faults_are_found(void **state)
     set_numbers(&fixture, &setting);
     find_truth(&setting);
     for (int i = 0; i < 3; i++) {
-        KrsPicture *one  = take_picture(&fixture, SHADOWS, 1);
-        KrsPicture *four = take_picture(&fixture, SHADOWS, 4);
+        KrsPicture *one  = take_picture(&fixture, SHADOWS, KRS_EXECUTOR_KERNELS, 1);
+        KrsPicture *four = take_picture(&fixture, SHADOWS, KRS_EXECUTOR_KERNELS, 4);
         assert_true(light_is_right("right", one, four));
         for (int k = 0; k < PIXELS; k++) {
             one->color[4 * k] *= (float)faults[i](k % WIDTH, k / WIDTH);
