@@ -14,7 +14,8 @@
  * by H h at most, so what can change within r there can change within r + h here, less what can
  * within h.  The local one has a trial radius, and serves where nothing above needs the slope.
  *
- * Rays are marched through the region in double precision by each, and the cheapest is taken.
+ * Rays are marched through the region in double precision by each, all at once, and the cheapest is
+ * taken.
  */
 #include "compiler/family/field_bounds.h"
 
@@ -22,6 +23,7 @@
 
 #include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/graph/rewrite/simplify.h"
 #include "compiler/graph/symbolic/derive.h"
 #include "compiler/graph/symbolic/local.h"
@@ -221,16 +223,23 @@ typedef struct TrialMarch {
 } TrialMarch;
 
 enum { MARCHED_RAYS = 24, MAX_STEPS = 96 };
+/* Longer formulas, in multiply-adds, have no local bounds: one is several times as long. */
+enum { MOST_LOCAL = 2048 };
 
+/* A ray on its way. */
 typedef struct TrialRay {
-    double from[3], direction[3];
+    double   from[3], direction[3];
+    double   t, radius;    /* where it is, and the distance there */
+    double   step, change; /* the step that it tries, and how the distance is expected to change */
+    uint32_t count;        /* evaluations */
+    bool     retreats;     /* its last step was too long */
 } TrialRay;
 
 /* Makes a ray from point to point of Roberts' sequence in six dimensions. */
 static TrialRay trial_ray(Box box, uint32_t i)
 {
-    static const double root = 1.1347241384015194;
-    TrialRay            ray;
+    static const double root   = 1.1347241384015194;
+    TrialRay            ray    = {.change = -1};
     double              length = 0, coordinates[6];
     for (int k = 0; k < 6; k++) {
         Range  side    = box.axis[k % 3];
@@ -247,20 +256,6 @@ static TrialRay trial_ray(Box box, uint32_t i)
     return ray;
 }
 
-/* The distance at t; below 0 beyond the box. */
-static double distance_along(const TrialMarch *m, const Tape *tape, Node root, const TrialRay *ray,
-                             double t, NodeValue *values)
-{
-    double point[3];
-    for (int k = 0; k < 3; k++) {
-        point[k] = ray->from[k] + t * ray->direction[k];
-        if (point[k] < m->box.axis[k].low || point[k] > m->box.axis[k].high)
-            return -1;
-    }
-    tape_run_point(tape, point, values);
-    return values[root].v[0];
-}
-
 /* Tells how far a ray goes through the box. */
 static double length_through(Box box, const TrialRay *ray)
 {
@@ -273,46 +268,131 @@ static double length_through(Box box, const TrialRay *ray)
     return length;
 }
 
-/* Evaluations up to the surface or the sides of the box.  As the tracer's, a step is as long as
-   balls of empty space around its ends are expected to meet, and is taken back if they do not.
-   When MAX_STEPS do not suffice, the others are taken to be as long. */
-static double count_steps(const TrialMarch *m, const Tape *tape, Node root, const TrialRay *ray,
-                          NodeValue *values)
+static bool is_on_its_way(const TrialRay *ray)
 {
-    double   t = 0, step = 0, change = -1;
-    double   radius = distance_along(m, tape, root, ray, 0, values);
-    uint32_t count  = 1;
-    for (; radius > 0 && count < MAX_STEPS; count++) {
-        double usual = fmax(radius, m->least);
-        step         = fmax(usual, 2 * radius / (1 - change));
-        double next  = distance_along(m, tape, root, ray, t + step, values);
-        if (step > usual && step > radius + fabs(next)) {
-            step   = usual;
-            change = -1;
-            next   = distance_along(m, tape, root, ray, t + step, values);
-            count++;
-        } else
-            change = fmin(0.7 * change + 0.3 * (next - radius) / step, 0.98);
-        t += step;
-        radius = next;
-    }
-    return radius > 0 ? count * fmax(length_through(m->box, ray) / t, 1) : count;
+    return ray->count == 0 || ray->retreats || (ray->radius > 0 && ray->count < MAX_STEPS);
 }
 
-/* Multiply-adds of all steps by a distance. */
-static double trial_march_cost(const TrialMarch *m, Node distance)
+/* Where its step ends; false: beyond the box. */
+static bool step_end(const TrialMarch *m, const TrialRay *ray, double point[3])
+{
+    bool inside = true;
+    for (int k = 0; k < 3; k++) {
+        point[k] = ray->from[k] + (ray->t + ray->step) * ray->direction[k];
+        inside   = inside && !(point[k] < m->box.axis[k].low || point[k] > m->box.axis[k].high);
+    }
+    return inside;
+}
+
+/* Takes the distance at the end of a step.  As the tracer's, a step is as long as balls of empty
+   space around its ends are expected to meet, and is taken back if they do not. */
+static void take_distance(const TrialMarch *m, TrialRay *ray, double distance)
+{
+    double usual = fmax(ray->radius, m->least);
+    bool   first = ray->count++ == 0;
+    if (!first && !ray->retreats && ray->step > usual && ray->step > ray->radius + fabs(distance)) {
+        ray->step     = usual;
+        ray->change   = -1;
+        ray->retreats = true;
+        return;
+    }
+    if (!first && !ray->retreats)
+        ray->change = fmin(0.7 * ray->change + 0.3 * (distance - ray->radius) / ray->step, 0.98);
+    ray->t += ray->step;
+    ray->radius   = distance;
+    ray->retreats = false;
+    ray->step     = fmax(fmax(distance, m->least), 2 * distance / (1 - ray->change));
+}
+
+/* All rays that are on their way take a step; returns how many were. */
+static uint32_t step_rays(const TrialMarch *m, const LaneTape *tape, const LaneWork *work,
+                          TrialRay *rays)
+{
+    double    points[MARCHED_RAYS][3], distances[MARCHED_RAYS];
+    TrialRay *asking[MARCHED_RAYS];
+    uint32_t  count = 0, stepping = 0;
+    for (uint32_t i = 0; i < MARCHED_RAYS; i++) {
+        if (!is_on_its_way(&rays[i]))
+            continue;
+        stepping++;
+        if (step_end(m, &rays[i], points[count]))
+            asking[count++] = &rays[i];
+        else
+            take_distance(m, &rays[i], -1);
+    }
+    lane_run(tape, work, LANE_DOUBLE,
+             (LanePoints){.points = (const double(*)[3])points, .count = count}, 0, 1, distances);
+    for (uint32_t i = 0; i < count; i++)
+        take_distance(m, asking[i], distances[i]);
+    return stepping;
+}
+
+/* Evaluations of a ray up to the surface or the sides of the box.  When MAX_STEPS did not suffice,
+   the others are taken to be as long. */
+static double all_evaluations(const TrialMarch *m, const TrialRay *ray)
+{
+    return ray->radius > 0 ? ray->count * fmax(length_through(m->box, ray) / ray->t, 1)
+                           : ray->count;
+}
+
+/* A distance that is tried, by itself. */
+typedef struct Trial {
+    Node   distance;
+    Tape   tape;
+    double cost; /* multiply-adds of a step */
+} Trial;
+
+static Trial trial_new(const TrialMarch *m, Node distance)
 {
     const double OVERHEAD = 20; /* of the tracer, a step */
     const Graph *graph    = graph_extract_with_instances(m->graph, &distance, 1, m->scratch);
-    Tape         tape     = tape_new(graph, &distance, 1, m->scratch);
-    NodeValue   *values   = arena_new_array(m->scratch, NodeValue, graph->count);
-    double       cost = OVERHEAD + tape_flops(&tape), steps = 0;
-    tape_run_frame(&tape, m->parameters, values);
-    for (uint32_t i = 0; i < MARCHED_RAYS; i++) {
-        TrialRay ray = trial_ray(m->box, i);
-        steps += count_steps(m, &tape, distance, &ray, values);
+    Trial        trial    = {distance, tape_new(graph, &distance, 1, m->scratch), OVERHEAD};
+    trial.cost += tape_flops(&trial.tape);
+    return trial;
+}
+
+/* Rays take their steps, no more than `most` together; false: these do not suffice. */
+static bool march_rays(const TrialMarch *m, const Trial *trial, double most, TrialRay *rays)
+{
+    NodeValue *values = arena_new_array(m->scratch, NodeValue, trial->tape.graph->count);
+    LaneTape   lanes  = lane_tape_new(&trial->tape, &trial->distance, 1, false, 0, m->scratch);
+    LaneWork   work   = lane_work_in(arena_alloc(m->scratch, lane_work_bytes(&lanes), 1), values);
+    lanes.scalars     = arena_new_array(m->scratch, double, lanes.scalar_count + 1);
+    tape_run_frame(&trial->tape, m->parameters, values);
+    lane_tape_scalars(&lanes, values, lanes.scalars);
+    for (uint32_t i = 0; i < MARCHED_RAYS; i++)
+        rays[i] = trial_ray(m->box, i);
+    for (uint32_t count = 0, stepping = 1; stepping > 0; count += stepping) {
+        if (count >= most)
+            return false;
+        stepping = step_rays(m, &lanes, &work, rays);
     }
-    return steps * cost;
+    return true;
+}
+
+/* Multiply-adds of all steps by a distance; infinite if they are `most` or more. */
+static double trial_march_cost(const TrialMarch *m, Node distance, double most)
+{
+    const ArenaMark mark  = arena_mark(m->scratch);
+    const Trial     trial = trial_new(m, distance);
+    double          steps = 0;
+    TrialRay        rays[MARCHED_RAYS];
+    if (MARCHED_RAYS * trial.cost < most && march_rays(m, &trial, most / trial.cost, rays))
+        for (uint32_t i = 0; i < MARCHED_RAYS; i++)
+            steps += all_evaluations(m, &rays[i]);
+    else
+        steps = HUGE_VAL;
+    arena_rewind(m->scratch, mark);
+    return steps * trial.cost;
+}
+
+/* Multiply-adds of a step. */
+static double step_cost(const TrialMarch *m, Node distance)
+{
+    const ArenaMark mark = arena_mark(m->scratch);
+    const double    cost = trial_new(m, distance).cost;
+    arena_rewind(m->scratch, mark);
+    return cost;
 }
 
 static TrialMarch trial_march_new(ShapeBuilder *builder, Box box)
@@ -348,7 +428,8 @@ static Node cheapest(const TrialMarch *march, Node present, const Node *others, 
     Node         best  = present;
     double       least = LEAD * *cost;
     for (int i = 0; i < count; i++) {
-        double tried = others[i] == NODE_NONE ? HUGE_VAL : trial_march_cost(march, others[i]);
+        double tried = others[i] == NODE_NONE ? HUGE_VAL
+                                              : trial_march_cost(march, others[i], least);
         if (tried >= least)
             continue;
         least = *cost = tried;
@@ -357,16 +438,31 @@ static Node cheapest(const TrialMarch *march, Node present, const Node *others, 
     return best;
 }
 
-FieldBounds field_bounds(ShapeBuilder *builder, Node formula, double slope, Box box, bool uniform)
+/* The cheapest by local slopes; NODE_NONE: none is cheaper than the bound that there is. */
+static Node cheapest_local(ShapeBuilder *builder, const TrialMarch *march, Node formula,
+                           Node distance, Box box, double slope, double cost)
 {
     /* A local slope may be one of these parts of the slope: fields may be flatter by far where the surface is. */
     static const double fractions[] = {0.25, 0x1p-6, 0x1p-11, 0x1p-17, 0x1p-24, 0x1p-32, 0x1p-42};
     enum { FRACTIONS = sizeof fractions / sizeof *fractions };
+    Node sharp[FRACTIONS];
+    if (step_cost(march, distance) > MOST_LOCAL)
+        return NODE_NONE;
+    for (int i = 0; i < FRACTIONS; i++) {
+        Node local = by_local_slope(builder, formula, box, slope * fractions[i]);
+        sharp[i]   = local == NODE_NONE ? local
+                                        : lengthened(builder->graph, formula, distance, local);
+    }
+    return cheapest(march, NODE_NONE, sharp, FRACTIONS, &cost);
+}
+
+FieldBounds field_bounds(ShapeBuilder *builder, Node formula, double slope, Box box, bool uniform)
+{
     Graph      *g      = builder->graph;
     TrialMarch  march  = trial_march_new(builder, box);
     FieldBounds bounds = {divide_by_slope(g, formula, slope), NODE_NONE};
     Node   heads = by_heads(builder, formula, box), order = by_second_order(builder, formula, box);
-    Node   lipschitz[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[FRACTIONS];
+    Node   lipschitz[3] = {NODE_NONE, NODE_NONE, NODE_NONE};
     double cost         = HUGE_VAL;
     if (uniform && order != NODE_NONE)
         bounds.lipschitz = lengthened(g, formula, bounds.lipschitz, order);
@@ -376,12 +472,8 @@ FieldBounds field_bounds(ShapeBuilder *builder, Node formula, double slope, Box 
         lipschitz[1] = lengthened(g, formula, bounds.lipschitz, heads);
     if (heads != NODE_NONE && lipschitz[0] != NODE_NONE)
         lipschitz[2] = lengthened(g, formula, lipschitz[0], heads);
-    cost             = trial_march_cost(&march, bounds.lipschitz);
+    cost             = trial_march_cost(&march, bounds.lipschitz, HUGE_VAL);
     bounds.lipschitz = cheapest(&march, bounds.lipschitz, lipschitz, 3, &cost);
-    for (int i = 0; i < FRACTIONS; i++) {
-        Node local = by_local_slope(builder, formula, box, slope * fractions[i]);
-        sharp[i]   = local == NODE_NONE ? local : lengthened(g, formula, bounds.lipschitz, local);
-    }
-    bounds.sharp = cheapest(&march, NODE_NONE, sharp, FRACTIONS, &cost);
+    bounds.sharp     = cheapest_local(builder, &march, formula, bounds.lipschitz, box, slope, cost);
     return bounds;
 }

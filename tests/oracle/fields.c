@@ -355,9 +355,53 @@ static void random_polynomials_are_safe(void **state)
     assert_true(refuted > 75);
 }
 
+/* ---- long formulas ---- */
+
+enum { BALLS = 340 };
+
+/* Balls, each of a field of its own steepness. */
+typedef struct Balls {
+    Vec    centre[BALLS];
+    double radius[BALLS], steepness[BALLS];
+} Balls;
+
+static bool in_balls(const void *user, Vec p)
+{
+    const Balls *balls = user;
+    bool         in    = false;
+    for (int i = 0; i < BALLS; i++)
+        in = in || vec_distance(p, balls->centre[i]) <= balls->radius[i];
+    return in;
+}
+
+/* For long formulas less is tried (family/field_bounds.c, graph/bounds/facts.c). */
+static void a_long_formula_is_safe(void **state)
+{
+    (void)state;
+    static SceneText text;
+    static Balls     balls;
+    Random           random = {61};
+    for (int i = 0; i < BALLS; i++) {
+        Vec c              = random_in_cube(&random, 1);
+        balls.centre[i]    = c;
+        balls.radius[i]    = random_between(&random, 0.03, 0.15);
+        balls.steepness[i] = random_between(&random, 0.5, 3);
+        scene_write(&text, "let b%d = %.17g * (length(p - [%.17g, %.17g, %.17g]) - %.17g);\n", i,
+                    balls.steepness[i], c.x, c.y, c.z, balls.radius[i]);
+        if (i > 0)
+            scene_write(&text, "let f%d = min(%c%d, b%d);\n", i, i > 1 ? 'f' : 'b', i - 1, i);
+    }
+    scene_write(&text, "show field(f%d).within(box([4, 4, 4]));", BALLS - 1);
+    Product product = product_compile(text.bytes);
+    Trial   trial   = {product_field, &product, in_balls, &balls, vec(0, 0, 0), 1.5, 400, 67};
+    judge_acquits(&trial, "balls");
+    judge_refutes_steeper(&trial, 1.5, "balls");
+    product_free(&product);
+}
+
 int main(void)
 {
-    struct CMUnitTest tests[2 * SOLIDS + 3];
+    struct CMUnitTest tests[2 * SOLIDS + 4];
     static char       names[2 * SOLIDS][64];
     size_t            count = 0;
     for (size_t i = 0; i < SOLIDS; i++) {
@@ -372,5 +416,6 @@ int main(void)
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(rays_end_at_roots);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(sheets_are_thin);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(random_polynomials_are_safe);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(a_long_formula_is_safe);
     return _cmocka_run_group_tests("fields", tests, count, NULL, NULL);
 }

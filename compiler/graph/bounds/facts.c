@@ -197,12 +197,18 @@ static bool cutting_helps(const Analysis *analysis, Node root, Cell cell)
     return cell_slope(analysis, root, middle) < cell.slope * (1 - 1e-9);
 }
 
-/* Cuts the steepest cell in two until there are `cells`; the steepest is then the first. */
+/* How many facts are found at most, about, to make a bound less that there is. */
+enum { MOST_FACTS = 1 << 18 };
+
+/* Cuts the steepest cell in two until there are `cells`; the steepest is then the first.  A long
+   expression is cut into fewer, once there is a bound. */
 static void heap_refine(const Analysis *analysis, Node root, Cell *heap, size_t cells)
 {
+    const size_t enough = MOST_FACTS / (analysis->tape.count + 1);
     for (size_t count = 1; count < cells; count++) {
         Cell worst = heap[0];
-        if (!(worst.slope > 0) || !cutting_helps(analysis, root, worst))
+        if ((count > enough && worst.slope < HUGE_VAL) || !(worst.slope > 0) ||
+            !cutting_helps(analysis, root, worst))
             return;
         int    axis                   = widest_axis(worst.box);
         double cut                    = range_cut(worst.box.axis[axis]);
