@@ -113,7 +113,7 @@ float find_end_of_cone()
     vec3 speed = abs(direction) - spread;
     vec3 ends = mix(vec3(INFINITE), max(to_walls + margin, 0.0) / max(speed, 1e-6),
                     greaterThan(speed, vec3(1e-6)));
-    return min(min(ends.x, ends.y), min(ends.z, end));
+    return min(min(ends.x, ends.y), ends.z);
 }
 
 // Tells how high a ray starts above a surface of this evenness.
