@@ -39,8 +39,8 @@ void print_shaders(KrsRenderer *renderer, const char *path)
     print_shader(r, name, "trace", rendering_trace(r, trace, schedule, 0), &spirv, &pipeline);
     print_shader(r, name, "normals", rendering_normals_shader(r, KRS_NORMALS_DEFAULT, 0), &spirv,
                  &pipeline);
-    print_shader(r, name, "shadows, occlusion", rendering_secondary(r, schedule, false), &spirv,
-                 &pipeline);
+    print_shader(r, name, "shadows, occlusion", rendering_secondary(r, schedule, false, false),
+                 &spirv, &pipeline);
     print_shader(r, name, "shade", rendering_shade(r), &spirv, &pipeline);
     fixture_close(&fixture);
 }

@@ -328,7 +328,8 @@ static bool find_secondary(Preview *p)
         if (!p->arrive)
             return false;
     } else {
-        p->secondary = rendering_secondary(r, options->methods.schedule, p->by_roots);
+        p->secondary = rendering_secondary(r, options->methods.schedule, p->by_roots,
+                                           job_light_meets_planes(p->job));
     }
     if (!options->no_occlusion && !p->plan->surfaces)
         p->occluders = rendering_occluders(p->job->rendering);

@@ -9,6 +9,9 @@
  * Where rays begin and end is in secondary.glsl.
  *
  * STEPS: there is krs_steps, by which rays go from root to root of what has any.
+ *
+ * PLANES: distances leave out planes.  What starts outside of a plane, and does not fall towards it,
+ * never meets it.  Else a ray is marched up to there, and ends blocked.  The box is that around all else.
  */
 #ifndef REFILL // chosen by the renderer; this choice suits every device
 #define REFILL 0
@@ -76,7 +79,7 @@ float hurry(float distance)
 #ifdef PATH_RAYS
     return 0.0;
 #else
-    bool recedes = control.phase == RAYS_OVER_HEMISPHERE && distance > last_distance;
+    bool recedes = control.phase == RAYS_OVER_HEMISPHERE && last_step > 0.0 && distance > last_distance;
     return recedes ? (t > FAR_REACHES * frame.occlusion_reach ? 1.0 : MIN_OF_LENGTH) * t : 0.0;
 #endif
 }
@@ -91,6 +94,9 @@ void take_distance(float distance)
     step_count++;
     float first = clamp(distance / lift, 0.0625, 1.0);
     start_ratio = step_count == 1u ? first : start_ratio;
+#ifdef PLANES // distances do not tell of the plane that it starts at
+    slope = step_count == 1u && distance > 2.0 * lift ? -1.0 : slope;
+#endif
 #ifdef PATH_RAYS // rounding may put it behind the surface where it starts, as in trace.comp
     if (last_step == 0.0 && is_blocked(distance) && t <= LEAVING_IN_PIXELS * hit.width) {
         t += max(t, lift);

@@ -59,6 +59,10 @@ HitPoint hit;
 vec3  start, direction; // the next distance is evaluated at start + t direction
 float t;
 float end;         // of the ray
+float free_start;  // nothing is before
+#ifdef PLANES
+float plane_t;     // where the ray meets a plane before it ends; INFINITE: nowhere
+#endif
 float facing;      // cosine between the normal and the direction
 float lift;        // height of the start above the surface
 bool  is_cone;     // else a ray
@@ -86,16 +90,26 @@ void begin_ray(vec3 normal, vec3 toward)
 {
     direction = toward;
     facing = dot(normal, direction);
-    float box_end = clip_ray(start, direction, end).y;
+    free_start = 0.0;
+#ifdef PLANES
+    plane_t = max(krs_plane_t(start, direction), 0.0);
+    plane_t = plane_t < end ? plane_t : INFINITE;
+    end = min(end, plane_t);
+#endif
+    vec2 range = clip_ray(start, direction, end);
     // A ray from inside of a solid that reaches the box around all solids has met a wall there.
     bool inside = hit.side < 0.0 || is_in_medium();
-    blocked = inside && box_end < end;
+    blocked = inside && range.y < end;
 #ifdef AIMS // others are clipped by those who march them
-    end = inside ? min(end, box_end) : end;
+    end = inside ? min(end, range.y) : end;
 #else
-    end = min(end, box_end);
+    end = min(end, range.y);
 #endif
     step_limit = blocked || below_horizon ? 0u : MAX_STEPS;
+#ifdef PLANES
+    free_start = range.x;
+    step_limit = free_start < end ? step_limit : 0u;
+#endif
 }
 
 // A point of the unit square, for the light or the hemisphere of the dispatch.
@@ -148,7 +162,11 @@ void aim_at_light(vec3 normal, vec2 square, vec2 disc)
         spread = radius / light_distance;
         margin = CONE_MARGIN * hit.width / turned;
         end = min(to_light, find_end_of_cone());
-            blocked = blocked || facing <= 2.0 * spread;
+        free_start = 0.0;
+        blocked = blocked || facing <= 2.0 * spread;
+#ifdef PLANES
+        blocked = blocked || krs_plane_cosine(direction) < 1.01 * spread + 1e-6;
+#endif
         step_limit = blocked ? 0u : MAX_STEPS;
     }
 }
@@ -245,7 +263,7 @@ void begin_item(uint number, bool saved)
 #endif
     blocked = blocked || !exists;
     step_limit = exists ? step_limit : 0u;
-    t = 0.0;
+    t = free_start;
     slope = facing;
     step_count = 0u;
     last_distance = last_step = 0.0;
@@ -282,6 +300,12 @@ void list_occluder()
 void end_ray()
 {
     unresolved += step_limit > 0u ? 1u : 0u;
+#ifdef PLANES
+    if (!blocked && plane_t < INFINITE) {
+        blocked = true;
+        t = plane_t;
+    }
+#endif
 #ifdef PATH_RAYS
     if (!blocked && !below_horizon)
         add_light_to(row, index_of(pixel_of(hit.slot)), clamped(added));

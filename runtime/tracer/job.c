@@ -105,6 +105,32 @@ static bool prepare_frame_block(Job *job)
     return true;
 }
 
+bool job_light_meets_planes(const Job *job)
+{
+    return job->begins_outside && job->options.integrator == KRS_INTEGRATOR_PREVIEW &&
+           rendering_light_meets_planes(job->rendering);
+}
+
+void job_find_rest(const Job *job, double low[3], double high[3])
+{
+    const KrsProgram *program = job->rendering->program;
+    for (int i = 0; i < 3; i++) {
+        low[i]  = program->rest_low[i] - job->rebase_origin[i];
+        high[i] = program->rest_high[i] - job->rebase_origin[i];
+    }
+}
+
+/* Uploads the block of the frame.  Rays to lights are clipped to its box; marches have boxes of their
+   own. */
+static void upload_frame_block(Job *job)
+{
+    double low[3], high[3];
+    job_find_rest(job, low, high);
+    if (job_light_meets_planes(job))
+        view_place_box(&job->view, low, high, &job->frame);
+    memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
+}
+
 static RayKind kind_of_rays(const Job *job)
 {
     const KrsCamera *camera = &job->view.camera;
@@ -151,9 +177,11 @@ bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera)
     if (job->rendering->program->emits && job->options.integrator != KRS_INTEGRATOR_PREVIEW)
         job->frame.emissive_count = emissive_find(job->rendering->program, &job->view.camera, state,
                                                   job->rebase_origin, job->emissive);
-    memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
     const double *rebase_origin = is_camera_relative(job) ? job->rebase_origin : NULL;
-    return rendering_set_parameters(job->rendering, state, rebase_origin) &&
-           rendering_set_rays(job->rendering, kind_of_rays(job)) &&
-           (!rebase_origin || rendering_rebase(job->rendering, state, rebase_origin));
+    if (!rendering_set_parameters(job->rendering, state, rebase_origin) ||
+        !rendering_set_rays(job->rendering, kind_of_rays(job)) ||
+        (rebase_origin && !rendering_rebase(job->rendering, state, rebase_origin)))
+        return false;
+    upload_frame_block(job);
+    return true;
 }

@@ -74,6 +74,10 @@ bool job_refuse(Job *job, const char *words);
 bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera);
 /* The shader without a scene for the rays of this frame. */
 const Shader *job_pixel_shader(const Job *job, PixelShader shader);
+/* Tells whether rays to lights and for occlusion intersect planes without a march. */
+bool job_light_meets_planes(const Job *job);
+/* The box around all components but planes, relative to the rebase origin. */
+void job_find_rest(const Job *job, double low[3], double high[3]);
 /* Tells whether beams march the empty space that the rays of a tile share. */
 bool job_has_beams(const Job *job);
 

@@ -294,11 +294,12 @@ static void add_counts(Job *job, const Slice *slice)
 /* Rays meet planes without a march. */
 static void place_box(Slice *slice)
 {
-    const Job        *job     = slice->job;
-    const KrsProgram *program = job->rendering->program;
-    slice->box                = job->frame;
+    const Job *job = slice->job;
+    double     low[3], high[3];
+    slice->box = job->frame;
+    job_find_rest(job, low, high);
     if (lane_rays_know_planes(job))
-        view_place_box(&job->view, program->rest_low, program->rest_high, &slice->box);
+        view_place_box(&job->view, low, high, &slice->box);
 }
 
 /* Deals tiles out, in slices. */

@@ -75,6 +75,13 @@ bool rendering_knows_planes(const KrsRendering *rendering)
     return rendering->program->planes && rendering->zone_slots == 0;
 }
 
+/* In media, and from surfaces in mirrors, rays may begin inside of a plane. */
+bool rendering_light_meets_planes(const KrsRendering *rendering)
+{
+    return rendering_knows_planes(rendering) && !rendering->program->mirrors &&
+           !rendering->program->media;
+}
+
 /* The rays of mirrors need shaders for the whole scene.  If those are for the picture, too, the first
    picture is earlier; march groups make up for their own shaders where flops are few. */
 static bool prefers_mixed_rays(const KrsRendering *rendering)

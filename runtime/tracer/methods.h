@@ -18,6 +18,8 @@ KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, Krs
                                               uint32_t march_group);
 /* Tells whether rays intersect planes without a march, by shaders for MARCH_WITHOUT_PLANES. */
 bool rendering_knows_planes(const KrsRendering *rendering);
+/* Tells whether rays to lights and for occlusion may do so in previews, if the camera is outside of all. */
+bool rendering_light_meets_planes(const KrsRendering *rendering);
 /* Tells whether march groups are marched one after the other; false where they cannot be. */
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components);
 /* Tells whether each ray marches scene part by scene part with this method; false where it cannot. */

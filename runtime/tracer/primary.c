@@ -120,12 +120,8 @@ static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
 /* Clips rays to the box around all components but planes, which rays intersect without a march. */
 static void clip_to_rest(const Job *job, March *march)
 {
-    const KrsProgram *program = job->rendering->program;
-    march->boxed              = true;
-    for (int i = 0; i < 3; i++) {
-        march->low[i]  = program->rest_low[i] - job->rebase_origin[i];
-        march->high[i] = program->rest_high[i] - job->rebase_origin[i];
-    }
+    march->boxed = true;
+    job_find_rest(job, march->low, march->high);
 }
 
 /* Adds one march of all components: together, or scene part by scene part within each ray. */

@@ -100,16 +100,18 @@ Shader *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 }
 
 static ShaderVariant variant_of_rays(const KrsRendering *rendering, KrsSchedule schedule,
-                                     bool by_roots, KrsIntegrator integrator)
+                                     bool by_roots, KrsIntegrator integrator, bool planes)
 {
     return variant_of_secondary(rendering, by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN,
-                                schedule_of_shader(schedule), integrator);
+                                schedule_of_shader(schedule), integrator, planes);
 }
 
-Shader *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
+Shader *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots,
+                            bool planes)
 {
-    return find_shader(rendering, "secondary.comp",
-                       variant_of_rays(rendering, schedule, by_roots, KRS_INTEGRATOR_PREVIEW));
+    return find_shader(
+        rendering, "secondary.comp",
+        variant_of_rays(rendering, schedule, by_roots, KRS_INTEGRATOR_PREVIEW, planes));
 }
 
 Shader *rendering_occluders(KrsRendering *rendering)
@@ -187,7 +189,7 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
                                 : rendering_shade(rendering);
     shaders->shadows    = find_shader(
            rendering, "secondary.comp",
-           variant_of_rays(rendering, options->methods.schedule, roots, options->integrator));
+           variant_of_rays(rendering, options->methods.schedule, roots, options->integrator, false));
     rendering->rays = rays;
     return shaders->march && shaders->normals && shaders->scatter && shaders->shadows;
 }
@@ -267,7 +269,7 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
                 variant_of_scatter(rendering, KRS_STARTS_PRECISION, KRS_INTEGRATOR_PATH));
         request(requests, "secondary.comp",
                 variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
-                                KRS_INTEGRATOR_PATH));
+                                KRS_INTEGRATOR_PATH, false));
     }
     rendering->rays = rays;
 }
@@ -298,7 +300,7 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
     request(requests, "occluders.comp", variant_of_occluders(rendering));
     request(requests, "secondary.comp",
             variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
-                            KRS_INTEGRATOR_PREVIEW));
+                            KRS_INTEGRATOR_PREVIEW, rendering_light_meets_planes(rendering)));
     request_marches(requests, trace, schedule);
     if (rendering->program->mirrors)
         request_paths(requests, trace, schedule);

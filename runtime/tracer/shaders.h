@@ -20,8 +20,10 @@ Shader *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
                         uint32_t march_group);
 /* The shader of normals, for a march group or for all components (0). */
 Shader *rendering_normals_shader(KrsRendering *rendering, KrsNormals normals, uint32_t march_group);
-/* The shader of rays to lights and for occlusion; `by_roots`: they go from root to root. */
-Shader *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots);
+/* The shader of rays to lights and for occlusion; `by_roots`: they go from root to root; `planes`: they
+   intersect planes, and are clipped to the box around all else. */
+Shader *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots,
+                            bool planes);
 /* The shader of the albedo of what rays for occlusion have met. */
 Shader *rendering_occluders(KrsRendering *rendering);
 /* The shader that evens hits out. */

@@ -193,6 +193,14 @@ static void want_paths(ShaderVariant *to, const KrsRendering *rendering, bool wh
         want_media(to, rendering);
 }
 
+/* Distances leave out planes, which rays intersect instead. */
+static void want_planes(ShaderVariant *to)
+{
+    to->scene.variant.planes = true;
+    want(to, KRS_FUNCTION_PLANE_T);
+    want(to, KRS_FUNCTION_PLANE_COSINE);
+}
+
 ShaderVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                                uint32_t group)
 {
@@ -201,11 +209,8 @@ ShaderVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
     define(&to, "#define SAVES %d\n#define SNAPS %d\n", saves, rendering->snaps);
     want_rays(&to, rendering);
     want_paths(&to, rendering, group == 0 || group == MARCH_WITHOUT_PLANES);
-    if (group > 0 && rendering_knows_planes(rendering)) {
-        to.scene.variant.planes = true;
-        want(&to, KRS_FUNCTION_PLANE_T);
-        want(&to, KRS_FUNCTION_PLANE_COSINE);
-    }
+    if (group > 0 && rendering_knows_planes(rendering))
+        want_planes(&to);
     to.scene.variant.march_group = group < MARCH_WITHOUT_PLANES ? group : 0;
     if (group == MARCH_PACKED) {
         want(&to, KRS_FUNCTION_SCENE_PART_DISTANCE);
@@ -242,7 +247,7 @@ ShaderVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
 
 /* The random directions of rays need sines.  Rays of previews and of direct light pass through glass. */
 ShaderVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
-                                   KrsSchedule schedule, KrsIntegrator integrator)
+                                   KrsSchedule schedule, KrsIntegrator integrator, bool planes)
 {
     ShaderVariant to = begin_variant(rendering, trace, schedule);
     if (rendering->program->media)
@@ -251,6 +256,8 @@ ShaderVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
     if (rendering->program->mirrors && integrator == KRS_INTEGRATOR_PREVIEW)
         define(&to, MIXED_RAYS);
     want(&to, KRS_FUNCTION_SINES);
+    if (planes)
+        want_planes(&to);
     if (!want_steps(&to, rendering, trace, KRS_FUNCTION_STEPS))
         want(&to, KRS_FUNCTION_DISTANCE);
     define_choices(&to);

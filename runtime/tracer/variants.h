@@ -38,7 +38,7 @@ ShaderVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
                                uint32_t group);
 ShaderVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group);
 ShaderVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
-                                   KrsSchedule schedule, KrsIntegrator integrator);
+                                   KrsSchedule schedule, KrsIntegrator integrator, bool planes);
 ShaderVariant variant_of_occluders(const KrsRendering *rendering);
 ShaderVariant variant_of_shade(const KrsRendering *rendering);
 /* The same without a scene: the host finds surfaces. */

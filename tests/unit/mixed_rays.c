@@ -1,6 +1,7 @@
 /*
  * mixed_rays.c: shaders that are for the rays of a picture and for those of its paths make the same
- * pictures as shaders for one of both, and there are fewer of them.  So do shaders for small pictures.
+ * pictures as shaders for one of both, and there are fewer of them.  So do shaders for small pictures,
+ * and those of light that meets planes without a march.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -160,6 +161,32 @@ static void mirrors_are_as_with_march_groups(void **state)
     close_fixture(&fixture);
 }
 
+/* A floor, a wall, and solids whose undersides the floor hides from the sky. */
+#define ROOM                                                                               \
+    CAMERA                                                                                 \
+    "light sun { direction: [-1, 2, 1], intensity: 2, softness: 6deg }\n"                  \
+    "light lamp { position: [2, 3, 3], intensity: 8, radius: 0.3 }\n"                      \
+    "show plane([0, 1, 0], 0).paint(#dddddd); show plane([0, 0, 1], -2).paint(#cc8866);\n" \
+    "show sphere(0.7).move([-1, 0.9, 0]).paint(#dddddd);\n"                                \
+    "show box([0.5, 1, 0.5]).move([0.8, 0.5, 0.4]);\n"
+/* Zones cut holes into planes, so with this one, where nothing is, planes are marched. */
+static const char marched[] = ROOM "zone { center: [0, 40, 0], radius: 0.1 }\n";
+
+static void planes_are_in_the_light_as_where_they_are_marched(void **state)
+{
+    (void)state;
+    Fixture own = open_fixture(ROOM, KRS_FOR_PICTURES),
+            all = open_fixture(marched, KRS_FOR_PICTURES);
+    assert_true(krs_scene_program(own.scene)->planes && !krs_scene_program(all.scene)->planes);
+    KrsPicture *a = render(&own, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
+    KrsPicture *b = render(&all, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
+    assert_in_range(count_different(a, b), 0, PIXELS / 500);
+    krs_picture_free(a);
+    krs_picture_free(b);
+    close_fixture(&own);
+    close_fixture(&all);
+}
+
 /* Trees of four march groups without mirrors, and rays that go from root to root. */
 static const char trees[] =
     "camera { eye: [0, 2, 16], target: [0, 0.3, 0], fov: 0.6 }\n"
@@ -232,6 +259,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paths_are_as_by_shaders_of_their_own),
         cmocka_unit_test(mirrors_are_as_with_march_groups),
+        cmocka_unit_test(planes_are_in_the_light_as_where_they_are_marched),
         cmocka_unit_test(small_pictures_have_no_march_groups),
         cmocka_unit_test(small_pictures_have_no_beams_before_roots),
         cmocka_unit_test(small_pictures_have_the_same_noises),
