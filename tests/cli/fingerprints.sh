@@ -63,7 +63,7 @@ kept() { find "$XDG_CACHE_HOME/krs" -name "*.$1" | wc -l; }
 picture() { # program, words
     program=$1
     shift
-    "$program" render ball.krs --size 16x16 --quiet "$@" >out 2>err
+    "$program" render ball.krs --rays kernels --size 16x16 --quiet "$@" >out 2>err
     status=$?
 }
 picture "$krs" -o a.exr
