@@ -6,14 +6,20 @@
 #include <math.h>
 #include <string.h>
 
-enum { CHILDREN = 8, MOST_CUBES = 1 << 15, DEEPEST = 5 };
+#include "compiler/base/parallel.h"
+
+/* There are no more cubes, with all of space. */
+enum { CHILDREN = 8, DEEPEST = 5, MOST_CUBES = 1 + ((1 << 3 * (DEEPEST + 1)) - 1) / 7 };
 /* Shorter tapes are not worth another. */
 enum { SHORT_TAPE = 40 };
-/* The room for all tapes of a space: as many steps as so many times the whole has, within limits. */
+/* The room for all tapes of a space: as many steps as so many times the whole has, within limits.  Spaces of few
+   threads have more, as all of them share MOST_SHARED.  Without room cubes stay undivided, which takes longer, and which
+   ones do depends on the order of rays. */
 enum {
-    TIMES_WHOLE    = 1000,
+    TIMES_WHOLE    = 2000,
     LEAST_STEPS    = 1 << 18,
     MOST_STEPS     = 1 << 22,
+    MOST_SHARED    = 1 << 25,
     CALLS_OF_CUBES = 1 << 14,
     MOST_LISTED    = 1 << 20
 };
@@ -30,11 +36,13 @@ static void clear(Space *space, const CellTape *tape)
 void space_new(Space *space, const CellTape *tape, CellWork *work, const float low[3],
                const float high[3], float margin, Arena *arena)
 {
-    double side = 0;
-    size_t room = (size_t)tape->count * TIMES_WHOLE;
+    double       side   = 0;
+    size_t       room   = (size_t)tape->count * TIMES_WHOLE;
+    const size_t shared = MOST_SHARED / parallel_parts(),
+                 most   = shared > MOST_STEPS ? shared : MOST_STEPS;
     for (int k = 0; k < 3; k++)
         side = fmax(side, (double)high[k] - (double)low[k]);
-    room               = room < LEAST_STEPS ? LEAST_STEPS : room > MOST_STEPS ? MOST_STEPS : room;
+    room               = room < LEAST_STEPS ? LEAST_STEPS : room > most ? most : room;
     const bool divides = side > 0 && side < 1e30;
     *space             = (Space){.side        = divides ? (float)side : 0,
                                  .margin      = margin,
