@@ -70,7 +70,9 @@ static const char *name_of(const Costing *costing, const ProfileRow *row)
     enum { LENGTH = 48 };
     Text text = {.arena = costing->options->arena};
     if (!row->part)
-        return "others: light, background, all that is less than 2 %";
+        return costing->profile.untimed > 0
+                   ? "others: light, background, parts that were not timed"
+                   : "others: light, background, all that is less than 2 %";
     if (row->rest)
         text_add(&text, "rest of ");
     text_add(&text, row->part->name);
@@ -232,8 +234,9 @@ KrsStatus info_cost(const Options *options, const KrsScene *scene)
     else if (status == KRS_OK)
         print_text(&costing);
     if (status == KRS_OK && costing.profile.untimed > 0 && !options->quiet)
-        say("%zu parts were not timed in %g s; a larger --seconds times more%s",
-            costing.profile.untimed, options->cost_seconds,
+        say("%zu part%s not timed in %g s; a larger --seconds times more%s",
+            costing.profile.untimed, costing.profile.untimed == 1 ? " was" : "s were",
+            options->cost_seconds,
             costing.profile.timed == 0 ? ", and --rays lanes compiles no shaders" : "");
     profile_free(&costing.profile);
     krs_renderer_free(renderer);

@@ -108,7 +108,7 @@ static void take(RayBlock *block, const RayRule *rule, const float ats[RAYS_OF_B
         const float    factor = crosses ? OVERSHOOT / -last_slope : 2 / (1 - lesser(slope, 0.98f));
         const float    next   = greater(clearance, factor * clearance) + tolerance;
         const bool     hits   = found & accurate;
-        const bool     misses = verified & (at + clearance > end);
+        const bool     misses = verified & (at + clearance >= end);
         const uint32_t after  = found    ? (accurate ? RAY_HITS : RAY_REFINES)
                                 : misses ? RAY_MISSES
                                          : RAY_MARCHES;

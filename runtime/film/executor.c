@@ -7,6 +7,8 @@
  */
 #include "runtime/film/executor.h"
 
+#include <math.h>
+
 #include "compiler/base/parallel.h"
 #include "runtime/tracer/lane_fields.h"
 #include "runtime/tracer/lane_rays.h"
@@ -23,6 +25,9 @@
    Mesa 22.3 for all examples; the text of most takes longer (bench/results/2026-11-30-compare-llvmpipe.md). */
 #define COMPILE_MS         400.0
 #define COMPILE_MS_OF_BYTE 8e-3
+/* Drivers take ever longer for longer texts: with the square of what is above so many bytes. */
+#define LONG_TEXT             1e5
+#define COMPILE_MS_OF_SQUARES 1e-6
 /* The part of it that shaders take which the caches have. */
 #define KNOWN 0.15
 /* Multiplications and additions of shaders in a millisecond, with those that they skip. */
@@ -30,7 +35,10 @@
 
 static double compile_ms(KrsRendering *rendering)
 {
-    const double fresh = COMPILE_MS + COMPILE_MS_OF_BYTE * (double)rendering->program->glsl_length;
+    const double bytes = (double)rendering->program->glsl_length,
+                 above = fmax(bytes - LONG_TEXT, 0);
+    const double fresh = COMPILE_MS + COMPILE_MS_OF_BYTE * bytes +
+                         COMPILE_MS_OF_SQUARES * above * above;
     return shaders_are_known(rendering) ? KNOWN * fresh : fresh;
 }
 

@@ -83,7 +83,7 @@ void take_ball(float radius)
         march.clearance = free - march.t;
         march.slope = 0.5 * (cosine - 1.0);
         march.step = 2.0 / (1.0 - march.slope) * march.clearance;
-        march.state = free > end ? STATE_MISS : STATE_MARCHING;
+        march.state = free >= end ? STATE_MISS : STATE_MARCHING;
     }
 }
 #endif
@@ -154,7 +154,7 @@ void take_distance(float distance)
 #endif
     march.slope = verified ? slope : -1.0;
     march.state = found_surface                           ? (accurate ? STATE_HIT : STATE_REFINING)
-                  : verified && at + clearance > end ? STATE_MISS
+                  : verified && at + clearance >= end ? STATE_MISS
                                                      : STATE_MARCHING;
     if (leaves) { // as if it began here
         march.t = at;

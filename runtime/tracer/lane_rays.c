@@ -33,14 +33,20 @@ const char *lane_rays_refuse(const Job *job)
         return "the device is not of type CPU";
     if (job->frame.snaps)
         return "the integrator is not `preview`";
+    if (job->rays)
+        return "there are rays of the caller";
+    if (job->view.camera.projection == KRS_PANORAMA)
+        return "the camera is a panorama";
     if (r->rays != RAYS_OF_CAMERAS)
-        return "the camera is a panorama, has a lens or a shift, or there is none";
+        return "a camera of the scene is a panorama, or has a lens or a shift";
+    if (r->program->media)
+        return "light goes through something";
     if (rebased)
         return "coordinates are so large that points are relative to another origin";
     if (r->zone_slots > 0 || options->depth || options->noise > 0)
         return "there are zones or depths of the caller, or samples end by noise";
     if (options->methods.trace != KRS_TRACE_AUTO || options->methods.even_hits > 0)
-        return "another method to march rays is asked for";
+        return "rays go by another method than `auto`, as those to roots of polynomials do";
     return ray_field_refuses(r->scene);
 }
 

@@ -96,6 +96,12 @@ const KrsProgram *krs_scene_program(const KrsScene *scene)
     return &program;
 }
 
+const KrsDiagnostic *krs_scene_too_large(const KrsScene *scene)
+{
+    (void)scene;
+    return NULL;
+}
+
 KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component)
 {
     (void)scene;
