@@ -14,6 +14,8 @@
 
 /* Slabs of a tile, and parts of each in the next depth. */
 enum { SLABS = 8, QUARTERS = 4, PARTS = 2 };
+/* The least part of all slabs that is free. */
+static const float NEAREST_SLAB = 1e-5f;
 
 /* ---- bundles ---- */
 
@@ -265,11 +267,27 @@ static void begin(March *m, size_t count, float *first, float *last)
     }
 }
 
-/* Returns where slab `number` begins: slabs are longer where rays are wider. */
-static float slab_at(float first, float last, int number)
+/* How far from their origin the rays of a tile are free, but no less than `least`. */
+static float free_from(const March *m, const CellTape *tape, float least)
+{
+    const Bundle *all = &m->bundles[0][0];
+    float         points[3][CELL_LANES];
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < CELL_LANES; i++)
+            points[k][i] = all->origin[k];
+    const float *distances = cell_run(tape, m->work, 0, (const float(*)[CELL_LANES])points);
+    return fmaxf(distances[0] - all->origins - m->field->margin, least);
+}
+
+/* Returns where slab `number` begins: slabs are longer where rays are wider.  From within the box these begin `clear`
+   away, and each slab is so many times as long as the one before. */
+static float slab_at(float first, float last, float clear, int number)
 {
     const float even = first < last ? sqrtf(first / last) : 1, part = (float)number / SLABS;
-    return number == SLABS ? last : first + (last - first) * part * (even + (1 - even) * part);
+    if (number == 0 || number == SLABS)
+        return number == 0 ? first : last;
+    return clear > 0 ? clear * powf(last / clear, part)
+                     : first + (last - first) * part * (even + (1 - even) * part);
 }
 
 /* Ends the rays of a block.  Those that hit nothing else meet their plane. */
@@ -299,9 +317,10 @@ static void march_tile(March *m, const CellTape *tape, size_t count, float first
         return;
     divide_tile(m, count);
     last *= 1.0001f;
+    const float clear = first == 0 ? fminf(free_from(m, tape, NEAREST_SLAB * last), last) : 0;
     for (int s = 0; s < SLABS; s++)
-        add_cell(m, &cells, &m->bundles[0][0], slab_at(first, last, s),
-                 slab_at(first, last, s + 1));
+        add_cell(m, &cells, &m->bundles[0][0], slab_at(first, last, clear, s),
+                 slab_at(first, last, clear, s + 1));
     march_cells(m, tape, 0, &cells);
 }
 

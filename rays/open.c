@@ -25,6 +25,18 @@ static const RaySet *set_of_lanes(void)
     return &ray_set_plain;
 }
 
+/* The box that has cubes: around the scene or, where that is endless, around what is not, with room beside it. */
+static void bound_space(const RayField *field, float low[3], float high[3])
+{
+    const Box box = state_outer_box(field->state, state_find_boxes(field->state));
+    for (int k = 0; k < 3; k++) {
+        const bool   endless = field->high[k] - field->low[k] >= 1e30f && !box_is_empty(box);
+        const double size    = box.axis[k].high - box.axis[k].low;
+        low[k]               = endless ? (float)(box.axis[k].low - size) : field->low[k];
+        high[k]              = endless ? (float)(box.axis[k].high + size) : field->high[k];
+    }
+}
+
 static void fill(RayField *field)
 {
     state_refresh_points(field->state);
@@ -42,10 +54,12 @@ static void fill(RayField *field)
         field->low[k]      = (float)fmax(low - slack, -1e30);
         field->high[k]     = (float)fmin(high + slack, 1e30);
     }
+    float low[3], high[3];
+    bound_space(field, low, high);
     for (size_t i = 0; i < parallel_parts(); i++) {
         field->waves[i] = arena_new(&field->arena, Wave);
-        space_new(&field->spaces[i], &field->distance.cells, field->distance.works[i], field->low,
-                  field->high, field->margin, &field->arena);
+        space_new(&field->spaces[i], &field->distance.cells, field->distance.works[i], low, high,
+                  field->margin, &field->arena);
     }
 }
 

@@ -47,12 +47,17 @@ NodeValue *ray_copy_values(const KrsState *state, Arena *arena)
     return values;
 }
 
+/* How large coordinates count as in what has no end: pixels are much wider than rounding, farther away. */
+static const double ENDLESS = 1e4;
+
 float ray_margin(const KrsProgram *program)
 {
     double most = 1;
-    for (int k = 0; k < 3; k++)
-        most = fmax(most, fmax(fabs(program->rest_low[k]), fabs(program->rest_high[k])));
-    return 2e-6f * (float)fmin(most, 1e30);
+    for (int k = 0; k < 3; k++) {
+        const double side = fmax(fabs(program->rest_low[k]), fabs(program->rest_high[k]));
+        most              = fmax(most, side < 1e30 ? side : ENDLESS);
+    }
+    return 2e-6f * (float)most;
 }
 
 /* Completes a tape whose lanes are made; `values` are those of the frame. */

@@ -18,6 +18,7 @@
 
 #include "compiler/graph/lanes/lane_cells.h"
 #include "compiler/scene/program.h"
+#include "rays/ray_field.h"
 #include "tests/support/random.h"
 
 enum { TREES = 40, BALLS = 60, SHAPES = 24, FIGURES = 12, DEPTH = 2 };
@@ -264,7 +265,8 @@ static void try_ball(Opened *o, double part, Count *count)
             for (int k = 0; k < 3; k++)
                 points[k][i] = (float)middle[k];
         cell_run(&tape, o->work, depth, (const float(*)[CELL_LANES])points);
-        tape = cell_prune(&tape, o->work, depth, lane, (float)(part * radius), 4e-6f);
+        tape = cell_prune(&tape, o->work, depth, lane, (float)(part * radius),
+                          ray_margin(&o->scene->program));
         compare(o, &tape, middle, radius, count);
         count->whole_steps += o->cells.count;
         count->steps += tape.count;
@@ -317,6 +319,25 @@ static void trees_of_shapes(void **context)
     assert_true(2 * count.steps < count.whole_steps);
 }
 
+/* Ground that is no plane has no box, so coordinates have no largest size. */
+static void random_tree_on_ground(char *text, size_t room)
+{
+    const size_t at = (size_t)snprintf(text, room,
+                                       "shape ground() { distance: length([x, y + 20, z]) - 18 - "
+                                       "0.05 * sin(x) } show ground(); ");
+    random_tree(text + at, room - at);
+}
+
+static void trees_on_endless_ground(void **context)
+{
+    (void)context;
+    const Count count = try_random(random_tree_on_ground, FIGURES, 1);
+    print_message("%.0f %% of the steps are left\n",
+                  100.0 * (double)count.steps / (double)count.whole_steps);
+    assert_int_equal(count.wrong, 0);
+    assert_true(2 * count.steps < count.whole_steps);
+}
+
 static void figures_made_solid(void **context)
 {
     (void)context;
@@ -346,7 +367,8 @@ static void a_smaller_ball_is_seen(void **context)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(trees_of_shapes), cmocka_unit_test(figures_made_solid),
-        cmocka_unit_test(other_scenes), cmocka_unit_test(a_smaller_ball_is_seen)};
+        cmocka_unit_test(trees_of_shapes), cmocka_unit_test(trees_on_endless_ground),
+        cmocka_unit_test(figures_made_solid), cmocka_unit_test(other_scenes),
+        cmocka_unit_test(a_smaller_ball_is_seen)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
