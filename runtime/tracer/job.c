@@ -53,6 +53,29 @@ static bool is_camera_relative(const Job *job)
     return job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 || job->rebase_origin[2] != 0;
 }
 
+/* Tells whether the rectangle in which rays of an orthographic camera begin is outside of all solids: balls around
+   its parts must be.  The frame is prepared. */
+static bool rectangle_is_outside(const Job *job, KrsState *state)
+{
+    enum { SIDE = 16 };
+    const FrameBlock *frame = &job->frame;
+    double            points[SIDE * SIDE][3], clearances[SIDE * SIDE], square = 0;
+    for (int k = 0; k < 3; k++) {
+        const double right = (double)frame->right[k] / SIDE, up = (double)frame->up[k] / SIDE;
+        square += right * right + up * up;
+        for (int i = 0; i < SIDE * SIDE; i++)
+            points[i][k] = job->view.camera.eye[k] + (2 * (i % SIDE) + 1 - SIDE) * right +
+                           (2 * (i / SIDE) + 1 - SIDE) * up;
+    }
+    if (job->view.camera.shift[0] != 0 || job->view.camera.shift[1] != 0 ||
+        krs_distance(state, (const double(*)[3])points, SIDE * SIDE, clearances) != KRS_OK)
+        return false;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        if (!(clearances[i] > 1.01 * sqrt(square)))
+            return false;
+    return true;
+}
+
 /* Tells whether all rays begin outside of all solids.  A ray from inside of a solid hits the inner wall
    of the union, which no march group or scene part knows by itself.  Rays of a list may begin
    anywhere, and are not tested one by one. */
@@ -73,7 +96,7 @@ static bool begins_outside(const Job *job, KrsState *state)
             ahead += (side - camera->eye[i]) * (camera->target[i] - camera->eye[i]);
         }
         if (!(ahead > 0)) /* a lens lies across the view */
-            return false;
+            return rectangle_is_outside(job, state);
     }
     return true;
 }
@@ -171,9 +194,9 @@ bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera)
     origin_choose(job->rendering, state,
                   &(Viewer){&job->view.camera, job->rays, job->options.width, job->options.height},
                   job->rebase_origin);
-    job->begins_outside = begins_outside(job, state);
     if (!sky_table_upload(job->rendering, job->view.sky.map) || !prepare_frame_block(job))
         return false;
+    job->begins_outside = begins_outside(job, state);
     if (job->rendering->program->emits && job->options.integrator != KRS_INTEGRATOR_PREVIEW)
         job->frame.emissive_count = emissive_find(job->rendering->program, &job->view.camera, state,
                                                   job->rebase_origin, job->emissive);

@@ -139,9 +139,41 @@ static void bounded_scenes_get_a_floor(void **state)
     }
 }
 
+/* Rays of a level orthographic picture begin above the floor, however high the picture is. */
+static void level_views_begin_above_the_floor(void **state)
+{
+    static const struct {
+        const char *camera;
+        bool        above;
+    } cameras[] = {
+        {"camera { eye: [0, 0, 20], projection: \"orthographic\", height: 4 }", true},
+        {"camera { eye: [0, 5, 20], target: [0, 5, 0], projection: \"orthographic\", height: 40 }",
+         true},
+        {"camera { eye: [0, 3, 20], projection: \"orthographic\", height: 4 }", false},
+        {"camera { eye: [0, 0, 20] }", false}};
+    const KrsOptions options = {.studio = true};
+    (void)state;
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
+        char         text[160];
+        KrsScene    *scene;
+        KrsState    *values;
+        const double lowest[][3] = {{0, i == 1 ? -15 : -2, 20}};
+        double       distance;
+        snprintf(text, sizeof text, "show sphere(1); %s", cameras[i].camera);
+        assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene),
+                         KRS_OK);
+        assert_int_equal(krs_state_new(scene, &values), KRS_OK);
+        assert_int_equal(krs_distance(values, lowest, 1, &distance), KRS_OK);
+        assert_int_equal(distance > 0, cameras[i].above);
+        krs_state_free(values);
+        krs_scene_free(scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(fog_takes_light_by_its_density),
-                                       cmocka_unit_test(bounded_scenes_get_a_floor)};
+                                       cmocka_unit_test(bounded_scenes_get_a_floor),
+                                       cmocka_unit_test(level_views_begin_above_the_floor)};
     return cmocka_run_group_tests_name("surroundings", tests, renderer_open, renderer_close);
 }

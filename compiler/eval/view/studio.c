@@ -59,6 +59,26 @@ static bool cameras_are_above(Elaboration *e, double height)
     return true;
 }
 
+/* Returns how low rays begin, and a tenth of the picture lower, where all cameras are orthographic and level, so that nobody
+   sees the top of a floor; else infinity. */
+static double lowest_of_level_rays(Elaboration *e)
+{
+    double lowest = INFINITY;
+    for (size_t i = 0; i < e->scene->cameras.count; i++) {
+        const SceneCamera *camera = &e->scene->cameras.items[i];
+        const Range eye    = node_range(e->builder, graph_component(e->graph, camera->nodes.eye, 1),
+                                        0),
+                    target = node_range(e->builder,
+                                        graph_component(e->graph, camera->nodes.target, 1), 0),
+                    height = node_range(e->builder, camera->nodes.height, 0);
+        if (camera->projection != KRS_ORTHOGRAPHIC || eye.low != eye.high ||
+            target.low != eye.low || target.high != eye.low)
+            return INFINITY;
+        lowest = fmin(lowest, eye.low - 0.6 * height.high);
+    }
+    return lowest;
+}
+
 /* A height that is found for each state, in this box as a rule. */
 static Node state_floor(Elaboration *e, Box box)
 {
@@ -108,8 +128,10 @@ void run_studio(Elaboration *e, const Files *files)
         box = box_of_defaults(e);
     if (box_is_empty(box) || !box_is_finite(box) || !cameras_are_above(e, box.axis[1].low))
         return;
+    /* Rays that begin inside of a floor, and along it, would never leave it. */
+    const double bottom = fmin(box.axis[1].low, lowest_of_level_rays(e));
     set_value(scope, "_bottom",
-              varies ? value_of_node(e, state_floor(e, box)) : value_number(box.axis[1].low));
+              varies ? value_of_node(e, state_floor(e, box)) : value_number(bottom));
     set_value(scope, "_size", value_number(fmax(box_diagonal(box), 1e-9)));
     run_file(e, scope);
     scene->components.items[scene->components.count - 1].name = "floor";
