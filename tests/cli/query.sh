@@ -102,9 +102,9 @@ said 2 "host or device" "somebody else"
 
 compile_exr exr_text
 sed '/^zone/d' zoned.krs >bare.krs
-run render bare.krs --zone 0,0,1,0.5 --size 40x30 -o by_option.exr
-run render zoned.krs --size 40x30 -o by_scene.exr
-run render bare.krs --size 40x30 -o whole.exr
+run render bare.krs --rays kernels --zone 0,0,1,0.5 --size 40x30 -o by_option.exr
+run render zoned.krs --rays kernels --size 40x30 -o by_scene.exr
+run render bare.krs --rays kernels --size 40x30 -o whole.exr
 for picture in by_option by_scene whole; do
     ./exr_text $picture.exr >$picture.txt
 done

@@ -27,7 +27,7 @@ screen_is() { # picture
 shows() { # what was tested, options
     what=$1
     shift
-    "$krs" render scene.krs --size 96x64 --samples 2 --specialize structure -q -o b.png "$@" \
+    "$krs" render scene.krs --rays kernels --size 96x64 --samples 2 --specialize structure -q -o b.png "$@" \
         2>err && screen_is b.png
     result $? "$what"
 }
@@ -60,7 +60,7 @@ xdotool mousemove 48 32 key Tab
 shows "the first picture" --specialize numbers
 # All but what a note of 152 x 65 pixels in the corner hides.
 xdotool windowsize "$window" 640 160 key Tab
-"$krs" render scene.krs --size 296x160 --samples 2 -q -o wide.png
+"$krs" render scene.krs --rays kernels --size 296x160 --samples 2 -q -o wide.png
 for _ in $(seq 100); do
     ./screen_check Xvfb_screen0 wide.png >out || [ "$(cut -d ' ' -f 1 out)" -gt 9880 ] || break
     sleep 0.1
@@ -161,7 +161,7 @@ xdotool key 3 ctrl+e
 for _ in $(seq 50); do cmp -s scene.krs written.krs || break; sleep 0.1; done
 sed 1d written.krs >rest
 sed 1d scene.krs | cmp - rest >out 2>&1 && grep -q '^camera { eye: .*orthographic.* }$' scene.krs &&
-    "$krs" render scene.krs --size 96x64 --samples 1 --specialize structure -q -o b.png 2>err && screen_is b.png
+    "$krs" render scene.krs --rays kernels --size 96x64 --samples 1 --specialize structure -q -o b.png 2>err && screen_is b.png
 result $? "the camera is written into the text, and nothing else"
 # By keys alone: the first item of the panel is the slider.
 xdotool key --delay 150 F2 Down space Left Left Left F2
@@ -181,7 +181,7 @@ done
 result $? "a key opens the text at its mistake"
 printf 'camera { eye: [0, 1, 9], target: [0, 1, 0] }\nshow box([1, 1, 1]).move([0.5, 1, 0]);\nshow sphere(0.5).move([9, 0, 0]);\n' >scene.krs
 xdotool key h
-"$krs" render scene.krs --size 96x64 --samples 1 --specialize structure -q -o b.png 2>err && screen_is b.png
+"$krs" render scene.krs --rays kernels --size 96x64 --samples 1 --specialize structure -q -o b.png 2>err && screen_is b.png
 xdotool key shift+f ctrl+e
 for _ in $(seq 50); do grep -q 'target: \[0.5, 1, 0\]' scene.krs && break; sleep 0.1; done
 grep -q 'target: \[0.5, 1, 0\]' scene.krs
@@ -199,7 +199,7 @@ viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name own.krs | head -n 1)
 xdotool windowsize "$window" 96 64 mousemove 48 32 windowraise "$window"
 own_is() { # what was tested
-    "$krs" render own.krs --size 96x64 --samples 8 --specialize structure -q -o b.png 2>err && screen_is b.png
+    "$krs" render own.krs --rays kernels --size 96x64 --samples 8 --specialize structure -q -o b.png 2>err && screen_is b.png
     result $? "$1"
 }
 own_is "it shows the scene"
@@ -231,7 +231,7 @@ printf 'show sphere(1);' >small.krs
 viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name small.krs | head -n 1)
 xdotool mousemove 48 32 key Tab
-"$krs" render small.krs --size 96x64 --samples 2 --specialize structure -q -o b.png && screen_is b.png
+"$krs" render small.krs --rays kernels --size 96x64 --samples 2 --specialize structure -q -o b.png && screen_is b.png
 result $? "a window manager shows it"
 xdotool windowminimize "$window"
 for _ in $(seq 50); do ./screen_check Xvfb_screen0 b.png >out || break; sleep 0.1; done
@@ -240,7 +240,7 @@ result $? "it is minimised"
 printf 'show box([2, 1, 1]);' >small.krs
 sleep 0.3
 xdotool windowactivate "$window"
-"$krs" render small.krs --size 96x64 --samples 2 --specialize structure -q -o b.png && screen_is b.png
+"$krs" render small.krs --rays kernels --size 96x64 --samples 2 --specialize structure -q -o b.png && screen_is b.png
 result $? "and shows what was edited meanwhile"
 xdotool key --window "$window" Escape
 wait "$viewer"
@@ -251,7 +251,7 @@ printf 'param h = 1 in [0.5, 4];\nshow box([1, h, 1]);' >tall.krs
 viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name tall.krs | head -n 1)
 xdotool mousemove 48 32 key Tab
-"$krs" render tall.krs --size 96x64 --samples 2 --set h=4 --specialize structure -q -o b.png && screen_is b.png
+"$krs" render tall.krs --rays kernels --size 96x64 --samples 2 --set h=4 --specialize structure -q -o b.png && screen_is b.png
 result $? "the camera of a scene without one, and its floor, are for what is set"
 xdotool key --window "$window" Escape
 wait "$viewer"

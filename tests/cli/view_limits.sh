@@ -31,7 +31,7 @@ screen_differs() { # picture
     return 1
 }
 shows() { # what was tested
-    "$krs" render scene.krs --size 96x64 --samples 2 --specialize structure -q -o b.png 2>err && screen_is b.png
+    "$krs" render scene.krs --rays kernels --size 96x64 --samples 2 --specialize structure -q -o b.png 2>err && screen_is b.png
     result $? "$1"
 }
 heard() { # words, times
