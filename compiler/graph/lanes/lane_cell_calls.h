@@ -382,22 +382,36 @@ static void LOCAL(cell_id_unit)(const REAL *x, REAL *to)
     ALL_LANES { to[i] = lane_id_unit(x[i]); }
 }
 
+/* Operations that have a loop, and how it is called. */
+#define LANE_LOOPS(LOOP)                                              \
+    LOOP(cell_polar, LOCAL(cell_polar)(x, to))                        \
+    LOOP(julia, LOCAL(cell_julia)(x, to[0]))                          \
+    LOOP(mandelbulb, LOCAL(cell_mandelbulb)(x, to[0]))                \
+    LOOP(noise2, LOCAL(cell_noise2)(x[0], x[1], to[0]))               \
+    LOOP(noise3, LOCAL(cell_noise3)(x[0], x[1], x[2], to[0]))         \
+    LOOP(push_id, LOCAL(cell_push_id)(x[0], x[1], to[0]))             \
+    LOOP(to_uint, LOCAL(cell_to_uint)(x[0], to[0]))                   \
+    LOOP(id_unit, LOCAL(cell_id_unit)(x[0], to[0]))                   \
+    LOOP(smin4_quadratic, LOCAL(cell_shares)(x, 4, false, to[0]))     \
+    LOOP(smin8_quadratic, LOCAL(cell_shares)(x, 8, false, to[0]))     \
+    LOOP(threshold4_quadratic, LOCAL(cell_shares)(x, 4, true, to[0])) \
+    LOOP(threshold8_quadratic, LOCAL(cell_shares)(x, 8, true, to[0]))
+
+typedef void LOCAL(Loop)(const REAL *const *x, REAL *const *to);
+#define LOOP_FUNCTION(op, call) \
+    static void LOCAL(loop_##op)(const REAL *const *x, REAL *const *to) { call; }
+LANE_LOOPS(LOOP_FUNCTION)
+#define LOOP_ROW(op, call) [OP_##op] = LOCAL(loop_##op),
+static LOCAL(Loop) *const LOCAL(loops)[OP_COUNT] = {LANE_LOOPS(LOOP_ROW)};
+#undef LANE_LOOPS
+#undef LOOP_FUNCTION
+#undef LOOP_ROW
+
 /* False: there is no such loop. */
 static bool LOCAL(call_of_lanes)(Op op, const REAL *const *x, REAL *const *to)
 {
-    switch (op) {
-    case OP_cell_polar: LOCAL(cell_polar)(x, to); return true;
-    case OP_julia: LOCAL(cell_julia)(x, to[0]); return true;
-    case OP_mandelbulb: LOCAL(cell_mandelbulb)(x, to[0]); return true;
-    case OP_noise2: LOCAL(cell_noise2)(x[0], x[1], to[0]); return true;
-    case OP_noise3: LOCAL(cell_noise3)(x[0], x[1], x[2], to[0]); return true;
-    case OP_push_id: LOCAL(cell_push_id)(x[0], x[1], to[0]); return true;
-    case OP_to_uint: LOCAL(cell_to_uint)(x[0], to[0]); return true;
-    case OP_id_unit: LOCAL(cell_id_unit)(x[0], to[0]); return true;
-    case OP_smin4_quadratic: LOCAL(cell_shares)(x, 4, false, to[0]); return true;
-    case OP_smin8_quadratic: LOCAL(cell_shares)(x, 8, false, to[0]); return true;
-    case OP_threshold4_quadratic: LOCAL(cell_shares)(x, 4, true, to[0]); return true;
-    case OP_threshold8_quadratic: LOCAL(cell_shares)(x, 8, true, to[0]); return true;
-    default: return false;
-    }
+    LOCAL(Loop) *loop = op < OP_COUNT ? LOCAL(loops)[op] : NULL;
+    if (loop)
+        loop(x, to);
+    return loop != NULL;
 }
