@@ -166,3 +166,18 @@ NodeValue instance_walk_result(const InstanceWalk *walk, const Graph *graph,
         result.v[0] = fmin(result.v[0], walk->clearance);
     return result;
 }
+
+double instance_arc_min_distance(const InstanceArc *arc, const double point[2])
+{
+    double chord[2], from[2], square = 0, along = 0;
+    for (int k = 0; k < 2; k++) {
+        chord[k] = 2 * arc->tangent[k] + arc->bend[k];
+        from[k]  = point[k] - arc->start[k];
+        square += chord[k] * chord[k];
+        along += chord[k] * from[k];
+    }
+    const double t = square > 0 ? min2(max2(along / square, 0), 1) : 0;
+    const double x = from[0] - t * chord[0], y = from[1] - t * chord[1];
+    return sqrt(x * x + y * y) -
+           0.25 * sqrt(arc->bend[0] * arc->bend[0] + arc->bend[1] * arc->bend[1]);
+}

@@ -47,4 +47,7 @@ InstanceStep instance_walk_widen(InstanceWalk *walk, double distance);
 NodeValue instance_walk_result(const InstanceWalk *walk, const Graph *graph,
                                const NodeValue *states);
 
+/* How far a curve is at least: it is not farther from its chord than a quarter of its bend. */
+double instance_arc_min_distance(const InstanceArc *arc, const double point[2]);
+
 #endif

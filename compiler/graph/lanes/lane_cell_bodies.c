@@ -130,22 +130,6 @@ size_t cell_cost(const CellTape *tape)
 
 /* ---- how far instances are ---- */
 
-/* How far a curve is at least: it is not farther from its chord than a quarter of its bend. */
-static double distance_to_arc(const InstanceArc *arc, const double point[2])
-{
-    double chord[2], from[2], square = 0, along = 0;
-    for (int k = 0; k < 2; k++) {
-        chord[k] = 2 * arc->tangent[k] + arc->bend[k];
-        from[k]  = point[k] - arc->start[k];
-        square += chord[k] * chord[k];
-        along += chord[k] * from[k];
-    }
-    const double t = square > 0 ? min2(max2(along / square, 0), 1) : 0;
-    const double x = from[0] - t * chord[0], y = from[1] - t * chord[1];
-    return sqrt(x * x + y * y) -
-           0.25 * sqrt(arc->bend[0] * arc->bend[0] + arc->bend[1] * arc->bend[1]);
-}
-
 static double distance_of_boxes(const Box *box, const CellView *view)
 {
     double square = 0;
@@ -258,7 +242,7 @@ static void visit_nearest(const CellCall *call, NodeValue *values, const CellVie
     uint32_t             first = 0;
     for (uint32_t i = 0; i < call->instance_count; i++) {
         const uint32_t instance = call->instances[i];
-        least[i] = table->arcs ? distance_to_arc(&table->arcs[instance], middle) - radius
+        least[i] = table->arcs ? instance_arc_min_distance(&table->arcs[instance], middle) - radius
                                : distance_of_boxes(&table->bounds[instance], view) / table->stretch;
         first    = least[i] < least[first] ? i : first;
     }
@@ -350,7 +334,7 @@ bool cell_find_instances(const CellCall *call, const CellView *view, uint32_t *i
         return false;
     for (uint32_t i = 0; i < all; i++) {
         const uint32_t instance = call->instances ? call->instances[i] : i;
-        if (table->arcs ? distance_to_arc(&table->arcs[instance], middle) > farthest
+        if (table->arcs ? instance_arc_min_distance(&table->arcs[instance], middle) > farthest
                         : distance_of_boxes(&boxes[instance], view) > reach)
             continue;
         if (*count == most)

@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/graph/instance_walk.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/bounds/numbers.h"
@@ -55,24 +56,9 @@ static double distance_to_point(const double a[2], const double b[2])
     return hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-/* A curve is not farther from its chord than a quarter of its bend. */
-static double min_distance(const InstanceArc *arc, const double point[2])
-{
-    double chord[2], from[2], square = 0, along = 0;
-    for (int k = 0; k < 2; k++) {
-        chord[k] = 2 * arc->tangent[k] + arc->bend[k];
-        from[k]  = point[k] - arc->start[k];
-        square += chord[k] * chord[k];
-        along += chord[k] * from[k];
-    }
-    double t = square > 0 ? min2(max2(along / square, 0), 1) : 0;
-    return hypot(from[0] - t * chord[0], from[1] - t * chord[1]) -
-           0.25 * hypot(arc->bend[0], arc->bend[1]);
-}
-
 static bool may_be_nearest(const View *view, uint32_t instance)
 {
-    return min_distance(&view->table->arcs[instance], view->middle) <=
+    return instance_arc_min_distance(&view->table->arcs[instance], view->middle) <=
            view->farthest + view->radius;
 }
 
@@ -144,7 +130,7 @@ bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t s
     lines->count = 0;
     for (uint32_t i = 0; i < view.call->instance_count; i++) {
         const InstanceArc *arc = &view.table->arcs[view.call->instances[i]];
-        if (min_distance(arc, view.middle) > reach)
+        if (instance_arc_min_distance(arc, view.middle) > reach)
             continue;
         if (lines->count == 2)
             return false;
