@@ -12,6 +12,7 @@
 #include "compiler/base/parallel.h"
 #include "runtime/tracer/lane_fields.h"
 #include "runtime/tracer/lane_rays.h"
+#include "runtime/tracer/methods.h"
 #include "runtime/tracer/rendering.h"
 #include "runtime/tracer/shaders.h"
 
@@ -91,7 +92,7 @@ bool executor_choose(Job *job, uint32_t samples)
     bool          failed   = false;
     if (*executor == KRS_EXECUTOR_DEFAULT) {
         const bool lanes = (r->deferred || r->purpose == KRS_FOR_LANES) && !lane_rays_refuse(job) &&
-                           surface_field_suits(r->scene) &&
+                           rendering_lanes_find_surfaces(r) &&
                            (!r->deferred || lanes_are_faster(job, samples, &failed));
         *executor = lanes ? KRS_EXECUTOR_LANES : KRS_EXECUTOR_KERNELS;
     }

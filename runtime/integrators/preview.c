@@ -340,7 +340,8 @@ static bool find_secondary(Preview *p)
 static const Shader *find_shade(Preview *p)
 {
     Job *job = p->job;
-    if (!lane_surfaces_suit(job))
+    if (job->options.methods.executor != KRS_EXECUTOR_LANES ||
+        !rendering_lanes_find_surfaces(job->rendering))
         return rendering_shade(job->rendering);
     p->plan->surfaces     = lane_surfaces_field(job);
     p->plan->surface_rows = lane_surfaces_rows(job->rendering);

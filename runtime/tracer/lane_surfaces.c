@@ -23,12 +23,6 @@ static_assert((int)PLAIN_SURFACE_NUMBERS == 4 * (int)PLAIN_SURFACE_ROWS &&
                   (int)SURFACE_NUMBERS > 4 * ((int)SURFACE_ROWS - 1),
               "rows of surfaces");
 
-bool lane_surfaces_suit(const Job *job)
-{
-    return job->options.methods.executor == KRS_EXECUTOR_LANES && job->gpu->texels &&
-           surface_field_suits(job->rendering->scene);
-}
-
 static bool has_layers(const KrsProgram *program) { return program->layers || program->subsurface; }
 
 uint32_t lane_surfaces_rows(const KrsRendering *rendering)

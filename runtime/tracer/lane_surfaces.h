@@ -8,9 +8,6 @@
 #include "rays/surfaces.h"
 #include "runtime/tracer/job.h"
 
-/* Tells whether lanes find the surfaces of a frame: they march its rays, and none goes on behind a
-   surface. */
-bool lane_surfaces_suit(const Job *job);
 /* How many rows a surface has. */
 uint32_t lane_surfaces_rows(const KrsRendering *rendering);
 /* The surfaces of a state, which belong to the rendering; NULL with the failure noted. */

@@ -3,6 +3,7 @@
  */
 #include "runtime/tracer/methods.h"
 
+#include "rays/surfaces.h"
 #include "runtime/tracer/research/research.h"
 
 /* Where a distance costs fewer operations than this, refilling lanes costs more than it gains: in
@@ -80,6 +81,11 @@ bool rendering_light_meets_planes(const KrsRendering *rendering)
 {
     return rendering_knows_planes(rendering) && !rendering->program->mirrors &&
            !rendering->program->media;
+}
+
+bool rendering_lanes_find_surfaces(const KrsRendering *rendering)
+{
+    return rendering->renderer->gpu.texels && surface_field_suits(rendering->scene);
 }
 
 /* The rays of mirrors need shaders for the whole scene.  If those are for the picture, too, the first

@@ -20,6 +20,8 @@ KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, Krs
 bool rendering_knows_planes(const KrsRendering *rendering);
 /* Tells whether rays to lights and for occlusion may do so in previews, if the camera is outside of all. */
 bool rendering_light_meets_planes(const KrsRendering *rendering);
+/* Tells whether lanes can find surfaces: no ray goes on behind one, and shaders can read what is found. */
+bool rendering_lanes_find_surfaces(const KrsRendering *rendering);
 /* Tells whether march groups are marched one after the other; false where they cannot be. */
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components);
 /* Tells whether each ray marches scene part by scene part with this method; false where it cannot. */

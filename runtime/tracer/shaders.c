@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "rays/surfaces.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/variants.h"
@@ -316,7 +315,7 @@ static void request_all(Requests *requests, KrsPurpose purpose)
     request_sceneless(requests, purpose);
     if (purpose == KRS_FOR_LANES ||
         (is_for_pictures(purpose) && krs_scene_too_large(rendering->scene))) {
-        const bool found = surface_field_suits(rendering->scene);
+        const bool found = rendering_lanes_find_surfaces(rendering);
         request(requests, "shade.comp",
                 found ? variant_of_shade_found(rendering) : variant_of_shade(rendering));
         if (!found)
