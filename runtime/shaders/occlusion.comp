@@ -23,6 +23,8 @@
 const float ON_PLANE = 1.5, MIN_WEIGHT = 0.5, NEAR_REACH = 3.0, WIDE_REACH = 8.0, FAR_REACH = 4.5;
 // The reach of the wider mean, relative to the distance of the occluders.
 const float REACH_OF_HITS = 0.7;
+// A reach in space that leaves nothing out.  Its inverse is no denormal number: processors are slow at those.
+const float ANY_DISTANCE = 1e12;
 // Added to the mean squares of offsets, in reaches: slopes of few noisy taps count less.
 const float MIN_SPREAD = 0.1;
 
@@ -128,7 +130,7 @@ void do_item(uint number)
     int   spacing = wider ? 2 : upsampled ? 1 : 0;
     Source source = wider ? Source(MEANS_SHARED, LIST_REMAINING) : Source(RAYS_SHARED, LIST_WIDE);
     HitPoint hit = hit_point_of_slot(slot);
-    float farthest = wider ? max(find_wide_reach(load_hit(LIGHTING, slot).x), 1.0) : INFINITE;
+    float farthest = wider ? max(find_wide_reach(load_hit(LIGHTING, slot).x), 1.0) : ANY_DISTANCE;
     float radius = wider ? min(farthest, WIDE_REACH * inversesqrt(float(control.rays)))
                    : upsampled ? FAR_REACH : NEAR_REACH;
     vec3  normal = load_hit(FACING, slot).xyz;
