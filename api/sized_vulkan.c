@@ -64,6 +64,15 @@ KrsStatus krs_film_add_sized(KrsFilm *film, KrsState *state, const KrsCamera *ca
     return krs_film_add(film, state, camera ? &own : NULL, samples);
 }
 
+KrsStatus krs_film_try_lanes_sized(KrsFilm *film, KrsState *state, const KrsCamera *camera,
+                                   size_t size, double *lanes_ms, double *compiler_ms)
+{
+    KrsCamera own;
+    if (!sized_take(&own, sizeof own, camera, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_film_try_lanes(film, state, camera ? &own : NULL, lanes_ms, compiler_ms);
+}
+
 KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsState *state, const KrsRays *rays, size_t size)
 {
     KrsRays own;

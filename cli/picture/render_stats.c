@@ -17,15 +17,17 @@ static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsPro
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         text_format(json, "\"%s\": %.3f, ", krs_phase_names[phase], stats->phase_ms[phase]);
     text_format(json,
-                "\"total\": %.3f, \"wall\": %.3f}, \"device_time\": %s, \"rays\": %llu, "
+                "\"total\": %.3f, \"wall\": %.3f}, \"device_time\": %s, \"executor\": \"%s\", "
+                "\"rays\": %llu, "
                 "\"evaluations\": %llu, \"evaluations_per_ray\": {\"mean\": %.3f, "
                 "\"maximum\": %u}, \"flops_per_evaluation\": %.3f, \"gflops\": %.3f, "
                 "\"unresolved\": %llu, \"clamped\": %llu, \"submissions\": %llu, \"device\": ",
                 stats->total_ms, stats->wall_ms, stats->device_time ? "true" : "false",
-                (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
-                stats->evaluations_per_ray, stats->max_evaluations_per_ray,
-                stats->flops_per_evaluation, stats->gflops, (unsigned long long)stats->unresolved,
-                (unsigned long long)stats->clamped, (unsigned long long)stats->submissions);
+                krs_executor_names[stats->executor], (unsigned long long)stats->rays,
+                (unsigned long long)stats->evaluations, stats->evaluations_per_ray,
+                stats->max_evaluations_per_ray, stats->flops_per_evaluation, stats->gflops,
+                (unsigned long long)stats->unresolved, (unsigned long long)stats->clamped,
+                (unsigned long long)stats->submissions);
     text_json(json, stats->device);
     text_format(json, ", \"peak_memory_bytes\": %llu",
                 (unsigned long long)stats->peak_memory_bytes);
@@ -79,7 +81,8 @@ static void print_stats(const KrsRenderStats *stats, const KrsProgram *program)
            stats->device_time ? " on the device" : "", stats->wall_ms);
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         printf(" %s %.1f", krs_phase_names[phase], stats->phase_ms[phase]);
-    printf("\nrays           %llu, %llu evaluations, %.1f per ray, at most %u\n",
+    printf("\nexecutor       %s\n", krs_executor_names[stats->executor]);
+    printf("rays           %llu, %llu evaluations, %.1f per ray, at most %u\n",
            (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
            stats->evaluations_per_ray, stats->max_evaluations_per_ray);
     printf("arithmetic     %.0f flops per evaluation, %.2f Gflop/s\n", stats->flops_per_evaluation,

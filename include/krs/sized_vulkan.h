@@ -25,6 +25,8 @@ KrsStatus krs_film_new_sized(KrsRendering *rendering, const KrsRenderOptions *op
                              KrsFilm **film);
 KrsStatus krs_film_add_sized(KrsFilm *film, KrsState *state, const KrsCamera *camera, size_t size,
                              uint32_t samples);
+KrsStatus krs_film_try_lanes_sized(KrsFilm *film, KrsState *state, const KrsCamera *camera,
+                                   size_t size, double *lanes_ms, double *compiler_ms);
 KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsState *state, const KrsRays *rays, size_t size);
 KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsState *state,
                                  const double (*points)[3], size_t count, KrsHit *hits,
@@ -68,6 +70,11 @@ KRS_SIZED KrsStatus krs_film_add(KrsFilm *film, KrsState *state, const KrsCamera
                                  uint32_t samples)
 {
     return krs_film_add_sized(film, state, camera, sizeof *camera, samples);
+}
+KRS_SIZED KrsStatus krs_film_try_lanes(KrsFilm *film, KrsState *state, const KrsCamera *camera,
+                                       double *lanes_ms, double *compiler_ms)
+{
+    return krs_film_try_lanes_sized(film, state, camera, sizeof *camera, lanes_ms, compiler_ms);
 }
 KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsRays *rays)
 {

@@ -272,10 +272,13 @@ typedef struct KrsRenderStats {
     uint64_t clamped;     /* rays whose light was clamped to max_radiance */
     uint64_t submissions; /* of work to the device; the host waits for each */
     KRS_WAS(uint64_t shaders, uint64_t kernels,
-            "shaders");         /* that the renderer has made since it was opened, for all scenes */
-    uint64_t peak_memory_bytes; /* the most held at once on the device, and the picture */
-    char     device[256];
-    uint64_t reserved[8]; /* 0: this is a part of KrsPicture, and keeps its size */
+            "shaders"); /* that the renderer has made since it was opened, for all scenes */
+    uint64_t    peak_memory_bytes; /* the most held at once on the device, and the picture */
+    char        device[256];
+    KrsExecutor executor; /* that marched the rays of the sample added last; DEFAULT: several did,
+                             or the samples were loaded */
+    uint32_t    reserved_half; /* 0, as what follows */
+    uint64_t    reserved[7];   /* 0: this is a part of KrsPicture, and keeps its size */
 } KrsRenderStats;
 
 /* Rays of a pixel that hit a component, one of its instances, or a material. */
@@ -377,6 +380,12 @@ uint32_t krs_film_samples(const KrsFilm *film); /* of each pixel so far */
    KRS_INTERRUPTED, KRS_INTERNAL. */
 KRS_SIZED KrsStatus krs_film_add(KrsFilm *film, KrsState *state, const KrsCamera *camera,
                                  uint32_t samples);
+
+/* Tells about how many milliseconds a sample of all pixels would take by the executor LANES, and the compilers of shaders
+   that are missing.  Lanes march small parts of the picture for some 10 ms, and nothing is compiled.  KRS_BAD_ARGUMENT: they
+   cannot march these rays, or need a shader that contains the scene; krs_renderer_message says why.  KRS_OUT_OF_MEMORY. */
+KRS_SIZED KrsStatus krs_film_try_lanes(KrsFilm *film, KrsState *state, const KrsCamera *camera,
+                                       double *lanes_ms, double *compiler_ms);
 
 /* A ray for each pixel of the whole picture, row by row from the top, also where there is a crop:
    lenses and projections of the caller's own. */

@@ -43,22 +43,32 @@ static double compile_ms(KrsRendering *rendering)
     return shaders_are_known(rendering) ? KNOWN * fresh : fresh;
 }
 
-/* Measures what a sample of a pixel takes; false with the failure noted. */
-static bool try_lanes(Job *job, LaneTimes *times)
+/* Measures what a sample takes, with the rays to lights; false with the failure noted. */
+static bool try_lanes(Job *job, LaneTrial *trial)
 {
-    const double pixels = (double)job->options.width * job->options.height;
-    RayField    *field  = lane_fields_rays(job->rendering, job->state, lane_rays_know_planes(job));
-    double       parts  = 1 + (job->options.no_occlusion ? 0 : OCCLUSION_RAYS);
-    LaneTrial    trial;
+    RayField *field = lane_fields_rays(job->rendering, job->state, lane_rays_know_planes(job));
+    double    parts = 1 + (job->options.no_occlusion ? 0 : OCCLUSION_RAYS);
     for (size_t i = 0; i < job->view.light_count; i++)
         parts += job->view.lights[i].shadow ? SHADOW_RAYS : 0;
-    if (!field || !lane_rays_try(job, field, TRIAL_MS, &trial))
+    if (!field || !lane_rays_try(job, field, TRIAL_MS, trial))
+        return false;
+    trial->ms *= parts / (double)parallel_parts();
+    trial->evaluations *= parts;
+    return true;
+}
+
+/* Measures what a sample of a pixel takes. */
+static bool find_times(Job *job, LaneTimes *times)
+{
+    const double pixels = (double)job->options.width * job->options.height;
+    LaneTrial    trial;
+    if (!try_lanes(job, &trial))
         return false;
     *times = (LaneTimes){.compile = compile_ms(job->rendering),
                          .known   = true,
-                         .lanes   = parts * trial.ms / pixels / (double)parallel_parts(),
-                         .shaders = parts * trial.evaluations * job->rendering->program->flops /
-                                    pixels / FLOPS_OF_MS};
+                         .lanes   = trial.ms / pixels,
+                         .shaders = trial.evaluations * job->rendering->program->flops / pixels /
+                                    FLOPS_OF_MS};
     return true;
 }
 
@@ -67,7 +77,7 @@ static bool lanes_are_faster(Job *job, uint32_t samples, bool *failed)
 {
     KrsRendering *r     = job->rendering;
     LaneTimes    *times = &r->lane_times;
-    if (!times->known && !try_lanes(job, times)) {
+    if (!times->known && !find_times(job, times)) {
         *failed = true;
         return false;
     }
@@ -98,4 +108,19 @@ bool executor_choose(Job *job, uint32_t samples)
     }
     return !failed &&
            (*executor == KRS_EXECUTOR_LANES ? shaders_create(r, KRS_FOR_LANES) : compile(r));
+}
+
+bool executor_try_lanes(Job *job, double *lanes_ms, double *compiler_ms)
+{
+    LaneTrial   trial;
+    const char *reason = lane_rays_refuse(job);
+    if (!reason && !rendering_lanes_find_surfaces(job->rendering))
+        reason = "a shader of the scene finds what they hit";
+    if (reason)
+        gpu_refuse(job->gpu, KRS_BAD_ARGUMENT, "lanes cannot draw this alone: %s", reason);
+    if (reason || !try_lanes(job, &trial))
+        return false;
+    *lanes_ms    = trial.ms;
+    *compiler_ms = job->rendering->deferred ? compile_ms(job->rendering) : 0;
+    return true;
 }

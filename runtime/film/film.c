@@ -310,23 +310,29 @@ typedef struct Addition {
     double           part_begun, part; /* of the progress of the call */
 } Addition;
 
+static Job job_of(KrsFilm *film, const Addition *a)
+{
+    return (Job){.rendering      = film->rendering,
+                 .gpu            = &film->rendering->renderer->gpu,
+                 .options        = film->options,
+                 .asked_schedule = film->asked_schedule,
+                 .schedule       = film->options.methods.schedule,
+                 .rays           = a->rays,
+                 .cover          = resident_cover(&film->options),
+                 .part_begun     = a->part_begun,
+                 .part           = a->part,
+                 .stats          = &film->sums->stats};
+}
+
 static KrsStatus add_moment(KrsFilm *film, const Addition *a)
 {
-    Job job = {.rendering      = film->rendering,
-               .gpu            = &film->rendering->renderer->gpu,
-               .options        = film->options,
-               .asked_schedule = film->asked_schedule,
-               .schedule       = film->options.methods.schedule,
-               .rays           = a->rays,
-               .cover          = resident_cover(&film->options),
-               .part_begun     = a->part_begun,
-               .part           = a->part,
-               .stats          = &film->sums->stats};
+    Job job = job_of(film, a);
     if (!job_read_frame(&job, a->state, a->camera) || !executor_choose(&job, a->samples))
         return job.gpu->status;
-    film->rendering->catches = plate_catches(film);
-    Plan plan                = {.gpu = job.gpu};
-    bool good                = integrators[job.options.integrator](&job, &plan) &&
+    film->sums->stats.executor = job.options.methods.executor;
+    film->rendering->catches   = plate_catches(film);
+    Plan plan                  = {.gpu = job.gpu};
+    bool good                  = integrators[job.options.integrator](&job, &plan) &&
                 run(&job, &plan, film, a->samples);
     plan_free(&plan);
     if (!good) {
@@ -397,6 +403,19 @@ KrsStatus krs_film_add(KrsFilm *film, KrsState *state, const KrsCamera *camera, 
 KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsRays *rays)
 {
     return add(film, &(Addition){state, NULL, rays, 1, 0, 1});
+}
+
+KrsStatus krs_film_try_lanes(KrsFilm *film, KrsState *state, const KrsCamera *camera,
+                             double *lanes_ms, double *compiler_ms)
+{
+    Gpu *gpu = &film->rendering->renderer->gpu;
+    renderer_clear(film->rendering->renderer);
+    if (!follow_rendering(film))
+        return gpu->status;
+    Job        job  = job_of(film, &(Addition){state, camera, NULL, 1, 0, 1});
+    const bool good = job_read_frame(&job, state, camera) &&
+                      executor_try_lanes(&job, lanes_ms, compiler_ms);
+    return good ? KRS_OK : gpu->status;
 }
 
 /* ---- reading ---- */

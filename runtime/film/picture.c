@@ -236,6 +236,8 @@ static KrsRenderStats sum_of(const KrsRenderStats *a, const KrsRenderStats *b)
         sum.max_evaluations_per_ray = b->max_evaluations_per_ray;
     if (b->peak_memory_bytes > sum.peak_memory_bytes)
         sum.peak_memory_bytes = b->peak_memory_bytes;
+    if (b->executor != sum.executor)
+        sum.executor = KRS_EXECUTOR_DEFAULT;
     sum.gflops = 0.5 * (a->gflops + b->gflops);
     return sum;
 }

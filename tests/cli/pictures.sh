@@ -2,7 +2,7 @@
 # pictures.sh: what is in the files that `krs render` writes.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 25
+plan 26
 compile_exr exr_text
 
 picture() { run render ball.krs --quiet --size 41x33 "$@"; }
@@ -110,12 +110,20 @@ missing=""
 passes=$(sed -n 's/^PASS.*[( ]\([a-z]*\), *\(NULL\|validate_[a-z]*\),.*/\1/p' "$root/compiler/passes/passes.def")
 # shellcheck disable=SC2086 # names without blanks
 for member in compile front glsl spirv pipeline passes $passes render beams primary normals shadows occlusion shading resolve total wall \
-    rays evaluations evaluations_per_ray flops_per_evaluation gflops unresolved device \
+    executor rays evaluations evaluations_per_ray flops_per_evaluation gflops unresolved device \
     peak_memory_bytes kernels name glsl_bytes spirv_ms driver_ms cached; do
     grep -q "\"$member\":" out || missing="$missing $member"
 done
 [ -z "$missing" ]
 result $? "statistics have every member$missing"
+named=""
+for who in lanes kernels; do
+    run render ball.krs --size 41x33 --rays $who --stats json -o a.exr
+    named="$named $(sed -n 's/.*"executor": "\([a-z]*\)".*/\1/p' out)"
+done
+run render ball.krs --size 41x33 --rays lanes --stats -o a.exr
+[ "$named" = " lanes kernels" ] && grep -q '^executor  *lanes$' out
+result $? "statistics tell who marched the rays"
 run render ball.krs --size 41x33 --stats -o a.exr
 [ "$status" -eq 0 ] && grep -q '^rays ' out && ! grep -q Progress out
 result $? "statistics as text"

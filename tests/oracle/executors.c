@@ -348,11 +348,55 @@ static size_t shaders_with_scene(KrsRendering *rendering, KrsState *state, KrsEx
         .width = 96, .height = 54, .samples = samples, .methods.executor = executor};
     KrsPicture *picture;
     assert_int_equal(krs_render(rendering, state, &options, &picture), KRS_OK);
-    krs_picture_free(picture);
     const size_t count = krs_rendering_shaders(rendering, shaders, 32);
     for (size_t i = 0; i < count; i++)
         found += strncmp(shaders[i].name, "trace.comp", 10) == 0;
+    assert_int_equal(picture->stats.executor,
+                     found > 0 ? KRS_EXECUTOR_KERNELS : KRS_EXECUTOR_LANES);
+    krs_picture_free(picture);
     return found;
+}
+
+/* Lanes are tried without a shader of the scene; what they do not draw alone is refused. */
+static void try_lanes(const char *text, KrsIntegrator integrator, const char *words)
+{
+    const KrsRenderOptions options = {.width = 320, .height = 180, .integrator = integrator};
+    KrsScene              *scene;
+    KrsState              *state;
+    KrsRendering          *rendering;
+    KrsFilm               *film;
+    KrsShaderStats         shaders[32];
+    double                 ms = 0, compilers = 0;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_FIRST_PICTURES, &rendering),
+                     KRS_OK);
+    assert_int_equal(krs_film_new(rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_try_lanes(film, state, NULL, &ms, &compilers),
+                     words ? KRS_BAD_ARGUMENT : KRS_OK);
+    assert_true(words ? strstr(krs_renderer_message(renderer), words) != NULL
+                      : ms > 0 && isfinite(ms) && compilers > 0);
+    assert_int_equal(krs_film_samples(film), 0);
+    const size_t count = krs_rendering_shaders(rendering, shaders, 32);
+    for (size_t i = 0; i < count; i++)
+        assert_true(strcmp(shaders[i].name, "shade.comp") != 0 &&
+                    strncmp(shaders[i].name, "trace.comp", 10) != 0);
+    krs_film_free(film);
+    krs_rendering_free(rendering);
+    krs_state_free(state);
+    krs_scene_free(scene);
+}
+
+static void trying_lanes_compiles_nothing(void **context)
+{
+    (void)context;
+    try_lanes(scenes[0], KRS_INTEGRATOR_PREVIEW, NULL);
+    try_lanes(scenes[0], KRS_INTEGRATOR_PATH, "`preview`");
+    try_lanes("material glass { transmission: 1 } show sphere(1).paint(glass);",
+              KRS_INTEGRATOR_PREVIEW, "light goes through something");
+    try_lanes(
+        "material mirror { metallic: 1, roughness: 0 } show sphere(1).paint(mirror); show plane();",
+        KRS_INTEGRATOR_PREVIEW, "a shader of the scene");
 }
 
 /* A first picture is made without shaders of the scene, unless they are asked for, or so many samples are that compilers take
@@ -391,6 +435,7 @@ int main(void)
                                        cmocka_unit_test(what_is_too_large_for_shaders_is_drawn),
                                        cmocka_unit_test(crops_are_parts_of_the_whole),
                                        cmocka_unit_test(what_is_kept_changes_nothing),
+                                       cmocka_unit_test(trying_lanes_compiles_nothing),
                                        cmocka_unit_test(first_pictures_wait_for_no_compiler)};
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);
 }
