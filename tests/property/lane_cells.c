@@ -187,7 +187,7 @@ static void close_scene(Opened *o)
 /* ---- balls ---- */
 
 typedef struct Count {
-    size_t points, wrong, capped, whole_steps, steps;
+    size_t points, wrong, steep, flat, capped, whole_steps, steps;
 } Count;
 
 static void random_in_ball(const double middle[3], double radius, double point[3])
@@ -204,26 +204,47 @@ static void random_in_ball(const double middle[3], double radius, double point[3
         point[k] = middle[k] + radius * offset[k];
 }
 
+/* Blocks that are run together have what each has by itself, bit for bit. */
+static void compare_wide(Opened *o, const CellTape *tape, const float points[3][CELL_LANES],
+                         const float alone[CELL_LANES])
+{
+    float        wide[3][CELL_WIDE];
+    const size_t blocks = 1 + random_below(&chance, CELL_BLOCKS);
+    for (int i = 0; i < CELL_WIDE; i++)
+        for (int k = 0; k < 3; k++)
+            wide[k][i] = points[k][(i + i / CELL_LANES) % CELL_LANES];
+    const float *found = cell_run_wide(tape, o->work, DEPTH, (const float(*)[CELL_WIDE])wide,
+                                       blocks);
+    for (size_t i = 0; i < blocks * CELL_LANES; i++)
+        assert_memory_equal(&found[i], &alone[(i + i / CELL_LANES) % CELL_LANES], sizeof *found);
+}
+
 /* All instruction sets give the same, bit for bit. */
 static const float *run_all_sets(Opened *o, const CellTape *tape, const float points[3][CELL_LANES])
 {
     const LaneSet *sets;
     float          first[CELL_LANES];
-    const float   *found = NULL;
     for (size_t count = lane_sets(&sets), set = 0; set < count; set++) {
         lane_use_set(&sets[set]);
-        found = cell_run(tape, o->work, DEPTH, points);
+        const float *found = cell_run(tape, o->work, DEPTH, points);
         if (set == 0)
             memcpy(first, found, sizeof first);
         assert_memory_equal(first, found, sizeof first);
+        compare_wide(o, tape, points, first);
     }
     lane_use_set(NULL);
-    return found;
+    return cell_run(tape, o->work, DEPTH, points);
 }
 
-/* Compares a cell tape with the scene in the ball. */
+static double apart(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* Compares a cell tape with the scene in the ball.  Between two points the distance changes by no more than `part` of the
+   slope tells. */
 static void compare(Opened *o, const CellTape *tape, const double middle[3], double radius,
-                    Count *count)
+                    double part, Count *count)
 {
     float  points[3][CELL_LANES];
     double exact[CELL_LANES][3], distances[CELL_LANES];
@@ -246,7 +267,11 @@ static void compare(Opened *o, const CellTape *tape, const double middle[3], dou
         count->points++;
         count->capped += !near;
         count->wrong += !right;
+        count->steep += i > 0 && near && distances[i - 1] < cap &&
+                        fabs(distances[i] - distances[i - 1]) >
+                            part * (double)tape->slope * apart(exact[i], exact[i - 1]) + ROUNDING;
     }
+    count->flat += tape->slope < 0.999f;
 }
 
 /* A ball, and one within it: `part` of the radius is pruned for. */
@@ -267,7 +292,7 @@ static void try_ball(Opened *o, double part, Count *count)
         cell_run(&tape, o->work, depth, (const float(*)[CELL_LANES])points);
         tape = cell_prune(&tape, o->work, depth, lane, (float)(part * radius),
                           ray_margin(&o->scene->program));
-        compare(o, &tape, middle, radius, count);
+        compare(o, &tape, middle, radius, part, count);
         count->whole_steps += o->cells.count;
         count->steps += tape.count;
         random_in_ball(middle, radius / 2, inner);
@@ -301,6 +326,8 @@ static Count try_random(void (*make)(char *text, size_t room), int scenes, doubl
         const Count count = try_scene(text, part);
         all.points += count.points;
         all.wrong += count.wrong;
+        all.steep += count.steep;
+        all.flat += count.flat;
         all.capped += count.capped;
         all.whole_steps += count.whole_steps;
         all.steps += count.steps;
@@ -315,8 +342,33 @@ static void trees_of_shapes(void **context)
     print_message("%zu points, %zu beyond the cap; %.0f %% of the steps are left\n", count.points,
                   count.capped, 100.0 * (double)count.steps / (double)count.whole_steps);
     assert_int_equal(count.wrong, 0);
+    assert_int_equal(count.steep, 0);
     assert_true(count.capped > count.points / 50);
     assert_true(2 * count.steps < count.whole_steps);
+}
+
+/* Fields whose slope is that of their steepest part, which is seldom near. */
+static void random_field(char *text, size_t room)
+{
+    size_t at = (size_t)snprintf(text, room, "show field(");
+    for (int i = 0; i < SHAPES; i++)
+        at += (size_t)snprintf(text + at, room - at, "min(max(%.3f * x + %.3f * y, %.3f - z), ",
+                               uniform(0.2, i == 0 ? 4 : 1), uniform(-1, 1), uniform(-2, 2));
+    at += (size_t)snprintf(text + at, room - at, "x + 9");
+    for (int i = 0; i < SHAPES; i++)
+        at += (size_t)snprintf(text + at, room - at, ")");
+    snprintf(text + at, room - at, ").within(box([3, 3, 3]));");
+}
+
+static void flat_fields(void **context)
+{
+    (void)context;
+    const Count count = try_random(random_field, FIGURES, 1);
+    print_message("%zu cells are flat\n", count.flat);
+    assert_int_equal(count.wrong, 0);
+    assert_int_equal(count.steep, 0);
+    assert_true(count.flat > FIGURES);
+    assert_true(try_random(random_field, FIGURES, 0.5).steep > 0);
 }
 
 /* Ground that is no plane has no box, so coordinates have no largest size. */
@@ -367,8 +419,8 @@ static void a_smaller_ball_is_seen(void **context)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(trees_of_shapes), cmocka_unit_test(trees_on_endless_ground),
+        cmocka_unit_test(trees_of_shapes),    cmocka_unit_test(trees_on_endless_ground),
         cmocka_unit_test(figures_made_solid), cmocka_unit_test(other_scenes),
-        cmocka_unit_test(a_smaller_ball_is_seen)};
+        cmocka_unit_test(flat_fields),        cmocka_unit_test(a_smaller_ball_is_seen)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,5 +24,6 @@ LaneRun lane_double_avx512, lane_single_avx512;
 
 /* Cell tapes, by the best set and by each. */
 LaneCellRun lane_cell_run, lane_cells_plain, lane_cells_avx2, lane_cells_avx512;
+LaneWideRun lane_wide_run, lane_wide_plain, lane_wide_avx2, lane_wide_avx512;
 
 #endif

@@ -79,6 +79,8 @@ static double steepest_of_step(const LaneTape *tape, const CellStep *step, const
     row->first(o, ANYTHING, by);
     for (uint32_t k = 0; k < step->operand_count; k++) {
         const double steep = steepest_of(steps, inputs, step->from[k]);
+        if (step->from[k] < inputs)
+            continue;
         if (steep == 0)
             return 0;
         sum += range_largest(by[k]) * steep;
@@ -86,6 +88,14 @@ static double steepest_of_step(const LaneTape *tape, const CellStep *step, const
     }
     most = row->norm == NORM_CONVEX ? most : sum;
     return isfinite(most) ? most : 0;
+}
+
+bool cell_all_steep(const CellStep *steps, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (!(steps[i].steepest > 0) && steps[i].op != LANE_NUMBER)
+            return false;
+    return true;
 }
 
 CellTape cell_tape_alone(const LaneTape *tape, CellCall **all_calls, Arena *arena)
@@ -105,6 +115,7 @@ CellTape cell_tape_alone(const LaneTape *tape, CellCall **all_calls, Arena *aren
             steps[i].from[k] = row_of(from->operands[k], inputs);
         if (from->op == LANE_CALL)
             steps[i].from[0] = from->operands[0];
+        steps[i].scalars = scalars_of(&steps[i], inputs);
     }
     for (size_t i = 0; i < tape->call_count; i++) {
         calls[i].call = &tape->calls[i];
@@ -120,7 +131,8 @@ CellTape cell_tape_alone(const LaneTape *tape, CellCall **all_calls, Arena *aren
                                             ? steepest_of_call(tape, &calls[steps[i].from[0]],
                                                                steps, inputs)
                                             : steepest_of_step(tape, &steps[i], steps, inputs));
-    return (CellTape){.whole      = tape,
+    return (CellTape){.steep      = cell_all_steep(steps, (uint32_t)tape->count),
+                      .whole      = tape,
                       .steps      = steps,
                       .calls      = calls,
                       .count      = (uint32_t)tape->count,
@@ -128,7 +140,7 @@ CellTape cell_tape_alone(const LaneTape *tape, CellCall **all_calls, Arena *aren
                       .inputs     = inputs,
                       .output     = row_of(tape->outputs[0], inputs),
                       .cap        = HUGE_VALF,
-                      .reach      = HUGE_VALF};
+                      .slope      = 1};
 }
 
 CellTape cell_tape_new(const LaneTape *tape, const NodeValue *values, Arena *arena)
@@ -148,11 +160,17 @@ static void fill_constants(const CellTape *tape, float *rows)
             rows[i * CELL_LANES + lane] = (float)tape->whole->scalars[i] + 0.0f;
 }
 
-static float *new_rows(const CellTape *tape, size_t count, Arena *arena)
+/* Memory for so many numbers, aligned for vectors. */
+static float *new_numbers(size_t count, Arena *arena)
 {
     enum { ALIGNMENT = 64 };
-    char  *memory = arena_alloc(arena, count * CELL_LANES * sizeof(float) + ALIGNMENT, 1);
-    float *rows   = (float *)(memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT);
+    char *memory = arena_alloc(arena, count * sizeof(float) + ALIGNMENT, 1);
+    return (float *)(memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT);
+}
+
+static float *new_rows(const CellTape *tape, size_t count, Arena *arena)
+{
+    float *rows = new_numbers(count * CELL_LANES, arena);
     fill_constants(tape, rows);
     for (uint32_t i = 0; i < tape->call_count; i++) {
         const CellBody *body = tape->calls[i].body;
@@ -202,6 +220,11 @@ CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values,
     work->listed       = arena_new_array(arena, uint32_t, work->most_listed + 1);
     for (uint32_t i = 0; i <= depth; i++)
         work->rows[i] = new_rows(tape, rows, arena);
+    work->found     = new_numbers(CELL_WIDE, arena);
+    work->wide      = new_numbers((LANE_INPUTS + MOST_WIDE_STEPS) * (size_t)CELL_WIDE, arena);
+    work->constants = new_numbers(tape->inputs + 1, arena);
+    for (uint32_t i = 0; i < tape->inputs; i++)
+        work->constants[i] = (float)tape->whole->scalars[i] + 0.0f;
     return work;
 }
 
@@ -215,6 +238,35 @@ const float *cell_run(const CellTape *tape, CellWork *work, uint32_t depth,
            3 * CELL_LANES * sizeof(float));
     lane_cell_run(tape, work->values, rows);
     return rows + (size_t)tape->output * CELL_LANES;
+}
+
+/* Block by block. */
+static void run_blocks(const CellTape *tape, CellWork *work, uint32_t depth,
+                       const float points[3][CELL_WIDE], size_t blocks)
+{
+    for (size_t b = 0; b < blocks; b++) {
+        float part[3][CELL_LANES];
+        for (int k = 0; k < 3; k++)
+            memcpy(part[k], points[k] + b * CELL_LANES, sizeof part[k]);
+        memcpy(work->found + b * CELL_LANES,
+               cell_run(tape, work, depth, (const float(*)[CELL_LANES])part),
+               CELL_LANES * sizeof *work->found);
+    }
+}
+
+const float *cell_run_wide(const CellTape *tape, CellWork *work, uint32_t depth,
+                           const float points[3][CELL_WIDE], size_t blocks)
+{
+    if (blocks < 2 || tape->call_count > 0 || tape->count > MOST_WIDE_STEPS ||
+        is_constant(tape, tape->output)) {
+        run_blocks(tape, work, depth, points, blocks);
+        return work->found;
+    }
+    for (int k = 0; k < 3; k++)
+        memcpy(work->wide + (size_t)(LANE_POINT + k) * CELL_WIDE, points[k],
+               blocks * CELL_LANES * sizeof(float));
+    lane_wide_run(tape, work->constants, work->wide, blocks);
+    return work->wide + (size_t)(tape->output - tape->inputs) * CELL_WIDE;
 }
 
 const float *cell_run_seen(const CellTape *tape, CellWork *work, const float points[3][CELL_LANES],

@@ -17,11 +17,6 @@ float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float mar
     return reach_of(&(Ball){tape, NULL, radius, margin, NULL, NULL}, row);
 }
 
-float cell_reach(const CellTape *tape, float radius, float margin)
-{
-    return cell_row_reach(tape, tape->output, radius, margin);
-}
-
 /* ---- what is needed ---- */
 
 typedef struct Pruning {
@@ -241,13 +236,76 @@ static uint32_t simpler(const Pruning *p, const CellStep *step, uint32_t row)
     return chosen == CHOOSES_A ? step->from[0] : chosen == CHOOSES_B ? step->from[1] : row;
 }
 
+/* 0: it is not known. */
+static float steepest_in_ball(const Pruning *p, const CellStep *step)
+{
+    return p->ball.steepest ? p->ball.steepest[step - p->ball.tape->steps] : step->steepest;
+}
+
+/* How fast a row of the shorter tape changes; infinite: that is not known. */
+static double steepest_of_moved(const Pruning *p, uint32_t row)
+{
+    const CellTape *tape  = p->ball.tape;
+    const uint32_t  first = tape->inputs + LANE_INPUTS;
+    if (row < first)
+        return row < tape->inputs ? 0 : row < tape->inputs + LANE_POINT + 3 ? 1 : HUGE_VAL;
+    const CellStep *step = &p->work->steps[p->work->step_count + row - first];
+    return step->op == LANE_NUMBER ? 0 : step->steepest > 0 ? (double)step->steepest : HUGE_VAL;
+}
+
+/* The size of a row of the shorter tape that is a number; infinite: it is none. */
+static double size_of_number(const Pruning *p, uint32_t row)
+{
+    const CellTape *tape  = p->ball.tape;
+    const uint32_t  first = tape->inputs + LANE_INPUTS;
+    float           number;
+    if (row < tape->inputs)
+        return (double)fabsf(value_of(&p->ball, row));
+    if (row < first || p->work->steps[p->work->step_count + row - first].op != LANE_NUMBER)
+        return HUGE_VAL;
+    memcpy(&number, &p->work->steps[p->work->step_count + row - first].from[0], sizeof number);
+    return (double)fabsf(number);
+}
+
+/* How fast a step changes by how fast its operands do; infinite: that is not known. */
+static double steepest_by_operands(const Pruning *p, const CellStep *step)
+{
+    double by[MAX_OPERANDS] = {0}, square = 0;
+    for (uint32_t k = 0; k < step->operand_count; k++) {
+        by[k] = steepest_of_moved(p, step->from[k]);
+        square += by[k] * by[k];
+    }
+    if (is_lesser(step->op) || is_greater(step->op))
+        return fmax(by[0], by[1]);
+    if (step->op == OP_neg || step->op == OP_abs)
+        return by[0];
+    if (step->op == OP_add || step->op == OP_sub)
+        return by[0] + by[1];
+    if (step->op == OP_length)
+        return sqrt(square);
+    if (step->op == OP_mul && (by[0] == 0 || by[1] == 0))
+        return size_of_number(p, step->from[by[0] == 0 ? 0 : 1]) * by[by[0] == 0 ? 1 : 0];
+    return HUGE_VAL;
+}
+
+/* Without what was steeper a step changes less fast. */
+static float least_steepest(const Pruning *p, const CellStep *step)
+{
+    const double steep = fmax(steepest_by_operands(p, step) * (1 + 1e-6), 1e-30);
+    return steep < 1e30 && !(step->steepest > 0 && (double)step->steepest <= steep)
+               ? (float)steep
+               : step->steepest;
+}
+
 static CellStep moved_step(Pruning *p, const CellStep *from, CellCall *calls, uint32_t *call_count)
 {
     CellStep    step     = *from;
-    const float steepest = p->ball.steepest[from - p->ball.tape->steps];
+    const float steepest = steepest_in_ball(p, from);
     step.steepest        = isfinite(steepest) ? steepest : 0;
     for (uint32_t k = 0; k < step.operand_count; k++)
         step.from[k] = moved(p, step.from[k]);
+    step.scalars  = scalars_of(&step, p->ball.tape->inputs);
+    step.steepest = least_steepest(p, &step);
     if (step.op != LANE_CALL)
         return step;
     CellCall *call = &calls[*call_count];
@@ -316,9 +374,10 @@ static uint32_t add_instance(Pruning *p, CellTape *to, const CellCall *call, uin
             step.from[k] = from->operands[k] & LANE_SCALAR
                                ? p->work->body_scalars[from->operands[k] & ~LANE_SCALAR]
                                : rows[from->operands[k]];
+        step.scalars     = scalars_of(&step, to->inputs);
         const bool least = is_lesser(step.op) && (step.from[0] == before || step.from[1] == before);
         const uint32_t other = step.from[0] == before ? step.from[1] : step.from[0];
-        step.steepest        = least ? steepest : 0;
+        step.steepest        = least ? steepest : least_steepest(p, &step);
         if (least && other >= first &&
             p->work->steps[p->work->step_count + other - first].op != LANE_NUMBER)
             p->work->steps[p->work->step_count + other - first].steepest = steepest;
@@ -334,7 +393,7 @@ static uint32_t add_instances(Pruning *p, CellTape *to, const CellStep *step)
     const CellCall         *call     = &p->ball.tape->calls[step->from[0]];
     const CellList         *list     = &p->work->lists[step->from[0]];
     const LaneTape         *body     = &call->call->body->tape;
-    const float             steepest = p->ball.steepest[step - p->ball.tape->steps];
+    const float             steepest = steepest_in_ball(p, step);
     const InstanceFunction *function = least_of_instances(p->ball.tape->whole, call->call);
     for (size_t i = 0; i < body->scalar_count; i++)
         p->work->body_scalars[i] = add_number(
@@ -375,17 +434,29 @@ static void move_step(Pruning *p, CellTape *to, uint32_t i)
     to->count += work->now[row] == next;
 }
 
+/* Where all steps have slopes nothing has to be found. */
+static Ball ball_of_lane(const CellTape *tape, const CellWork *work, uint32_t depth, uint32_t lane,
+                         float radius, float margin)
+{
+    return (Ball){.tape     = tape,
+                  .rows     = work->rows[depth] + lane,
+                  .radius   = radius,
+                  .margin   = margin,
+                  .steepest = tape->steep ? NULL : work->steepest,
+                  .ranges   = tape->steep ? NULL : work->ranges};
+}
+
 /* The shorter tape, of no steps yet. */
 static CellTape begin_shorter(const Ball *ball, CellWork *work)
 {
     const CellTape *tape = ball->tape;
     CellTape        to   = *tape;
-    cell_find_slopes(ball, work->steepest, work->ranges);
+    if (ball->steepest)
+        cell_find_slopes(ball, work->steepest, work->ranges);
     to.steps = work->steps + work->step_count;
     to.calls = work->calls + work->call_count;
     to.count = to.call_count = 0;
-    memset(work->needed, 0,
-           (tape->inputs + LANE_INPUTS + (size_t)tape->count) * sizeof *work->needed);
+    memset(work->needed + tape->inputs + LANE_INPUTS, 0, tape->count * sizeof *work->needed);
     return to;
 }
 
@@ -399,15 +470,23 @@ static void move_steps(Pruning *p, CellTape *to)
             need_of_step(p, &tape->steps[i], first + i);
     for (uint32_t i = 0; i < tape->count; i++)
         move_step(p, to, i);
+    to->steep = cell_all_steep(to->steps, to->count);
     p->work->step_count += to->count;
     p->work->call_count += to->call_count;
+}
+
+/* A distance is no steeper than 1; one that does not change is no less steep than that, for who divides by it. */
+static double steepest_of_output(const CellTape *to)
+{
+    const uint32_t first = to->inputs + LANE_INPUTS;
+    const double   steep = to->output < first ? 0 : (double)to->steps[to->output - first].steepest;
+    return steep > 1e-3 && steep < 1 ? steep : 1;
 }
 
 CellTape cell_prune(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
                     float radius, float margin)
 {
-    Pruning     p = {{tape, work->rows[depth] + lane, radius, margin, work->steepest, work->ranges},
-                     work};
+    Pruning     p    = {ball_of_lane(tape, work, depth, lane, radius, margin), work};
     CellTape    to   = begin_shorter(&p.ball, work);
     const float most = value_of(&p.ball, tape->output) + reach_of(&p.ball, tape->output);
     const float wide = 2 * radius;
@@ -415,15 +494,14 @@ CellTape cell_prune(const CellTape *tape, CellWork *work, uint32_t depth, uint32
     need(&p, tape->output, most < wide ? most : wide, -HUGE_VALF);
     move_steps(&p, &to);
     to.output = moved(&p, tape->output);
-    to.reach  = reach_of(&p.ball, tape->output);
+    to.slope  = (float)steepest_of_output(&to);
     return to;
 }
 
 CellTape cell_prune_rows(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
                          float radius, float margin, uint32_t *rows, size_t count)
 {
-    Pruning  p  = {{tape, work->rows[depth] + lane, radius, margin, work->steepest, work->ranges},
-                   work};
+    Pruning  p  = {ball_of_lane(tape, work, depth, lane, radius, margin), work};
     CellTape to = begin_shorter(&p.ball, work);
     for (size_t i = 0; i < count; i++)
         need(&p, rows[i], HUGE_VALF, -HUGE_VALF);

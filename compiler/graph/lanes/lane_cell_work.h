@@ -9,7 +9,9 @@
 #include "compiler/graph/lanes/lane_cells.h"
 
 /* At most so many instances of a call have their bodies in a tape, and these so many steps. */
-enum { MAX_CELL_INSTANCES = 64, MAX_BODY_STEPS = 4096 };
+enum { MAX_CELL_INSTANCES = 8, MAX_BODY_STEPS = 4096 };
+/* Longer tapes are run block by block: their rows would need much memory. */
+enum { MOST_WIDE_STEPS = 1024 };
 /* Longer lists of instances are not kept, nor are those of more calls. */
 enum { MAX_LISTED = 256, MAX_LISTS = 256 };
 
@@ -45,7 +47,8 @@ typedef struct CellList {
 
 struct CellWork {
     NodeValue *values;
-    float    **rows; /* of each depth */
+    float    **rows;                 /* of each depth */
+    float *constants, *wide, *found; /* of all scalars; rows, and distances, of CELL_WIDE numbers */
     /* What is known of rows while a tape is made: whether one is needed, and then between a floor
        and a cap; the row that stands for it; and where that is in the tape that is made. */
     bool     *needed;
@@ -90,6 +93,15 @@ typedef struct Ball {
 
 static inline bool is_constant(const CellTape *tape, uint32_t row) { return row < tape->inputs; }
 
+/* Of the operands of a step those that are constants. */
+static inline unsigned scalars_of(const CellStep *step, uint32_t inputs)
+{
+    unsigned scalars = 0;
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        scalars |= (unsigned)(step->from[k] < inputs) << k;
+    return scalars & ((1u << MAX_OPERANDS) - 1);
+}
+
 static inline const CellStep *step_of(const CellTape *tape, uint32_t row)
 {
     const uint32_t first = tape->inputs + LANE_INPUTS;
@@ -119,6 +131,8 @@ const InstanceFunction *least_of_instances(const LaneTape *tape, const LaneCall 
 /* How far the point of a call moves at most where its components move so far. */
 double cell_call_moves(const CellCall *call, const double by[3], double point);
 
+/* Tells whether all steps have slopes. */
+bool cell_all_steep(const CellStep *steps, uint32_t count);
 /* The cell tape of output 0 without bodies of instance functions. */
 CellTape cell_tape_alone(const LaneTape *tape, CellCall **calls, Arena *arena);
 /* What bodies of instances may add to all tapes that are made of one, and the steps of the longest body. */

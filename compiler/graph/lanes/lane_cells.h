@@ -21,15 +21,16 @@
 
 #include "compiler/graph/lanes/lanes.h"
 
-enum { CELL_LANES = 16 };
+enum { CELL_LANES = 16, CELL_BLOCKS = 8, CELL_WIDE = CELL_BLOCKS * CELL_LANES };
 
 /* A step works on rows: those of constants are the first, then inputs, then a row for each step, in
-   their order. */
+   their order.  Of operands that are constants the bits of `scalars` are set. */
 typedef struct CellStep {
-    uint16_t op, operand_count;
+    uint16_t op;
+    uint8_t  operand_count;
+    unsigned scalars : MAX_OPERANDS, component : 1; /* the latter as of LaneStep */
     uint32_t from[MAX_OPERANDS]; /* 0 behind the last; of LANE_CALL the number of the call */
     float    steepest;           /* as of LaneStep */
-    bool     component;
 } CellStep;
 
 typedef struct CellCall {
@@ -47,8 +48,9 @@ typedef struct CellTape {
     uint32_t        count, call_count;
     uint32_t        inputs; /* the row of the first input: the number of constants */
     uint32_t        output; /* the row of the distance, which is output 0 */
+    bool            steep;  /* all steps have slopes */
     float           cap;    /* infinite: it is right all over the ball */
-    float reach; /* how much the distance differs in the ball from that in its middle, at most */
+    float           slope;  /* how fast the distance changes in the ball, at most; no more than 1 */
 } CellTape;
 
 /* The work of one thread; cell_work_new makes it. */
@@ -65,6 +67,10 @@ CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values,
 /* Runs it at CELL_LANES points: x, y and z of all, by rows of this depth.  Returns the row of the distance. */
 const float *cell_run(const CellTape *tape, CellWork *work, uint32_t depth,
                       const float points[3][CELL_LANES]);
+
+/* The same at up to CELL_BLOCKS times as many points at once, which takes less time for each.  Returns all distances. */
+const float *cell_run_wide(const CellTape *tape, CellWork *work, uint32_t depth,
+                           const float points[3][CELL_WIDE], size_t blocks);
 
 /* The same on rays of these directions, by the rows of depth 0. */
 const float *cell_run_seen(const CellTape *tape, CellWork *work, const float points[3][CELL_LANES],
@@ -86,9 +92,6 @@ float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float mar
 
 /* How many steps all lanes take by it, those for instances of lists included. */
 size_t cell_cost(const CellTape *tape);
-
-/* How much the distance differs in a ball from that in its middle, at most. */
-float cell_reach(const CellTape *tape, float radius, float margin);
 
 /* Shorten a tape, after a run in the middles of balls, to what is left in the ball of a lane.
    `margin` is what rounding may make of coordinates.  The new tape lives until its mark, which was

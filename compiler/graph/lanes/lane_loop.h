@@ -432,6 +432,130 @@ void CELL_LOOP(const CellTape *tape, NodeValue *values, REAL *rows)
         }
     }
 }
+
+/* ---- cell tapes in several blocks of lanes ---- */
+
+#ifdef __clang__
+#define WIDE_LANES EACH_LANE(blocks *(CELL_LANES / LANE_BLOCK))
+#else
+#define WIDE_LANES                                                           \
+    for (size_t first = 0; first < blocks * CELL_LANES; first += CELL_LANES) \
+    LANES_INDEPENDENT _Pragma("GCC unroll 1") for (size_t i = first; i < first + CELL_LANES; i++)
+#endif
+#define WIDE(op, value)                                                    \
+    case op:                                                               \
+        WIDE_LANES                                                         \
+        {                                                                  \
+            const REAL a = x[0][i], b = x[1][i], c = x[2][i], d = x[3][i]; \
+            (void)b, (void)c, (void)d;                                     \
+            STORE(value);                                                  \
+        }                                                                  \
+        break;
+
+static void LOCAL(wide_length)(uint32_t size, const REAL *const *x, REAL *to, size_t blocks)
+{
+    const REAL *p = x[0], *q = x[1], *r = x[2], *s = x[3];
+    if (size == 2)
+        WIDE_LANES { STORE(sqrt(p[i] * p[i] + q[i] * q[i])); }
+    else if (size == 3)
+        WIDE_LANES { STORE(sqrt(p[i] * p[i] + q[i] * q[i] + r[i] * r[i])); }
+    else if (size == 4)
+        WIDE_LANES { STORE(sqrt(p[i] * p[i] + q[i] * q[i] + r[i] * r[i] + s[i] * s[i])); }
+    else
+        WIDE_LANES { STORE(sqrt(p[i] * p[i])); }
+}
+
+/* A step, of which scalars fill rows. */
+static void LOCAL(wide_step)(const CellTape *tape, const CellStep *step, const REAL *constants,
+                             const REAL *rows, REAL *to, size_t blocks)
+{
+    _Alignas(64) REAL spare[MAX_OPERANDS][CELL_WIDE];
+    const REAL       *x[MAX_OPERANDS];
+    for (uint32_t k = 0; k < MAX_OPERANDS; k++) {
+        const bool scalar = step->scalars >> k & 1;
+        x[k]              = k >= step->operand_count ? rows
+                            : scalar                 ? spare[k]
+                                     : rows + (size_t)(step->from[k] - tape->inputs) * CELL_WIDE;
+        if (scalar)
+            for (size_t i = 0; i < blocks * CELL_LANES; i++)
+                spare[k][i] = constants[step->from[k]];
+    }
+    switch (step->op) {
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
+    WIDE(OP_##name, value)
+#define NUMBERS(name, arity, value, ...) WIDE(OP_##name, value)
+#define TRUTH                            NUMBERS
+#include "compiler/graph/ops.def"
+#define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
+              weights, meaning)                                                                  \
+    WIDE(OP_smin_##name, LOCAL(smin_##name)(a, b, c, d))
+#include "compiler/graph/blends.def"
+        WIDE(LANE_LESSER, b < a ? b : a)
+        WIDE(LANE_GREATER, b > a ? b : a)
+    case OP_length: LOCAL(wide_length)(step->operand_count, x, to, blocks); break;
+    case LANE_NUMBER: {
+        REAL number;
+        memcpy(&number, &step->from[0], sizeof number);
+        WIDE_LANES { to[i] = number; }
+        break;
+    }
+    default: assert(!"no step");
+    }
+}
+
+/* What most steps are: of one row, or of two operands of which none, the first or the second is a scalar. */
+#define WIDE_ROW(k)            (rows + (size_t)(step->from[k] - tape->inputs) * CELL_WIDE)
+#define WIDE_SCALAR(k)         (constants[step->from[k]])
+#define WIDE_CASE(op, scalars) (uint32_t)(op) | (scalars) << 16
+#define WIDE_LOOP_OF(x, y, p, q, value)     \
+    {                                       \
+        x;                                  \
+        y;                                  \
+        WIDE_LANES                          \
+        {                                   \
+            const REAL a = p, b = q, c = 0; \
+            (void)a, (void)b, (void)c;      \
+            STORE(value);                   \
+        }                                   \
+    }                                       \
+    break;
+#define WIDE_1(op, value)   \
+    case WIDE_CASE(op, 0u): \
+        WIDE_LOOP_OF(const REAL *x = WIDE_ROW(0), , x[i], 0, value)
+#define WIDE_2(op, value)                                                                         \
+    case WIDE_CASE(op, 0u):                                                                       \
+        WIDE_LOOP_OF(const REAL *x = WIDE_ROW(0), const REAL *y = WIDE_ROW(1), x[i], y[i], value) \
+    case WIDE_CASE(op, 1u):                                                                       \
+        WIDE_LOOP_OF(const REAL x = WIDE_SCALAR(0), const REAL *y = WIDE_ROW(1), x, y[i], value)  \
+    case WIDE_CASE(op, 2u):                                                                       \
+        WIDE_LOOP_OF(const REAL *x = WIDE_ROW(0), const REAL y = WIDE_SCALAR(1), x[i], y, value)
+#define WIDE_3(op, value)
+
+void WIDE_LOOP(const CellTape *tape, const REAL *constants, REAL *rows, size_t blocks)
+{
+    REAL *to = rows + (size_t)LANE_INPUTS * CELL_WIDE;
+    for (const CellStep *step = tape->steps, *end = step + tape->count; step < end;
+         step++, to += CELL_WIDE) {
+        switch (WIDE_CASE(step->op, step->scalars)) {
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
+    WIDE_##arity(OP_##name, value)
+#include "compiler/graph/ops.def"
+            WIDE_2(LANE_LESSER, b < a ? b : a)
+            WIDE_2(LANE_GREATER, b > a ? b : a)
+        default: LOCAL(wide_step)(tape, step, constants, rows, to, blocks);
+        }
+    }
+}
+#undef WIDE_ROW
+#undef WIDE_SCALAR
+#undef WIDE_CASE
+#undef WIDE_LOOP_OF
+#undef WIDE_1
+#undef WIDE_2
+#undef WIDE_3
+#undef WIDE_LANES
+#undef WIDE
+#undef WIDE_LOOP
 #undef ALL_LANES
 #undef CELL
 #undef CELL_ROW

@@ -15,10 +15,10 @@
 
 static const LaneSet all_sets[] = {
 #if defined(__x86_64__)
-    {"avx512", {lane_double_avx512, lane_single_avx512}, lane_cells_avx512},
-    {"avx2", {lane_double_avx2, lane_single_avx2}, lane_cells_avx2},
+    {"avx512", {lane_double_avx512, lane_single_avx512}, lane_cells_avx512, lane_wide_avx512},
+    {"avx2", {lane_double_avx2, lane_single_avx2}, lane_cells_avx2, lane_wide_avx2},
 #endif
-    {"plain", {lane_double_plain, lane_single_plain}, lane_cells_plain},
+    {"plain", {lane_double_plain, lane_single_plain}, lane_cells_plain, lane_wide_plain},
 };
 enum { SETS = sizeof all_sets / sizeof *all_sets };
 
@@ -57,6 +57,11 @@ const LaneSet *lane_used_set(void)
 void lane_cell_run(const struct CellTape *tape, NodeValue *values, float *rows)
 {
     lane_used_set()->run_cells(tape, values, rows);
+}
+
+void lane_wide_run(const struct CellTape *tape, const float *constants, float *rows, size_t blocks)
+{
+    lane_used_set()->run_wide(tape, constants, rows, blocks);
 }
 
 /* ---- point by point ---- */

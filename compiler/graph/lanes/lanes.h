@@ -192,10 +192,15 @@ typedef void LaneRun(const LaneTape *tape, const LaneWork *work, size_t points);
 /* How it runs a cell tape (lane_cells.h) on all lanes. */
 struct CellTape;
 typedef void LaneCellRun(const struct CellTape *tape, NodeValue *values, float *rows);
+/* The same on so many blocks of lanes, for a tape without calls: rows are as wide as all of them, and those of inputs
+   are the first. */
+typedef void LaneWideRun(const struct CellTape *tape, const float *constants, float *rows,
+                         size_t blocks);
 typedef struct LaneSet {
     const char  *name;
     LaneRun     *run[LANE_PRECISIONS];
     LaneCellRun *run_cells;
+    LaneWideRun *run_wide;
 } LaneSet;
 
 /* The sets that this processor has, best first; the last is plain C. */

@@ -5,4 +5,5 @@
 #define REAL      float
 #define LANE_LOOP lane_single_avx2
 #define CELL_LOOP lane_cells_avx2
+#define WIDE_LOOP lane_wide_avx2
 #include "compiler/graph/lanes/lane_loop.h"

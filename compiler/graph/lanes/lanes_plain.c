@@ -5,4 +5,5 @@
 #define REAL      float
 #define LANE_LOOP lane_single_plain
 #define CELL_LOOP lane_cells_plain
+#define WIDE_LOOP lane_wide_plain
 #include "compiler/graph/lanes/lane_loop.h"
