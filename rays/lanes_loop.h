@@ -53,6 +53,45 @@ static bool has(const RayBlock *block, float first, float last)
     return count > 0;
 }
 
+/* 1 where a ray marches, or is beside those that do. */
+static inline float is_there(uint32_t state)
+{
+    return (state == RAY_MARCHES) | (state == RAY_IS_BESIDE) ? 1.0f : 0.0f;
+}
+
+static void sum(const RayBlock *block, float sums[RAY_SUMS][RAYS_OF_BLOCK])
+{
+    for (int k = 0; k < 3; k++)
+        EACH_RAY
+        {
+            const float there = is_there(block->state[i]);
+            sums[k][i] += there > 0 ? block->origin[k][i] : 0;
+            sums[3 + k][i] += there > 0 ? block->direction[k][i] : 0;
+        }
+    EACH_RAY sums[6][i] += is_there(block->state[i]);
+}
+
+static void spread(const RayBlock *block, const float origin[3], const float direction[3],
+                   float most[RAY_SPREADS][RAYS_OF_BLOCK])
+{
+    EACH_RAY
+    {
+        const float there = is_there(block->state[i]);
+        const float x = block->origin[0][i] - origin[0], y = block->origin[1][i] - origin[1],
+                    z = block->origin[2][i] - origin[2], u = block->direction[0][i] - direction[0],
+                    v     = block->direction[1][i] - direction[1],
+                    w     = block->direction[2][i] - direction[2];
+        const float from  = there > 0 ? x * x + y * y + z * z : 0,
+                    aside = there > 0 ? u * u + v * v + w * w : 0,
+                    width = there > 0 ? block->width[i] : 0,
+                    wider = there > 0 ? block->spread[i] : 0;
+        most[0][i]        = greater(most[0][i], from);
+        most[1][i]        = greater(most[1][i], aside);
+        most[2][i]        = greater(most[2][i], width);
+        most[3][i]        = greater(most[3][i], wider);
+    }
+}
+
 static void skip(RayBlock *block, float last)
 {
     EACH_RAY
@@ -70,8 +109,9 @@ static void skip(RayBlock *block, float last)
 }
 
 static void take(RayBlock *block, const RayRule *rule, const float ats[RAYS_OF_BLOCK], float last,
-                 float cap, const float distances[RAYS_OF_BLOCK])
+                 float cap, float steepest, const float distances[RAYS_OF_BLOCK])
 {
+    const float    longer    = 1 / steepest;
     const float    in_pixels = lesser(TOLERANCE * rule->error, MAX_TOLERANCE), error = rule->error;
     const uint32_t max_steps = rule->max_steps;
     EACH_RAY
@@ -88,7 +128,7 @@ static void take(RayBlock *block, const RayRule *rule, const float ats[RAYS_OF_B
                     z         = fabsf(block->origin[2][i]);
         const float rounded   = ROUNDING * (greater(greater(x, y), z) + at);
         const float pixel     = block->width[i] + block->spread[i] * at;
-        const float distance  = lesser(distances[i], cap);
+        const float distance  = longer * lesser(distances[i], cap);
         const float side      = old_side != 0 ? old_side : distance < 0 ? -1.0f : 1.0f;
         const float clearance = side * distance + (side < 0 ? SEAM * rounded : 0);
         const float tolerance = in_pixels * pixel + rounded, permitted = error * pixel;
@@ -215,4 +255,4 @@ static void take_blocked(RayBlock *block, const BlockRule *rule, const float at[
         take_of_kind(block, rule, false, false, at, distances);
 }
 
-const RaySet RAY_SET = {RAY_SET_NAME, place, take, skip, take_blocked, has};
+const RaySet RAY_SET = {RAY_SET_NAME, place, take, skip, take_blocked, sum, spread, has};

@@ -14,6 +14,8 @@
 
 /* Slabs of a tile, and parts of each in the next depth. */
 enum { SLABS = 8, QUARTERS = 4, PARTS = 2 };
+/* A cell with a shorter tape is not divided. */
+enum { SHORT_TAPE = 32 };
 /* The least part of all slabs that is free. */
 static const float NEAREST_SLAB = 1e-5f;
 
@@ -41,46 +43,42 @@ static bool is_there(const RayBlock *block, int i)
     return block->state[i] == RAY_MARCHES || block->state[i] == RAY_IS_BESIDE;
 }
 
-/* Measures the bundle of the rays that march, and of those beside. */
-static void measure_bundle(const RayBlock *blocks, Bundle *bundle)
+/* The mean of the rays that march, and of those beside. */
+static void find_middle(const March *m, Bundle *bundle)
 {
-    double sum[6] = {0}, rays = 0;
-    float  origins = 0, directions = 0;
+    float  sums[RAY_SUMS][RAYS_OF_BLOCK] = {{0}};
+    double all[RAY_SUMS] = {0}, square = 0;
     for (size_t b = bundle->first; b < bundle->first + bundle->count; b++)
-        for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-            const bool there = is_there(&blocks[b], i);
-            for (int k = 0; k < 3 && there; k++) {
-                sum[k] += (double)blocks[b].origin[k][i];
-                sum[3 + k] += (double)blocks[b].direction[k][i];
-            }
-            rays += there;
-        }
-    for (int k = 0; k < 3; k++) {
-        bundle->origin[k]    = (float)(sum[k] / fmax(rays, 1));
-        bundle->direction[k] = (float)sum[3 + k];
-    }
-    const float length = sqrtf(bundle->direction[0] * bundle->direction[0] +
-                               bundle->direction[1] * bundle->direction[1] +
-                               bundle->direction[2] * bundle->direction[2]);
+        m->set->sum(&m->blocks[b], sums);
+    for (int k = 0; k < RAY_SUMS; k++)
+        for (int i = 0; i < RAYS_OF_BLOCK; i++)
+            all[k] += (double)sums[k][i];
     for (int k = 0; k < 3; k++)
-        bundle->direction[k] = length > 0 ? bundle->direction[k] / length : k == 0;
+        square += all[3 + k] * all[3 + k];
+    for (int k = 0; k < 3; k++) {
+        bundle->origin[k]    = (float)(all[k] / fmax(all[6], 1));
+        bundle->direction[k] = square > 0 ? (float)(all[3 + k] / sqrt(square)) : k == 0;
+    }
+}
+
+static float greatest(const float row[RAYS_OF_BLOCK])
+{
+    float most = 0;
+    for (int i = 0; i < RAYS_OF_BLOCK; i++)
+        most = fmaxf(most, row[i]);
+    return most;
+}
+
+static void measure_bundle(const March *m, Bundle *bundle)
+{
+    float most[RAY_SPREADS][RAYS_OF_BLOCK] = {{0}};
+    find_middle(m, bundle);
     for (size_t b = bundle->first; b < bundle->first + bundle->count; b++)
-        for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-            float from = 0, aside = 0;
-            for (int k = 0; k < 3; k++) {
-                const float o = blocks[b].origin[k][i] - bundle->origin[k],
-                            d = blocks[b].direction[k][i] - bundle->direction[k];
-                from += o * o;
-                aside += d * d;
-            }
-            const bool there = is_there(&blocks[b], i);
-            origins          = there && from > origins ? from : origins;
-            directions       = there && aside > directions ? aside : directions;
-            bundle->width    = there ? fmaxf(bundle->width, blocks[b].width[i]) : bundle->width;
-            bundle->spread   = there ? fmaxf(bundle->spread, blocks[b].spread[i]) : bundle->spread;
-        }
-    bundle->origins    = sqrtf(origins);
-    bundle->directions = sqrtf(directions);
+        m->set->spread(&m->blocks[b], bundle->origin, bundle->direction, most);
+    bundle->origins    = sqrtf(greatest(most[0]));
+    bundle->directions = sqrtf(greatest(most[1]));
+    bundle->width      = greatest(most[2]);
+    bundle->spread     = greatest(most[3]);
 }
 
 /* The ball of its points at t from first to last. */
@@ -110,32 +108,85 @@ static void skip_rays(const March *m, const Bundle *bundle, float last)
 
 /* ---- cells ---- */
 
-/* Marches the rays of a block up to `last`. */
-static void march_block(March *m, const CellTape *tape, RayBlock *block, float last)
+/* Blocks of rays that march together. */
+typedef struct Marching {
+    RayBlock *blocks[CELL_BLOCKS];
+    float     at[CELL_BLOCKS][RAYS_OF_BLOCK];
+    size_t    count;
+} Marching;
+
+/* Leaves those that have rays before `last`; writes where these ask. */
+static void place_blocks(March *m, Marching *all, float last, float points[3][CELL_WIDE])
 {
-    const RayCell cell = {tape, m->work, LEAF_DEPTH + 1};
-    bool          hits[RAYS_OF_BLOCK];
-    float         at[RAYS_OF_BLOCK], points[3][RAYS_OF_BLOCK];
-    uint32_t      rays;
-    for (int i = 0; i < RAYS_OF_BLOCK; i++)
-        hits[i] = block->state[i] != RAY_HITS;
-    while ((rays = m->set->place(block, last, at, points)) > 0) {
-        const float *distances = ray_cell_run(&cell, (const float(*)[RAYS_OF_BLOCK])points);
-        m->set->take(block, m->rule, at, last, tape->cap, distances);
+    size_t count = 0;
+    for (size_t b = 0; b < all->count; b++) {
+        float          asked[3][RAYS_OF_BLOCK];
+        const uint32_t rays = m->set->place(all->blocks[b], last, all->at[count], asked);
+        if (rays == 0)
+            continue;
+        for (int k = 0; k < 3; k++)
+            memcpy(points[k] + count * RAYS_OF_BLOCK, asked[k], sizeof asked[k]);
+        all->blocks[count++] = all->blocks[b];
         m->evaluations += rays;
     }
-    for (int i = 0; i < RAYS_OF_BLOCK; i++)
-        hits[i] = hits[i] && block->state[i] == RAY_HITS;
+    all->count = count;
+}
+
+/* In a cell whose distance changes less fast more is clear, but that does not hold behind it. */
+static void stretch_clearances(const Marching *all, float by)
+{
+    for (size_t b = 0; b < all->count && by != 1; b++)
+        for (int i = 0; i < RAYS_OF_BLOCK; i++)
+            all->blocks[b]->clearance[i] *= by;
+}
+
+/* Lists the rays that have hit since their states were these; returns how many. */
+static size_t list_hits(const Marching *all, uint32_t before[CELL_BLOCKS][RAYS_OF_BLOCK],
+                        RayHit hits[CELL_WIDE])
+{
+    size_t count = 0;
+    for (size_t b = 0; b < all->count; b++)
+        for (int i = 0; i < RAYS_OF_BLOCK; i++)
+            if (all->blocks[b]->state[i] == RAY_HITS && before[b][i] != RAY_HITS)
+                hits[count++] = (RayHit){all->blocks[b], i};
+    return count;
+}
+
+/* Marches the rays of some blocks up to `last`. */
+static void march_together(March *m, const CellTape *tape, Marching all, float last)
+{
+    const RayCell  cell   = {tape, m->work, LEAF_DEPTH + 1};
+    const Marching before = all;
+    RayHit         hits[CELL_WIDE];
+    uint32_t       marched[CELL_BLOCKS][RAYS_OF_BLOCK];
+    float          points[3][CELL_WIDE];
+    for (size_t b = 0; b < before.count; b++)
+        memcpy(marched[b], before.blocks[b]->state, sizeof marched[b]);
+    stretch_clearances(&before, 1 / tape->slope);
+    for (place_blocks(m, &all, last, points); all.count > 0; place_blocks(m, &all, last, points)) {
+        const float *distances = ray_cell_run_wide(&cell, points, all.count);
+        for (size_t b = 0; b < all.count; b++)
+            m->set->take(all.blocks[b], m->rule, all.at[b], last, tape->cap, tape->slope,
+                         distances + b * RAYS_OF_BLOCK);
+    }
+    stretch_clearances(&before, tape->slope);
     if (m->rule->normal_reach > 0)
-        m->evaluations += ray_normals(&cell, m->rule, block, hits);
+        m->evaluations += ray_normals(&cell, m->rule, hits, list_hits(&before, marched, hits));
 }
 
 static void march_blocks(March *m, const CellTape *tape, const Bundle *bundle, float first,
                          float last)
 {
-    for (size_t b = bundle->first; b < bundle->first + bundle->count; b++)
+    Marching all = {.count = 0};
+    for (size_t b = bundle->first; b < bundle->first + bundle->count; b++) {
         if (m->set->has(&m->blocks[b], first, last))
-            march_block(m, tape, &m->blocks[b], last);
+            all.blocks[all.count++] = &m->blocks[b];
+        if (all.count == CELL_BLOCKS) {
+            march_together(m, tape, all, last);
+            all.count = 0;
+        }
+    }
+    march_together(m, tape, all, last);
 }
 
 /* Cells that are bounded at once. */
@@ -181,7 +232,7 @@ static void enter(March *m, const CellTape *tape, uint32_t depth, const Bundle *
                   float last)
 {
     Cells cells = {.count = 0};
-    if (depth == LEAF_DEPTH) {
+    if (depth == LEAF_DEPTH || cell_cost(tape) < SHORT_TAPE) {
         march_blocks(m, tape, bundle, first, last);
         return;
     }
@@ -237,7 +288,7 @@ static void divide_tile(March *m, size_t count)
     for (int depth = 0; depth <= LEAF_DEPTH; depth++, size /= QUARTERS, bundles *= QUARTERS)
         for (size_t i = 0; i < bundles; i++) {
             m->bundles[depth][i] = bundle_of(i * size, size, count);
-            measure_bundle(m->blocks, &m->bundles[depth][i]);
+            measure_bundle(m, &m->bundles[depth][i]);
         }
 }
 
@@ -293,20 +344,42 @@ static float slab_at(float first, float last, float clear, int number)
 /* Ends the rays of a block.  Those that hit nothing else meet their plane. */
 static void end_block(March *m, RayBlock *block, const RayCell *planes)
 {
-    bool meets[RAYS_OF_BLOCK];
+    RayHit meets[RAYS_OF_BLOCK];
+    size_t count = 0;
     for (int i = 0; i < RAYS_OF_BLOCK; i++) {
         const bool ends = block->state[i] == RAY_MARCHES || block->state[i] == RAY_REFINES;
         block->state[i] = ends ? (uint32_t)RAY_MISSES : block->state[i];
-        meets[i]        = block->state[i] == RAY_MISSES && !block->unresolved[i] &&
-                   block->plane[i] < HUGE_VALF;
-        if (meets[i]) {
+        if (block->state[i] == RAY_MISSES && !block->unresolved[i] && block->plane[i] < HUGE_VALF) {
             block->state[i] = RAY_HITS;
             block->t[i]     = block->plane[i];
             block->side[i]  = 1;
+            meets[count++]  = (RayHit){block, i};
         }
     }
     if (m->rule->normal_reach > 0 && m->field->planes)
-        m->evaluations += ray_normals(planes, m->rule, block, meets);
+        m->evaluations += ray_normals(planes, m->rule, meets, count);
+}
+
+/* Marches rays in the slabs of a tile.  Those that begin with one tape are bounded at once. */
+static void march_slabs(March *m, const Cells *slabs)
+{
+    Space *starts = &m->field->starts;
+    for (int i = 0; i < slabs->count;) {
+        Cells    same   = {.count = 0};
+        uint32_t number = 0;
+        for (; i < slabs->count; i++) {
+            const float middle[3] = {slabs->points[0][i], slabs->points[1][i], slabs->points[2][i]};
+            const uint32_t of     = has_rays(m, slabs->bundle[i], slabs->first[i], slabs->last[i])
+                                        ? space_find_ball(starts, m->work, middle,
+                                                          slabs->radius[i] + slabs->taps[i])
+                                        : number;
+            if (same.count > 0 && of != number)
+                break;
+            number = of;
+            add_cell(m, &same, slabs->bundle[i], slabs->first[i], slabs->last[i]);
+        }
+        march_cells(m, &starts->cubes[number].tape, 0, &same);
+    }
 }
 
 /* Marches rays that have begun, between first and last. */
@@ -321,7 +394,7 @@ static void march_tile(March *m, const CellTape *tape, size_t count, float first
     for (int s = 0; s < SLABS; s++)
         add_cell(m, &cells, &m->bundles[0][0], slab_at(first, last, clear, s),
                  slab_at(first, last, clear, s + 1));
-    march_cells(m, tape, 0, &cells);
+    march_slabs(m, &cells);
 }
 
 uint64_t ray_field_march(RayField *field, size_t part, RayBlock *blocks, size_t count,

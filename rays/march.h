@@ -14,18 +14,22 @@ typedef struct RayCell {
     uint32_t        depth;
 } RayCell;
 
-static inline const float *ray_cell_run(const RayCell *cell, const float points[3][RAYS_OF_BLOCK])
+static inline const float *ray_cell_run_wide(const RayCell *cell, float points[3][CELL_WIDE],
+                                             size_t blocks)
 {
-    return cell_run(cell->tape, cell->work, cell->depth, (const float(*)[CELL_LANES])points);
+    return cell_run_wide(cell->tape, cell->work, cell->depth, (const float(*)[CELL_WIDE])points,
+                         blocks);
 }
 
 /* normals.c: how far from hits at t, in parts of the reach of differences there, distances are asked for. */
 #define TAPS_REACH 2.5f
 /* Returns that reach where a pixel is so wide, and no coordinate is larger. */
 float ray_normal_reach(const RayRule *rule, float width, float t, float largest);
-/* Finds the normals of the rays that have hit since `before`, which has the states of then.  Returns how many
-   distances were evaluated. */
-uint64_t ray_normals(const RayCell *cell, const RayRule *rule, RayBlock *block,
-                     const bool hits[RAYS_OF_BLOCK]);
+typedef struct RayHit {
+    RayBlock *block;
+    int       lane;
+} RayHit;
+/* Finds the normals of rays that have hit.  Returns how many distances were evaluated. */
+uint64_t ray_normals(const RayCell *cell, const RayRule *rule, const RayHit *hits, size_t count);
 
 #endif

@@ -2,10 +2,11 @@
  * normals.c: normals by differences of the distance, as in runtime/shaders/distance_normals.glsl and
  * edge_normals.glsl, where they are described.
  *
- * All rays of a block take the taps of a set together; those that need no further set wait.
+ * Hits take the taps of a set together, and those that need a further one the taps of that.
  */
 #include "rays/march.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -50,7 +51,6 @@ static Vector cross(Vector a, Vector b)
 
 /* A hit, and its taps. */
 typedef struct Hit {
-    bool   takes; /* the set that is evaluated now */
     Vector position, backwards;
     float  side, rounding;
     TapSet set;
@@ -70,8 +70,7 @@ static Hit begin(const RayRule *rule, const RayBlock *block, int i)
                  direction = {block->direction[0][i], block->direction[1][i],
                               block->direction[2][i]};
     const float t = block->t[i], width = block->width[i] + block->spread[i] * t;
-    Hit         hit = {.takes     = true,
-                       .position  = plus(origin, times(t, direction)),
+    Hit         hit = {.position  = plus(origin, times(t, direction)),
                        .backwards = times(-1, direction),
                        .side      = block->side[i]};
     hit.start       = hit.position;
@@ -200,25 +199,28 @@ static Vector tap_at(int tap)
                : (Vector){tap < 2 ? side : 0, tap > 1 && tap < 4 ? side : 0, tap > 3 ? side : 0};
 }
 
-/* Evaluates a tap of all hits that take a set; of the first set the one in the middle is not needed. */
-static void take_tap(const RayCell *cell, Hit hits[RAYS_OF_BLOCK], int tap)
+/* Evaluates the first `taps` taps, from the last one on, of hits that take a set together; of the first set the one in the
+   middle is not needed. */
+static void take_taps(const RayCell *cell, Hit *const *hits, int count, int taps)
 {
-    const Vector direction = tap_at(tap);
-    float        points[3][RAYS_OF_BLOCK];
-    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-        const Vector at = plus(hits[i].start, times(hits[i].t, direction));
-        points[0][i]    = at.x;
-        points[1][i]    = at.y;
-        points[2][i]    = at.z;
+    static_assert((int)OCTAHEDRON < (int)CELL_BLOCKS, "all taps are evaluated at once");
+    const int all = taps * count, blocks = (all + RAYS_OF_BLOCK - 1) / RAYS_OF_BLOCK;
+    float     points[3][CELL_WIDE];
+    for (int i = 0; i < blocks * RAYS_OF_BLOCK; i++) {
+        const Hit   *hit = hits[i < all ? i % count : 0];
+        const Vector at  = plus(hit->start, times(hit->t, tap_at(i < all ? i / count : 0)));
+        points[0][i]     = at.x;
+        points[1][i]     = at.y;
+        points[2][i]     = at.z;
     }
-    const float *distances = ray_cell_run(cell, (const float(*)[RAYS_OF_BLOCK])points);
-    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-        const float distance = hits[i].side * distances[i];
-        if (!hits[i].takes)
-            continue;
-        hits[i].middle = tap < OCTAHEDRON ? hits[i].middle : hits[i].set == WIDE ? 0 : distance;
-        hits[i].sum    = plus(hits[i].sum, times(distance, direction));
-        hits[i].level  = plus(hits[i].level, times(distance, absolute(direction)));
+    const float *distances = ray_cell_run_wide(cell, points, (size_t)blocks);
+    for (int i = all - 1; i >= 0; i--) {
+        Hit         *hit       = hits[i % count];
+        const Vector direction = tap_at(i / count);
+        const float  distance  = hit->side * distances[i];
+        hit->middle            = i / count < OCTAHEDRON ? hit->middle : distance;
+        hit->sum               = plus(hit->sum, times(distance, direction));
+        hit->level             = plus(hit->level, times(distance, absolute(direction)));
     }
 }
 
@@ -238,32 +240,36 @@ static void store(const Hit *hit, RayBlock *block, int i)
     block->evenness[i]  = find_evenness(hit);
 }
 
-uint64_t ray_normals(const RayCell *cell, const RayRule *rule, RayBlock *block,
-                     const bool wanted[RAYS_OF_BLOCK])
+/* Up to as many hits as a block has rays. */
+static uint64_t find_normals(const RayCell *cell, const RayRule *rule, const RayHit *found,
+                             int count)
 {
-    Hit      hits[RAYS_OF_BLOCK];
+    Hit      hits[RAYS_OF_BLOCK], *takes[RAYS_OF_BLOCK];
     uint64_t evaluations = 0;
-    int      some        = -1;
-    for (int i = 0; i < RAYS_OF_BLOCK; i++)
-        some = wanted[i] ? i : some;
-    if (some < 0)
-        return 0;
-    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-        hits[i]       = begin(rule, block, wanted[i] ? i : some);
-        hits[i].takes = wanted[i];
+    int      taking      = count;
+    for (int i = 0; i < count; i++) {
+        hits[i]  = begin(rule, found[i].block, found[i].lane);
+        takes[i] = &hits[i];
     }
-    for (bool first = true, more = true; more; first = false) {
-        more = false;
-        for (int tap = first ? OCTAHEDRON - 1 : OCTAHEDRON; tap >= 0; tap--)
-            take_tap(cell, hits, tap);
-        for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-            evaluations += hits[i].takes ? OCTAHEDRON + !first : 0;
-            hits[i].takes = hits[i].takes && goes_on(&hits[i], rule);
-            more          = more || hits[i].takes;
-        }
+    for (int taps = OCTAHEDRON, more; taking > 0; taking = more, taps = OCTAHEDRON + 1) {
+        take_taps(cell, takes, taking, taps);
+        evaluations += (uint64_t)(taking * taps);
+        more = 0;
+        for (int i = 0; i < taking; i++)
+            if (goes_on(takes[i], rule))
+                takes[more++] = takes[i];
     }
-    for (int i = 0; i < RAYS_OF_BLOCK; i++)
-        if (wanted[i])
-            store(&hits[i], block, i);
+    for (int i = 0; i < count; i++)
+        store(&hits[i], found[i].block, found[i].lane);
+    return evaluations;
+}
+
+uint64_t ray_normals(const RayCell *cell, const RayRule *rule, const RayHit *found, size_t count)
+{
+    uint64_t evaluations = 0;
+    for (size_t done = 0; done < count; done += RAYS_OF_BLOCK)
+        evaluations += find_normals(cell, rule, found + done,
+                                    count - done < RAYS_OF_BLOCK ? (int)(count - done)
+                                                                 : RAYS_OF_BLOCK);
     return evaluations;
 }

@@ -37,6 +37,14 @@ static void bound_space(const RayField *field, float low[3], float high[3])
     }
 }
 
+/* Shorter tapes are not worth another.  The room is in steps, which take memory when they are used. */
+enum {
+    SHORT_OF_CUBES  = 40,
+    SHORT_OF_STARTS = 300,
+    MOST_OF_CUBES   = 1 << 25,
+    MOST_OF_STARTS  = 1 << 23
+};
+
 static void fill(RayField *field)
 {
     state_refresh_points(field->state);
@@ -56,10 +64,24 @@ static void fill(RayField *field)
     }
     float low[3], high[3];
     bound_space(field, low, high);
+    const SpaceRule cubes  = {.stretch    = 1,
+                              .margin     = field->margin,
+                              .deepest    = 5,
+                              .short_tape = SHORT_OF_CUBES,
+                              .most_steps = MOST_OF_CUBES},
+                    starts = {.stretch    = 2,
+                              .margin     = field->margin,
+                              .deepest    = 4,
+                              .short_tape = SHORT_OF_STARTS,
+                              .most_steps = MOST_OF_STARTS};
+    space_new(&field->space, &field->distance.cells, low, high, &cubes, &field->arena);
+    space_new(&field->starts, &field->distance.cells, low, high, &starts, &field->arena);
     for (size_t i = 0; i < parallel_parts(); i++) {
-        field->waves[i] = arena_new(&field->arena, Wave);
-        space_new(&field->spaces[i], &field->distance.cells, field->distance.works[i], low, high,
-                  field->margin, &field->arena);
+        Wave *wave       = arena_new(&field->arena, Wave);
+        field->waves[i]  = wave;
+        wave->first_rays = arena_new_array(&field->arena, int32_t, field->space.most);
+        for (uint32_t k = 0; k < field->space.most; k++)
+            wave->first_rays[k] = -1;
     }
 }
 
@@ -89,8 +111,8 @@ RayField *ray_field_new(KrsState *state, bool planes)
 
 void ray_field_begin(RayField *field)
 {
-    for (size_t i = 0; i < parallel_parts(); i++)
-        space_clear_full(&field->spaces[i]);
+    space_clear_full(&field->space);
+    space_clear_full(&field->starts);
 }
 
 void ray_field_free(RayField *field)
@@ -98,6 +120,8 @@ void ray_field_free(RayField *field)
     if (!field)
         return;
     const Memory memory = field->memory;
+    space_free(&field->space);
+    space_free(&field->starts);
     arena_free(&field->arena);
     if (memory.allocate)
         memory.release(memory.user, field);

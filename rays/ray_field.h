@@ -28,8 +28,9 @@ struct RayField {
     RayTape       distance; /* of all components but planes, if these are met at once */
     bool          planes;   /* they are: */
     RayTape       plane_t, plane_distance;
-    float         low[3], high[3];   /* around what the distance is of */
-    Space         spaces[MAX_PARTS]; /* of rays of hits */
+    float         low[3], high[3]; /* around what the distance is of */
+    Space         space;           /* of rays of hits */
+    Space         starts;          /* of balls that rays of pixels begin with */
     struct Wave  *waves[MAX_PARTS];
     float         margin; /* what rounding may make of coordinates */
 };

@@ -38,7 +38,7 @@ static void clip_blocked(const RayField *field, RayBlock *block, int i)
 static void block_cones(const Wave *wave, RayBlock *block)
 {
     const RayField *field = wave->field;
-    const float     far   = 1e4f * (1 + field->spaces[0].side);
+    const float     far   = 1e4f * (1 + field->space.side);
     float           points[3][RAYS_OF_BLOCK];
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < RAYS_OF_BLOCK; i++)
@@ -118,37 +118,41 @@ static bool sort_rays(Wave *wave, uint32_t b)
                                 wave->points[b][2][i]};
         if (is_beside(wave, block, i, point, wave->at[b][i], &wave->distances[b][i]))
             continue;
-        const uint32_t number = space_find(wave->space, point);
-        SpaceCube     *cube   = &wave->space->cubes[number];
-        if (cube->rays < 0)
+        const uint32_t number = space_find(wave->space, wave->work, point);
+        if (wave->first_rays[number] < 0)
             wave->cubes[wave->cube_count++] = number;
-        wave->next[b * RAYS_OF_BLOCK + i] = cube->rays;
-        cube->rays                        = (int32_t)(b * RAYS_OF_BLOCK + i);
+        wave->next[b * RAYS_OF_BLOCK + i] = wave->first_rays[number];
+        wave->first_rays[number]          = (int32_t)(b * RAYS_OF_BLOCK + i);
     }
     wave->evaluations += rays;
     return rays > 0;
 }
 
 /* Evaluates the distances of all rays in a cube. */
-static void ask_cube(Wave *wave, SpaceCube *cube)
+static void ask_cube(Wave *wave, uint32_t number)
 {
-    while (cube->rays >= 0) {
-        float   points[3][RAYS_OF_BLOCK];
-        int32_t rays[RAYS_OF_BLOCK];
+    const CellTape *tape     = &wave->space->cubes[number].tape;
+    int32_t         next     = wave->first_rays[number];
+    wave->first_rays[number] = -1;
+    while (next >= 0) {
+        float   points[3][CELL_WIDE];
+        int32_t rays[CELL_WIDE];
         int     count = 0;
-        for (; count < RAYS_OF_BLOCK && cube->rays >= 0; count++) {
-            rays[count] = cube->rays;
-            cube->rays  = wave->next[rays[count]];
+        for (; count < CELL_WIDE && next >= 0; count++) {
+            rays[count] = next;
+            next        = wave->next[next];
         }
-        for (int i = 0; i < RAYS_OF_BLOCK; i++)
+        const int blocks = (count + RAYS_OF_BLOCK - 1) / RAYS_OF_BLOCK;
+        for (int i = 0; i < blocks * RAYS_OF_BLOCK; i++) {
+            const int32_t ray = rays[i < count ? i : 0];
             for (int k = 0; k < 3; k++)
-                points[k][i] = wave->points[rays[i < count ? i : 0] / RAYS_OF_BLOCK][k]
-                                           [rays[i < count ? i : 0] % RAYS_OF_BLOCK];
-        const float *distances = cell_run(&cube->tape, wave->space->work, 1,
-                                          (const float(*)[CELL_LANES])points);
+                points[k][i] = wave->points[ray / RAYS_OF_BLOCK][k][ray % RAYS_OF_BLOCK];
+        }
+        const float *distances = cell_run_wide(tape, wave->work, 1,
+                                               (const float(*)[CELL_WIDE])points, (size_t)blocks);
         for (int i = 0; i < count; i++)
-            wave->distances[rays[i] / RAYS_OF_BLOCK][rays[i] % RAYS_OF_BLOCK] = fminf(
-                distances[i], cube->tape.cap);
+            wave->distances[rays[i] / RAYS_OF_BLOCK][rays[i] % RAYS_OF_BLOCK] = fminf(distances[i],
+                                                                                      tape->cap);
     }
 }
 
@@ -165,7 +169,7 @@ static void march_wave(Wave *wave, size_t count)
                 wave->live[live++] = wave->live[i];
         wave->live_count = live;
         for (uint32_t i = 0; i < wave->cube_count; i++)
-            ask_cube(wave, &wave->space->cubes[wave->cubes[i]]);
+            ask_cube(wave, wave->cubes[i]);
         for (uint32_t i = 0; i < live; i++)
             wave->field->set->take_blocked(&wave->blocks[wave->live[i]], wave->rule,
                                            wave->at[wave->live[i]], wave->distances[wave->live[i]]);
@@ -178,7 +182,8 @@ uint64_t ray_field_block(RayField *field, size_t part, RayBlock *blocks, size_t 
     Wave *wave        = field->waves[part];
     wave->field       = field;
     wave->part        = part;
-    wave->space       = &field->spaces[part];
+    wave->space       = &field->space;
+    wave->work        = field->distance.works[part];
     wave->rule        = rule;
     wave->blocks      = blocks;
     wave->evaluations = 0;

@@ -12,6 +12,7 @@ typedef struct Wave {
     RayField        *field;
     size_t           part;
     Space           *space;
+    CellWork        *work;
     const BlockRule *rule;
     RayBlock        *blocks;
     uint64_t         evaluations;
@@ -19,7 +20,8 @@ typedef struct Wave {
         distances[BLOCKS_OF_WAVE][RAYS_OF_BLOCK];
     bool     marched[BLOCKS_OF_WAVE][RAYS_OF_BLOCK]; /* of rays of hits: they were to be marched, */
     float    ends[BLOCKS_OF_WAVE][RAYS_OF_BLOCK];    /* as far as here */
-    int32_t  next[BLOCKS_OF_WAVE * RAYS_OF_BLOCK];   /* ray in the same cube; -1: none */
+    int32_t *first_rays; /* of each cube: the first of those that ask now; -1: none */
+    int32_t  next[BLOCKS_OF_WAVE * RAYS_OF_BLOCK];              /* ray in the same cube; -1: none */
     uint32_t cubes[BLOCKS_OF_WAVE * RAYS_OF_BLOCK], cube_count; /* that rays are in */
     uint32_t live[BLOCKS_OF_WAVE], live_count;                  /* blocks with rays that march */
 } Wave;

@@ -19,6 +19,7 @@
 #include "compiler/graph/lanes/lane_cells.h"
 #include "compiler/scene/program.h"
 #include "rays/ray_field.h"
+#include "rays/space.h"
 #include "tests/support/random.h"
 
 enum { TREES = 40, BALLS = 60, SHAPES = 24, FIGURES = 12, DEPTH = 2 };
@@ -314,6 +315,41 @@ static Count try_scene(const char *text, double part)
     return count;
 }
 
+/* ---- cubes ---- */
+
+/* Asks cubes of space, of which `part` is pruned for, at points and in balls. */
+static Count try_space(const char *text, double part)
+{
+    Opened      o;
+    Count       count  = {0};
+    const float low[3] = {-2, -2, -2}, high[3] = {2, 2, 2};
+    if (!open_scene(&o, text))
+        fail_msg("%s", text);
+    for (int balls = 0; balls < 2; balls++) {
+        Space           space;
+        const SpaceRule rule = {.stretch    = (float)part * (float)(1 + balls),
+                                .margin     = ray_margin(&o.scene->program),
+                                .deepest    = 4,
+                                .short_tape = 10,
+                                .most_steps = 1 << 20};
+        space_new(&space, &o.cells, low, high, &rule, &o.arena);
+        for (int i = 0; i < 4 * BALLS; i++) {
+            const double middle[3]  = {uniform(-SIZE, SIZE), uniform(-SIZE, SIZE),
+                                       uniform(-SIZE, SIZE)},
+                         radius     = balls ? uniform(0, 0.5) : 0;
+            const float    point[3] = {(float)middle[0], (float)middle[1], (float)middle[2]};
+            const uint32_t number   = balls ? space_find_ball(&space, o.work, point,
+                                                              (float)(part * radius))
+                                            : space_find(&space, o.work, point);
+            compare(&o, &space.cubes[number].tape, middle, radius, 1, &count);
+            count.steps += space.cubes[number].tape.count < o.cells.count;
+        }
+        space_free(&space);
+    }
+    close_scene(&o);
+    return count;
+}
+
 /* ---- tests ---- */
 
 static Count try_random(void (*make)(char *text, size_t room), int scenes, double part)
@@ -409,6 +445,26 @@ static void other_scenes(void **context)
     }
 }
 
+static void cubes_of_space(void **context)
+{
+    (void)context;
+    Count all = {0}, halves = {0};
+    chance = (Random){39};
+    for (int i = 0; i < FIGURES; i++) {
+        char text[8000];
+        random_tree(text, sizeof text);
+        const Count count = try_space(text, 1), half = try_space(text, 0.5);
+        all.wrong += count.wrong;
+        all.points += count.points;
+        all.steps += count.steps;
+        halves.wrong += half.wrong;
+    }
+    print_message("%zu points, %zu cubes have shorter tapes\n", all.points, all.steps);
+    assert_int_equal(all.wrong, 0);
+    assert_true(all.steps > all.points / CELL_LANES / 2);
+    assert_true(halves.wrong > 0);
+}
+
 static void a_smaller_ball_is_seen(void **context)
 {
     (void)context;
@@ -419,8 +475,9 @@ static void a_smaller_ball_is_seen(void **context)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(trees_of_shapes),    cmocka_unit_test(trees_on_endless_ground),
-        cmocka_unit_test(figures_made_solid), cmocka_unit_test(other_scenes),
-        cmocka_unit_test(flat_fields),        cmocka_unit_test(a_smaller_ball_is_seen)};
+        cmocka_unit_test(trees_of_shapes),       cmocka_unit_test(trees_on_endless_ground),
+        cmocka_unit_test(figures_made_solid),    cmocka_unit_test(other_scenes),
+        cmocka_unit_test(flat_fields),           cmocka_unit_test(cubes_of_space),
+        cmocka_unit_test(a_smaller_ball_is_seen)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
