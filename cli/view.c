@@ -80,6 +80,7 @@ KrsStatus command_view(Options *options)
                           .height        = options->how.height,
                           .samples       = options->how.samples,
                           .integrator    = options->how.integrator,
+                          .executor      = options->how.methods.executor,
                           .camera        = options->camera,
                           .time          = options->time,
                           .fps           = options->fps,

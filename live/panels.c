@@ -280,23 +280,34 @@ static void draw_controls(Viewing *viewing)
 
 /* ---- what is going on ---- */
 
+/* What is shown where there are no shaders of what is wanted. */
+static const char *words_for_shown(const Viewing *viewing, bool lanes)
+{
+    return lanes                     ? "lanes of the processor draw"
+           : viewing->shot.width > 0 ? "this is what was before"
+                                     : "there is nothing to see so far";
+}
+
 static void draw_doing(const Viewing *viewing)
 {
     const PainterState *painting  = &viewing->painting;
+    const Shot         *shot      = &viewing->shot;
     char                line[340] = "";
+    const bool          lanes     = shot->stats.executor == KRS_EXECUTOR_LANES &&
+                       shot->version == version_number(viewing->view.version);
     if (painting->compiling)
-        snprintf(line, sizeof line, "compiling the shaders: %.0f %%%s", 100 * painting->compiled,
-                 viewing->shot.width > 0 ? "; this is what was before" : "");
+        snprintf(line, sizeof line, "compiling the shaders: %.0f %%; %s", 100 * painting->compiled,
+                 words_for_shown(viewing, lanes));
     else if (painting->unbuilt[0])
-        snprintf(line, sizeof line, "no shaders, so this is what was before: %s",
+        snprintf(line, sizeof line, "no shaders; %s: %s", words_for_shown(viewing, lanes),
                  painting->unbuilt);
     else if (painting->refused)
         snprintf(line, sizeof line, "the scene refuses these values");
     if (line[0])
-        gui_text(GUI_WARNING, line);
+        gui_text(lanes ? GUI_FAINT : GUI_WARNING, line);
     if (gui_navigates())
         gui_text(GUI_PLAIN, "keys go to the panel; Esc: back");
-    if (painting->compiling)
+    if (painting->compiling && !lanes)
         gui_progress(painting->compiled);
 }
 
@@ -310,13 +321,14 @@ static void draw_numbers_of_shot(const Viewing *viewing)
         gui_source(GUI_PLAIN, line);
     }
     snprintf(line, sizeof line,
-             "on device  %8.1f ms\nby clock   %8.1f ms\n%llu rays, %llu evaluations\n"
+             "on device  %8.1f ms\nby clock   %8.1f ms\n%llu rays by %s, %llu evaluations\n"
              "%.1f evaluations a ray, at most %u\n%.0f flops an evaluation, %.2f GFLOPS\n"
              "%llu unresolved, %.1f MB",
              stats->total_ms, stats->wall_ms, (unsigned long long)stats->rays,
-             (unsigned long long)stats->evaluations, stats->evaluations_per_ray,
-             stats->max_evaluations_per_ray, stats->flops_per_evaluation, stats->gflops,
-             (unsigned long long)stats->unresolved, (double)stats->peak_memory_bytes / 1e6);
+             krs_executor_names[stats->executor], (unsigned long long)stats->evaluations,
+             stats->evaluations_per_ray, stats->max_evaluations_per_ray,
+             stats->flops_per_evaluation, stats->gflops, (unsigned long long)stats->unresolved,
+             (double)stats->peak_memory_bytes / 1e6);
     gui_source(GUI_PLAIN, line);
 }
 

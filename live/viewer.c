@@ -341,10 +341,17 @@ static KrsStatus open_terminal(Viewing *viewing, char message[256])
     return viewing->terminal ? KRS_OK : fail(message, KRS_NO_DEVICE, "no terminal: ", why);
 }
 
+/* The painter opens its device while the scene is read. */
 static KrsStatus begin(Viewing *viewing, char message[256])
 {
-    const ViewerOptions *options = viewing->options;
-    viewing->history             = history_new();
+    const ViewerOptions *options  = viewing->options;
+    const PainterOptions painting = {.renderer = options->renderer,
+                                     .wake     = wake_viewer,
+                                     .user     = viewing,
+                                     .budget   = viewing->budget,
+                                     .executor = options->executor};
+    viewing->painter              = painter_new(&painting);
+    viewing->history              = history_new();
     if (!viewing->history)
         return fail(message, KRS_OUT_OF_MEMORY, "out of memory", "");
     viewing->document = document_new(options->path, &options->scene);
@@ -366,14 +373,9 @@ static KrsStatus run(Viewing *viewing, char message[256])
                                                      : open_window(viewing, message);
     if (status != KRS_OK)
         return status;
-    const PainterOptions painting = {.renderer = options->renderer,
-                                     .wake     = wake_viewer,
-                                     .user     = viewing,
-                                     .budget   = viewing->budget};
-    viewing->painter              = painter_new(&painting);
-    viewing->saver                = saver_new(&options->renderer, wake_viewer, viewing);
-    viewing->profiler             = profiler_new(&options->renderer, &options->scene, options->path,
-                                                 wake_viewer, viewing);
+    viewing->saver    = saver_new(&options->renderer, wake_viewer, viewing);
+    viewing->profiler = profiler_new(&options->renderer, &options->scene, options->path,
+                                     wake_viewer, viewing);
     if (!viewing->painter || !viewing->saver || !viewing->profiler ||
         pthread_create(&viewing->reader, NULL, read_scene, viewing) != 0)
         return fail(message, KRS_OUT_OF_MEMORY, "out of memory", "");

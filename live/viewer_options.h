@@ -20,6 +20,7 @@ typedef struct ViewerOptions {
     uint32_t             width, height; /* of the window; 0: the scene's, or the default */
     uint32_t             samples;       /* of a complete picture; 0: the scene's, or the default */
     KrsIntegrator        integrator;    /* default: the scene's */
+    KrsExecutor          executor;      /* of what the window shows (painter.h) */
     const char          *camera;        /* NULL: the first */
     double               time, fps;
     const ViewerSetting *settings;

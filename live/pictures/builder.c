@@ -42,7 +42,7 @@ static KrsStatus build(Builder *builder, const View *view)
 {
     KrsStatus status = KRS_OK;
     if (!builder->canvas)
-        status = canvas_new(&builder->options, &builder->canvas);
+        status = canvas_new(&builder->options, KRS_EXECUTOR_KERNELS, &builder->canvas);
     return status == KRS_OK ? canvas_prepare(builder->canvas, view, report_progress, builder)
                             : status;
 }

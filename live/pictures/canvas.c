@@ -19,6 +19,7 @@ typedef struct Film {
 
 struct Canvas {
     KrsRenderer  *renderer;
+    KrsExecutor   executor;
     KrsRendering *rendering;
     KrsState     *state;
     Version      *version;
@@ -60,14 +61,15 @@ static bool tell_compiling(void *user, double done)
     return !canvas->compiling || canvas->compiling(canvas->compiling_user, done);
 }
 
-KrsStatus canvas_new(const KrsRendererOptions *options, Canvas **canvas)
+KrsStatus canvas_new(const KrsRendererOptions *options, KrsExecutor executor, Canvas **canvas)
 {
     KrsRendererOptions with = *options;
     *canvas                 = calloc(1, sizeof **canvas);
     if (!*canvas)
         return KRS_OUT_OF_MEMORY;
-    with.progress      = tell_compiling;
-    with.progress_user = *canvas;
+    (*canvas)->executor = executor;
+    with.progress       = tell_compiling;
+    with.progress_user  = *canvas;
     return krs_renderer_new(&with, &(*canvas)->renderer);
 }
 
@@ -89,6 +91,11 @@ void canvas_free(Canvas *canvas)
     krs_state_free(canvas->state);
     version_release(canvas->version);
     free(canvas);
+}
+
+bool canvas_is_of_cpu(const Canvas *canvas)
+{
+    return krs_renderer_device(canvas->renderer).kind == KRS_DEVICE_CPU;
 }
 
 const char *canvas_message(const Canvas *canvas)
@@ -189,12 +196,14 @@ static void note_made(Canvas *canvas, const Needs *needs)
 /* Makes state and rendering; what there was stays if that fails. */
 static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool paths)
 {
-    KrsState     *state     = NULL;
-    KrsRendering *rendering = NULL;
-    KrsStatus     status    = krs_state_new(scene, &state);
+    const KrsPurpose purpose   = canvas->executor == KRS_EXECUTOR_LANES ? KRS_FOR_FIRST_PICTURES
+                                 : paths                                ? KRS_FOR_PATHS
+                                                                        : KRS_FOR_PICTURES;
+    KrsState        *state     = NULL;
+    KrsRendering    *rendering = NULL;
+    KrsStatus        status    = krs_state_new(scene, &state);
     if (status == KRS_OK)
-        status = krs_rendering_new(canvas->renderer, scene,
-                                   paths ? KRS_FOR_PATHS : KRS_FOR_PICTURES, &rendering);
+        status = krs_rendering_new(canvas->renderer, scene, purpose, &rendering);
     if (status != KRS_OK) {
         krs_state_free(state);
         return status;
@@ -236,7 +245,10 @@ KrsStatus canvas_adopt(Canvas *canvas, const View *view)
     KrsStatus status = updates ? update(canvas, scene) : make_rendering(canvas, scene, paths);
     if (status != KRS_OK)
         return status;
-    if (canvas->made.structure != version_structure(view->version)) {
+    if (canvas->executor == KRS_EXECUTOR_LANES) {
+        canvas->made     = (Needs){.structure = version_structure(view->version)};
+        canvas->previews = true;
+    } else if (canvas->made.structure != version_structure(view->version)) {
         canvas->made     = (Needs){0};
         canvas->previews = false;
     }
@@ -245,8 +257,9 @@ KrsStatus canvas_adopt(Canvas *canvas, const View *view)
     return KRS_OK;
 }
 
-/* The sides of a picture that only compiles. */
-#define MIN_SIDE 32
+/* The sides of a picture that only compiles; lanes need no shader for more rays. */
+#define MIN_SIDE          32
+#define MIN_SIDE_OF_LANES 8
 
 /* Some shaders are compiled when a picture needs them: a small one is made. */
 static KrsStatus try_out(Canvas *canvas, const View *view)
@@ -255,7 +268,8 @@ static KrsStatus try_out(Canvas *canvas, const View *view)
     if (status != KRS_OK)
         return status;
     canvas_set(canvas, view); /* values that are refused need no other shaders */
-    status = canvas_add(canvas, FILM_COARSE, view, MIN_SIDE, MIN_SIDE, 1, true, NULL, NULL);
+    const uint32_t side = canvas->executor == KRS_EXECUTOR_LANES ? MIN_SIDE_OF_LANES : MIN_SIDE;
+    status              = canvas_add(canvas, FILM_COARSE, view, side, side, 1, true, NULL, NULL);
     if (status != KRS_OK || view->shading != SHADING_SLOPE)
         return status;
     const float point[1][3] = {{0, 0, 0}};
@@ -320,6 +334,7 @@ static KrsStatus make_film(Canvas *canvas, Film *film, const View *view, uint32_
                                 .integrator    = view->integrator,
                                 .frame_seconds = view->frame_seconds,
                                 .slice_ms      = SLICE_MS,
+                                .methods       = {.executor = canvas->executor},
                                 .progress      = report_progress,
                                 .user          = canvas};
     krs_film_free(film->film);
@@ -340,6 +355,19 @@ KrsStatus canvas_add(Canvas *canvas, FilmKind kind, const View *view, uint32_t w
     canvas->progress = progress;
     canvas->user     = user;
     return krs_film_add(film->film, canvas->state, &view->camera, samples);
+}
+
+KrsStatus canvas_try_lanes(Canvas *canvas, const View *view, Estimate *estimate)
+{
+    Film     *film   = &canvas->films[FILM_FULL];
+    KrsStatus status = canvas_adopt(canvas, view);
+    if (status == KRS_OK) {
+        canvas_set(canvas, view);
+        status = make_film(canvas, film, view, view->width, view->height);
+    }
+    return status == KRS_OK ? krs_film_try_lanes(film->film, canvas->state, &view->camera,
+                                                 &estimate->lanes_ms, &estimate->compiler_ms)
+                            : status;
 }
 
 uint32_t canvas_samples(const Canvas *canvas, FilmKind kind)

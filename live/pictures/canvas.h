@@ -35,9 +35,12 @@ typedef enum FilmKind { FILM_COARSE, FILM_FULL, FILM_COUNT } FilmKind;
 
 typedef struct Canvas Canvas;
 
-/* Opens a device.  The caller frees the canvas whatever the status; NULL: without memory. */
-KrsStatus canvas_new(const KrsRendererOptions *options, Canvas **canvas);
+/* Opens a device.  `executor` marches the rays of all its pictures: KERNELS, or LANES, which make previews alone, and
+   without shaders of the scene.  The caller frees the canvas whatever the status; NULL: without memory. */
+KrsStatus canvas_new(const KrsRendererOptions *options, KrsExecutor executor, Canvas **canvas);
 void      canvas_free(Canvas *canvas);
+/* Tells whether the device is of type CPU. */
+bool canvas_is_of_cpu(const Canvas *canvas);
 /* One line about the last failure. */
 const char *canvas_message(const Canvas *canvas);
 
@@ -59,6 +62,13 @@ unsigned canvas_structure(const Canvas *canvas);
 /* Takes out of a view of that structure what the canvas has no shaders for. */
 void canvas_reduce(const Canvas *canvas, View *view);
 
+/* What executors take for a view, by estimate: milliseconds of a sample of all pixels by lanes, and of compilers. */
+typedef struct Estimate {
+    double lanes_ms, compiler_ms;
+} Estimate;
+
+/* Takes the canvas over to a view, and estimates it.  KRS_BAD_ARGUMENT: lanes cannot draw it. */
+KrsStatus canvas_try_lanes(Canvas *canvas, const View *view, Estimate *estimate);
 /* Compiles the shaders of a view; `compiling` may be NULL. */
 KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsProgressCallback *compiling,
                          void *user);

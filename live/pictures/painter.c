@@ -1,8 +1,10 @@
 /*
  * painter.c: a thread that makes pictures of what is to be seen.
  *
- * Whoever changes the text's structure waits for shaders; another thread compiles them (builder.h),
- * and until they are there the version before is shown, from wherever the camera is by then.
+ * Whoever changes the text's structure waits for shaders; another thread compiles them (builder.h).  Until they are there
+ * lanes of the host draw (lanes.h), and where they cannot, the version before is shown, from wherever the camera is by
+ * then.  Both executors are timed when the shaders are there.  Pictures do not tell who draws, so samples of a view are
+ * never fewer than they were.
  *
  * Coarse pictures are not interrupted by a change, unless they take far too long: while something
  * moves, each is shown.  Whole ones are interrupted at once, though what the device has begun must
@@ -11,6 +13,7 @@
 #include "live/pictures/painter.h"
 
 #include "live/pictures/builder.h"
+#include "live/pictures/lanes.h"
 #include "live/pictures/resolution.h"
 
 #include <math.h>
@@ -29,6 +32,12 @@
 /* Samples are added in portions that take about this long. */
 #define PORTION_MS 400.0
 
+/* What executors take for a coarse picture of a structure. */
+typedef struct Timing {
+    unsigned structure;
+    double   lanes_ms, shaders_ms;
+} Timing;
+
 struct Painter {
     PainterOptions  options;
     pthread_t       thread;
@@ -45,14 +54,24 @@ struct Painter {
     atomic_bool     prepares; /* the builder's last order is for later */
     Builder        *builder;
     /* of the thread alone */
-    Canvas    *canvas;
+    Lanes      lanes;
+    Canvas    *canvas;  /* with shaders; NULL: none so far */
+    Canvas    *drawing; /* one of both, which draws `view`; NULL: there is no picture so far */
     View       view;
-    unsigned   shown; /* number of `view` */
-    Resolution resolution;
+    bool       reduced;        /* it is not all that is wanted */
+    bool       orders;         /* its shaders, as soon as there is a picture */
+    unsigned   shown;          /* number of `view` */
+    unsigned   seen;           /* number of the view that there is a picture of */
+    uint32_t   seen_samples;   /* of it; 0: it is a coarse one */
+    unsigned   filmed;         /* number of the view whose samples the film with all pixels has, */
+    Canvas    *filmed_by;      /* and that film's canvas */
+    Resolution resolutions[2]; /* [1]: of lanes */
+    Timing     timing;
     double     changed_at; /* when the last view came */
     bool       moving;
     double     begun; /* when the picture that is being made was begun */
     FilmKind   making;
+    double     grace; /* milliseconds before a change interrupts it, if it is coarse */
 };
 
 static double now_ms(void)
@@ -170,24 +189,43 @@ static void say_failed(Painter *painter, KrsStatus status, const char *message)
     wake(painter);
 }
 
+static bool lanes_draw(const Painter *painter)
+{
+    return painter->drawing && painter->drawing == painter->lanes.canvas;
+}
+
+/* Shaders that take over wait for the picture at hand, unless that takes long. */
 static bool report_progress(void *user, double done)
 {
-    Painter *painter = user;
+    Painter     *painter = user;
+    const double ms      = now_ms() - painter->begun;
     (void)done;
-    if (painter->making == FILM_FULL)
-        return !is_outdated(painter);
-    return !is_outdated(painter) || now_ms() - painter->begun < TIMEOUT * painter->options.budget;
+    if (painter->making == FILM_COARSE)
+        return !is_outdated(painter) || ms < painter->grace;
+    return !is_outdated(painter) || (atomic_load(&painter->number) == painter->shown &&
+                                     lanes_draw(painter) && ms < PORTION_MS);
+}
+
+/* Has the shaders compiled that were put off. */
+static void order_shaders(Painter *painter, const View *view)
+{
+    if (!painter->orders)
+        return;
+    painter->orders = false;
+    atomic_store(&painter->prepares, false);
+    builder_start(painter->builder, view);
 }
 
 /* Hands a picture of the scene to whoever shows it. */
 static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
 {
-    const uint32_t samples = canvas_samples(painter->canvas, kind);
+    const uint32_t samples = canvas_samples(painter->drawing, kind);
     KrsPicture    *picture = NULL;
-    KrsStatus      status  = canvas_read(painter->canvas, kind, samples == 1 ? 0 : KRS_AOV_COLOR,
+    KrsStatus      status  = canvas_read(painter->drawing, kind, samples == 1 ? 0 : KRS_AOV_COLOR,
                                          &picture);
     if (status != KRS_OK)
         return status;
+    order_shaders(painter, &painter->view);
     Shot shot   = {.width   = picture->width,
                    .height  = picture->height,
                    .samples = samples,
@@ -206,7 +244,7 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
                              shot.pixels);
     else {
         float *slopes = painter->view.shading == SHADING_SLOPE
-                            ? canvas_slopes(painter->canvas, picture)
+                            ? canvas_slopes(painter->drawing, picture)
                             : NULL;
         false_color(picture, painter->view.shading, slopes, shot.pixels);
         free(slopes);
@@ -222,16 +260,29 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
     }
     pthread_mutex_unlock(&painter->lock);
     krs_picture_free(picture);
+    painter->seen         = painter->shown;
+    painter->seen_samples = kind == FILM_FULL ? samples : 0;
     wake(painter);
     return KRS_OK;
+}
+
+static Resolution *resolution_of(Painter *painter)
+{
+    return &painter->resolutions[lanes_draw(painter)];
 }
 
 static void learn_cost(Painter *painter, FilmKind kind, double ms, double pixels)
 {
     if (kind == FILM_FULL)
-        resolution_learn_whole(&painter->resolution, ms, pixels);
+        resolution_learn_whole(resolution_of(painter), ms, pixels);
     else
-        resolution_learn_coarse(&painter->resolution, ms, pixels);
+        resolution_learn_coarse(resolution_of(painter), ms, pixels);
+}
+
+/* Tells whether there is a picture of the view with more samples, by who drew before. */
+static bool is_behind(const Painter *painter, uint32_t samples)
+{
+    return painter->seen == painter->shown && samples < painter->seen_samples;
 }
 
 /* Adds samples and shows them. */
@@ -240,13 +291,14 @@ static KrsStatus make(Painter *painter, FilmKind kind, uint32_t width, uint32_t 
 {
     painter->making  = kind;
     painter->begun   = now_ms();
-    KrsStatus status = canvas_add(painter->canvas, kind, &painter->view, width, height, samples,
+    KrsStatus status = canvas_add(painter->drawing, kind, &painter->view, width, height, samples,
                                   again, report_progress, painter);
     if (status != KRS_OK)
         return status;
     const double ms = now_ms() - painter->begun;
     learn_cost(painter, kind, ms / samples, (double)width * height);
-    return publish(painter, kind, ms);
+    return is_behind(painter, canvas_samples(painter->drawing, kind)) ? KRS_OK
+                                                                      : publish(painter, kind, ms);
 }
 
 static uint32_t divide(uint32_t side, double divisor)
@@ -258,17 +310,39 @@ static uint32_t divide(uint32_t side, double divisor)
 static KrsStatus show_coarse(Painter *painter)
 {
     const uint32_t width = painter->view.width, height = painter->view.height;
-    const double   divisor = resolution_divide(&painter->resolution, (double)width * height,
+    const double   divisor = resolution_divide(resolution_of(painter), (double)width * height,
                                                painter->options.budget);
     if (divisor <= 1)
         return KRS_OK;
+    painter->grace = TIMEOUT * painter->options.budget;
     return make(painter, FILM_COARSE, divide(width, divisor), divide(height, divisor), 1, true);
 }
 
-/* Samples that take about as long as it may be until the picture is seen to improve. */
-static uint32_t choose_portion(const Painter *painter, uint32_t missing)
+/* Returns how much longer lanes take for so many samples of all pixels than they may while shaders are compiled: half of that
+   time, since compilers need all processors. */
+static double excess_of_lanes(const Painter *painter, uint32_t samples)
 {
-    const double ms      = painter->resolution.whole_ms;
+    const Estimate *estimate = &painter->lanes.estimate;
+    const bool      compiles = lanes_draw(painter) && builder_state(painter->builder).building;
+    return compiles ? 2 * samples * estimate->lanes_ms / estimate->compiler_ms : 0;
+}
+
+/* Makes the finest picture that lanes may make, where that is worth it. */
+static KrsStatus show_finer(Painter *painter)
+{
+    const double divisor = sqrt(excess_of_lanes(painter, 1));
+    if (divisor <= 1 || 1.3 * divisor > painter->resolutions[1].divisor ||
+        painter->seen != painter->shown || painter->seen_samples > 0)
+        return KRS_OK;
+    painter->grace = 0;
+    return make(painter, FILM_COARSE, divide(painter->view.width, divisor),
+                divide(painter->view.height, divisor), 1, true);
+}
+
+/* Samples that take about as long as it may be until the picture is seen to improve. */
+static uint32_t choose_portion(Painter *painter, uint32_t missing)
+{
+    const double ms      = resolution_of(painter)->whole_ms;
     const double portion = ms > 0 ? fmin(fmax(PORTION_MS / ms, 1), 64) : 1;
     return portion < missing ? (uint32_t)portion : missing;
 }
@@ -284,20 +358,44 @@ static void wait_for_quiet(Painter *painter)
     pthread_mutex_unlock(&painter->lock);
 }
 
-/* Makes the picture of a new view, up to its last sample or until there is another one. */
+/* Returns how many samples of the view the film with all pixels has. */
+static uint32_t samples_of_view(const Painter *painter)
+{
+    return painter->filmed == painter->shown && painter->filmed_by == painter->drawing
+               ? canvas_samples(painter->drawing, FILM_FULL)
+               : 0;
+}
+
+/* Adds samples to the picture with all pixels. */
+static KrsStatus refine(Painter *painter, uint32_t samples)
+{
+    const View     *view   = &painter->view;
+    const KrsStatus status = make(
+        painter, FILM_FULL, view->width, view->height,
+        samples == 0 ? 1 : choose_portion(painter, view->samples - samples), samples == 0);
+    painter->filmed    = painter->shown;
+    painter->filmed_by = painter->drawing;
+    return status;
+}
+
+/* Makes the picture of a view, up to its last sample or until there is another one. */
 static KrsStatus show_view(Painter *painter)
 {
-    const View *view   = &painter->view;
-    KrsStatus   status = show_coarse(painter);
-    wait_for_quiet(painter);
+    KrsStatus status = KRS_OK;
+    if (painter->seen != painter->shown) {
+        painter->filmed = 0;
+        status          = show_coarse(painter);
+        wait_for_quiet(painter);
+    }
     if (status == KRS_OK && !is_outdated(painter))
-        status = make(painter, FILM_FULL, view->width, view->height, 1, true);
+        status = show_finer(painter);
     while (status == KRS_OK && !is_outdated(painter)) {
-        const uint32_t samples = canvas_samples(painter->canvas, FILM_FULL);
-        if (samples >= view->samples || view->shading != SHADING_LIGHT)
-            break; /* other shading modes are of the first sample */
-        status = make(painter, FILM_FULL, view->width, view->height,
-                      choose_portion(painter, view->samples - samples), false);
+        const uint32_t samples = samples_of_view(painter);
+        /* Other shading modes are of the first sample. */
+        if (samples >= (painter->view.shading == SHADING_LIGHT ? painter->view.samples : 1) ||
+            excess_of_lanes(painter, samples + 1) > 1)
+            break;
+        status = refine(painter, samples);
     }
     return status == KRS_INTERRUPTED ? KRS_OK : status;
 }
@@ -318,20 +416,23 @@ static void hear_builder(void *user)
     wake(painter);
 }
 
-/* Shows another canvas from now on. */
+/* Has another canvas with shaders from now on. */
 static void change_canvas(Painter *painter, Canvas *built)
 {
     if (painter->canvas)
         canvas_rest(painter->canvas);
-    painter->canvas     = built;
-    painter->resolution = (Resolution){.divisor = painter->resolution.divisor};
+    if (!lanes_draw(painter))
+        painter->drawing = built;
+    painter->canvas         = built;
+    painter->resolutions[0] = (Resolution){.divisor = painter->resolutions[0].divisor};
 }
 
-/* Tells whether a canvas has the shaders of a view: the one that is shown, or the one that was built.  If
-   there is none, it is built; one that has some of them is better than one of another text. */
+/* Tells whether a canvas has the shaders of a view: the one that there is, or the one that was built.  If
+   there is none, it is to be built; one that has some of them is better than one of another text. */
 static bool choose_canvas(Painter *painter, const View *next)
 {
     const Needs needs = view_needs(next);
+    painter->orders   = false;
     if (painter->canvas && canvas_meets(painter->canvas, &needs)) {
         builder_cancel(painter->builder);
         return true;
@@ -340,11 +441,93 @@ static bool choose_canvas(Painter *painter, const View *next)
     Canvas    *built = builder_exchange(painter->builder, &needs, other, painter->canvas);
     if (built)
         change_canvas(painter, built);
-    if (built && canvas_meets(built, &needs))
+    painter->orders = !built || !canvas_meets(built, &needs);
+    return !painter->orders;
+}
+
+/* Asked while lanes make the first shaders. */
+static bool goes_on(void *user, double done)
+{
+    Painter *painter = user;
+    (void)done;
+    pthread_mutex_lock(&painter->lock);
+    const bool quit = painter->quit;
+    pthread_mutex_unlock(&painter->lock);
+    return !quit;
+}
+
+/* Tells whether lanes draw a view that there are no shaders for. */
+static bool begin_lanes(Painter *painter, const View *next)
+{
+    bool fresh;
+    if (!lanes_take(&painter->lanes, next, painter->options.budget, goes_on, painter, &fresh))
+        return false;
+    if (fresh)
+        painter->resolutions[1] = (Resolution){.pixel_ms = painter->lanes.estimate.lanes_ms /
+                                                           next->width / next->height};
+    if (painter->options.executor == KRS_EXECUTOR_LANES ||
+        krs_scene_too_large(version_scene(next->version)))
+        painter->orders = false;
+    return true;
+}
+
+/* Milliseconds of a canvas for a coarse picture, the best of so many. */
+static double time_canvas(Painter *painter, Canvas *canvas, const View *view, int repeats)
+{
+    const double   divisor = fmax(painter->resolutions[1].divisor, 1);
+    const uint32_t width = divide(view->width, divisor), height = divide(view->height, divisor);
+    double         ms     = INFINITY;
+    KrsStatus      status = canvas_adopt(canvas, view);
+    canvas_set(canvas, view);
+    painter->making = FILM_COARSE;
+    painter->grace  = TIMEOUT * painter->options.budget;
+    for (int i = 0; i < repeats && status == KRS_OK; i++) {
+        painter->begun = now_ms();
+        status = canvas_add(canvas, FILM_COARSE, view, width, height, 1, true, report_progress,
+                            painter);
+        ms     = fmin(ms, now_ms() - painter->begun);
+    }
+    return status == KRS_OK ? ms : INFINITY;
+}
+
+/* Times both.  Lanes have drawn the structure already, so it takes one picture; where none with all pixels was ready before
+   shaders were, they are slower. */
+static void time_executors(Painter *painter, const View *next)
+{
+    const unsigned structure = version_structure(next->version);
+    const bool     late      = painter->seen == painter->shown && painter->seen_samples == 0;
+    if (painter->timing.structure == structure)
+        return;
+    painter->timing = (Timing){structure, INFINITY, 0};
+    if (!late) {
+        painter->timing.lanes_ms   = time_canvas(painter, painter->lanes.canvas, next, 1);
+        painter->timing.shaders_ms = time_canvas(painter, painter->canvas, next, 2);
+    }
+}
+
+static bool only_camera_differs(const View *a, const View *b)
+{
+    const size_t count = krs_parameter_count(version_scene(a->version));
+    return a->version == b->version && a->time == b->time &&
+           memcmp(a->values, b->values, count * sizeof *a->values) == 0;
+}
+
+/* Tells whether lanes draw a view that there are shaders for.  Those need no tapes of other values.  Who has begun a picture
+   goes on, unless the other would have all samples earlier. */
+static bool keep_lanes(Painter *painter, const View *next)
+{
+    const Needs    needs   = view_needs(next);
+    const uint32_t samples = samples_of_view(painter),
+                   all     = next->shading == SHADING_LIGHT ? next->samples : 1;
+    if (!lanes_meet(&needs) || painter->lanes.structure != needs.structure)
+        return false;
+    if (painter->options.executor == KRS_EXECUTOR_LANES)
         return true;
-    atomic_store(&painter->prepares, false);
-    builder_start(painter->builder, next);
-    return false;
+    if (!painter->view.version || !only_camera_differs(next, &painter->view))
+        return false;
+    time_executors(painter, next);
+    const double left = lanes_draw(painter) ? all - fmin(samples, all) : all;
+    return left * painter->timing.lanes_ms <= all * painter->timing.shaders_ms;
 }
 
 /* Values of parameters of the same name, where there are such. */
@@ -361,11 +544,11 @@ static void take_values(View *view, const View *from)
         }
 }
 
-/* Shows as much of the next view as the canvas has shaders for. */
+/* Shows as much of the next view as the canvas that draws has shaders for. */
 static void follow(Painter *painter, View *next)
 {
     View *view = &painter->view, old = *view;
-    if (version_structure(next->version) == canvas_structure(painter->canvas)) {
+    if (version_structure(next->version) == canvas_structure(painter->drawing)) {
         view_free(view);
         *view = *next;
         *next = (View){0};
@@ -375,18 +558,28 @@ static void follow(Painter *painter, View *next)
         view->version = old.version;
         view->values  = old.values;
     }
-    canvas_reduce(painter->canvas, view);
+    canvas_reduce(painter->drawing, view);
 }
 
 static void adopt_view(Painter *painter, View *next)
 {
-    if (choose_canvas(painter, next)) {
+    const bool before = painter->reduced, ready = choose_canvas(painter, next),
+               lanes = ready ? keep_lanes(painter, next) : begin_lanes(painter, next);
+    painter->reduced = !ready && !lanes;
+    if (before || painter->reduced)
+        painter->seen = painter->filmed = 0;
+    if (ready && !lanes && lanes_draw(painter))
+        canvas_rest(painter->lanes.canvas);
+    if (!painter->reduced) {
+        painter->drawing = lanes ? painter->lanes.canvas : painter->canvas;
         view_free(&painter->view);
         painter->view = *next;
         *next         = (View){0};
-    } else if (painter->canvas) {
-        follow(painter, next);
+        return;
     }
+    order_shaders(painter, next);
+    if (painter->drawing)
+        follow(painter, next);
 }
 
 /* Waits for another view, or for shaders.  False: that was the last one. */
@@ -412,7 +605,7 @@ static bool wait_for_view(Painter *painter, View *next)
 
 static void set_values(Painter *painter)
 {
-    const bool refused = canvas_set(painter->canvas, &painter->view) != KRS_OK;
+    const bool refused = canvas_set(painter->drawing, &painter->view) != KRS_OK;
     pthread_mutex_lock(&painter->lock);
     painter->state.refused = refused;
     pthread_mutex_unlock(&painter->lock);
@@ -420,28 +613,45 @@ static void set_values(Painter *painter)
 
 static KrsStatus paint_view(Painter *painter)
 {
-    KrsStatus status = canvas_adopt(painter->canvas, &painter->view);
+    KrsStatus status = canvas_adopt(painter->drawing, &painter->view);
     if (status != KRS_OK)
         return status;
     set_values(painter);
-    return show_view(painter);
+    status = show_view(painter);
+    order_shaders(painter, &painter->view); /* there was no time for a picture */
+    return status;
+}
+
+/* Goes on without lanes, which have failed at a view that they seemed to draw. */
+static void give_up_lanes(Painter *painter, KrsStatus status)
+{
+    lanes_give_up(&painter->lanes, status);
+    painter->drawing = NULL;
+    painter->seen = painter->filmed = 0;
+    atomic_store(&painter->told, true);
 }
 
 static void *paint(void *user)
 {
     Painter *painter = user;
     View     next    = {0};
+    if (painter->options.executor != KRS_EXECUTOR_KERNELS)
+        lanes_open(&painter->lanes, &painter->options.renderer);
     while (wait_for_view(painter, &next)) {
         KrsStatus status = KRS_OK;
         if (next.version)
             adopt_view(painter, &next);
         view_free(&next);
-        if (painter->canvas)
+        if (painter->drawing)
             status = paint_view(painter);
+        if (status != KRS_OK && lanes_draw(painter)) {
+            give_up_lanes(painter, status);
+            continue;
+        }
         const BuilderState building = builder_state(painter->builder);
         if (status != KRS_OK)
             say_failed(painter, status, canvas_message(painter->canvas));
-        else if (!painter->canvas && building.status != KRS_OK)
+        else if (!painter->drawing && !painter->canvas && building.status != KRS_OK)
             say_failed(painter, status = building.status, building.message);
         if (status != KRS_OK)
             break;
@@ -481,6 +691,7 @@ void painter_free(Painter *painter)
     pthread_mutex_unlock(&painter->lock);
     pthread_join(painter->thread, NULL);
     builder_free(painter->builder);
+    lanes_close(&painter->lanes);
     canvas_free(painter->canvas);
     view_free(&painter->view);
     view_free(&painter->wanted);

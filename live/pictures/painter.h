@@ -2,7 +2,7 @@
  * painter.h: a thread that makes pictures of what is to be seen, so that nobody waits for them.
  *
  * A change is shown at once, with as few pixels as the time for a frame needs; then with all of
- * them; then with more and more samples.
+ * them; then with more and more samples.  Until there are shaders for it lanes of the host draw it, where they can.
  */
 #ifndef KRS_PAINTER_H
 #define KRS_PAINTER_H
@@ -12,8 +12,9 @@
 typedef struct PainterOptions {
     KrsRendererOptions renderer;
     void (*wake)(void *user); /* called in the painter's thread: there is something new */
-    void  *user;
-    double budget; /* milliseconds that a frame may take while something moves */
+    void       *user;
+    double      budget;   /* milliseconds that a frame may take while something moves */
+    KrsExecutor executor; /* DEFAULT: lanes until there are shaders, then whichever is faster */
 } PainterOptions;
 
 /* A picture of a view. */
@@ -35,7 +36,8 @@ typedef struct Found {
 } Found;
 
 typedef struct PainterState {
-    bool      compiling;    /* shaders of what is wanted; meanwhile the version before is shown */
+    bool
+              compiling; /* shaders of what is wanted; meanwhile lanes show it, or else the version before is shown */
     double    compiled;     /* the part of them that is done */
     bool      busy;         /* a picture is made or refined */
     KrsStatus status;       /* not KRS_OK: the painter has ended */

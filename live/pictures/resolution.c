@@ -61,7 +61,7 @@ void resolution_learn_whole(Resolution *resolution, double ms, double pixels)
 
 double resolution_divide(Resolution *resolution, double pixels, double budget)
 {
-    static const double steps[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32};
+    static const double steps[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, MAX_DIVISOR};
     /* What pixels do not cause, fewer of them do not mend: they have half of the time in any case. */
     const double left   = fmax(budget - resolution->fixed_ms, budget / 2);
     double       needed = resolution->pixel_ms > 0 ? sqrt(pixels * resolution->pixel_ms / left) : 8;

@@ -15,6 +15,9 @@ typedef struct Resolution {
     double divisor;            /* of the sides of coarse pictures; 0: none was made yet */
 } Resolution;
 
+/* The most that the sides of coarse pictures are divided by. */
+#define MAX_DIVISOR 32
+
 /* Learns that a coarse picture of so many pixels took `ms`. */
 void resolution_learn_coarse(Resolution *resolution, double ms, double pixels);
 /* Learns that a sample of a whole picture took `ms`, behind a coarse one of the same view. */

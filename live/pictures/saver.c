@@ -120,7 +120,9 @@ static KrsStatus save_frame(Saver *saver, char message[300])
 static KrsStatus save(Saver *saver, char message[300])
 {
     const uint32_t frames = frames_of(&saver->order);
-    KrsStatus      status = canvas_new(&saver->options, &saver->canvas);
+    const bool     large  = krs_scene_too_large(version_scene(saver->order.view.version)) != NULL;
+    KrsStatus      status = canvas_new(
+             &saver->options, large ? KRS_EXECUTOR_LANES : KRS_EXECUTOR_KERNELS, &saver->canvas);
     if (status == KRS_OK)
         status = canvas_prepare(saver->canvas, &saver->order.view, tell_compiling, saver);
     if (status != KRS_OK)

@@ -53,7 +53,7 @@ export DISPLAY=":$screen"
 trap "kill $server 2>/dev/null; rm -rf '$work'" EXIT
 
 scene 1 >scene.krs
-"$krs" view scene.krs --size 96x64 --samples 2 >out.view 2>err.view &
+"$krs" view scene.krs --rays kernels --size 96x64 --samples 2 >out.view 2>err.view &
 viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name scene.krs | head -n 1)
 xdotool mousemove 48 32 key Tab
@@ -140,7 +140,7 @@ status=$?
 ended 0 "a key closes the window"
 
 printf '#!/bin/sh\necho "$*" >opened\n' >editor && chmod +x editor
-KRS_EDITOR="./editor -g" "$krs" view scene.krs --size 96x64 --samples 1 --set r=0.75 >out.view 2>err.view &
+KRS_EDITOR="./editor -g" "$krs" view scene.krs --rays kernels --size 96x64 --samples 1 --set r=0.75 >out.view 2>err.view &
 viewer=$!
 timeout 20 xdotool search --sync --onlyvisible --name scene.krs >/dev/null
 scene 0.75 >written.krs
@@ -227,7 +227,7 @@ other=$viewer
 openbox --config-file "$work/manager.xml" >manager.log 2>&1 &
 manager=$!
 printf 'show sphere(1);' >small.krs
-"$krs" view small.krs --size 96x64 --samples 2 >out.view 2>err.view &
+"$krs" view small.krs --rays kernels --size 96x64 --samples 2 >out.view 2>err.view &
 viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name small.krs | head -n 1)
 xdotool mousemove 48 32 key Tab
@@ -247,12 +247,12 @@ wait "$viewer"
 status=$?
 ended 0 "a key closes it"
 printf 'param h = 1 in [0.5, 4];\nshow box([1, h, 1]);' >tall.krs
-"$krs" view tall.krs --size 96x64 --samples 2 --set h=4 >out.view 2>err.view &
+"$krs" view tall.krs --rays lanes --size 96x64 --samples 2 --set h=4 >out.view 2>err.view &
 viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name tall.krs | head -n 1)
 xdotool mousemove 48 32 key Tab
-"$krs" render tall.krs --rays kernels --size 96x64 --samples 2 --set h=4 --specialize structure -q -o b.png && screen_is b.png
-result $? "the camera of a scene without one, and its floor, are for what is set"
+"$krs" render tall.krs --rays lanes --size 96x64 --samples 2 --set h=4 --specialize structure -q -o b.png && screen_is b.png
+result $? "by lanes: the camera of a scene without one, and its floor, are for what is set"
 xdotool key --window "$window" Escape
 wait "$viewer"
 status=$?

@@ -43,7 +43,7 @@ heard() { # words, times
     return 1
 }
 opens() { # options
-    "$krs" view scene.krs --size 96x64 --samples 2 "$@" >out.view 2>err.view &
+    "$krs" view scene.krs --rays kernels --size 96x64 --samples 2 "$@" >out.view 2>err.view &
     viewer=$!
     timeout 20 xdotool search --sync --onlyvisible --name scene.krs >/dev/null
     xdotool mousemove 48 32 key Tab

@@ -66,13 +66,15 @@ static unsigned show(Fixture *fixture, double aside)
     return painter_show(fixture->painter, &fixture->view);
 }
 
-static void set_up_with(Fixture *fixture, const char *text, KrsSpecialize specialize)
+static void set_up_with(Fixture *fixture, const char *text, KrsSpecialize specialize,
+                        KrsExecutor executor)
 {
     static double    values[1][4]; /* the defaults of both texts */
     const KrsOptions with      = {.specialize = specialize};
     *fixture                   = (Fixture){.path = "/tmp/krs-painter-XXXXXX"};
     const int            fd    = mkstemp(fixture->path);
-    const PainterOptions paint = {.renderer = {.device = tested_device()}, .budget = 40};
+    const PainterOptions paint = {
+        .renderer = {.device = tested_device()}, .budget = 40, .executor = executor};
     assert_true(fd >= 0);
     close(fd);
     values[0][0]         = 1;
@@ -92,7 +94,7 @@ static void set_up_with(Fixture *fixture, const char *text, KrsSpecialize specia
 
 static void set_up(Fixture *fixture, const char *text)
 {
-    set_up_with(fixture, text, KRS_SPECIALIZE_STRUCTURE);
+    set_up_with(fixture, text, KRS_SPECIALIZE_STRUCTURE, KRS_EXECUTOR_KERNELS);
 }
 
 static void tear_down(Fixture *fixture)
@@ -162,6 +164,16 @@ static uint64_t assert_shows(Fixture *fixture, unsigned version, unsigned view, 
     free(shown.pixels);
     free(meant);
     return shown.stats.shaders;
+}
+
+/* Waits until nothing is compiled, and what is shown is complete. */
+static void await_rest(Fixture *fixture)
+{
+    PainterState state = {.busy = true};
+    for (const double begun = now(); state.busy || state.compiling; usleep(2000)) {
+        state = painter_state(fixture->painter);
+        assert_true(now() - begun < TIMEOUT);
+    }
 }
 
 /* How many views are shown before shaders are ready is for the machine to say, but the first is. */
@@ -237,8 +249,8 @@ static void the_first_edit_can_be_prepared(void **state)
     (void)state;
     for (int prepared = 0; prepared < 2; prepared++) {
         Fixture fixture;
-        set_up_with(&fixture, "param r = 1 in [0.5, 2]; show sphere(1.1 * r);",
-                    KRS_SPECIALIZE_AUTO);
+        set_up_with(&fixture, "param r = 1 in [0.5, 2]; show sphere(1.1 * r);", KRS_SPECIALIZE_AUTO,
+                    KRS_EXECUTOR_KERNELS);
         free(take_whole(&fixture, 1, 1).pixels);
         if (prepared)
             prepare_edits(&fixture);
@@ -313,13 +325,152 @@ static void slopes_that_are_not_used_are_seen(void **state)
     tear_down(&fixture);
 }
 
+/* ---- lanes ---- */
+
+/* Bytes of a picture that may differ from the same by shaders, and how far others may. */
+enum { MAX_OTHER_BYTES = BYTES / 100, MAX_DIFFERENCE = 3 };
+
+static void assert_similar(const uint8_t *a, const uint8_t *b)
+{
+    size_t other = 0;
+    for (size_t i = 0; i < BYTES; i++)
+        other += abs(a[i] - b[i]) > MAX_DIFFERENCE;
+    assert_in_range(other, 0, MAX_OTHER_BYTES);
+}
+
+/* The first picture of a version is by lanes, and looks as if it were by shaders. */
+static void assert_lanes_show(Fixture *fixture, unsigned version, const char *text)
+{
+    Shot first = {0};
+    for (const double begun = now(); first.version != version && now() - begun < TIMEOUT;) {
+        free(first.pixels);
+        first = (Shot){0};
+        if (!painter_take(fixture->painter, &first))
+            usleep(500);
+    }
+    assert_int_equal(first.version, version);
+    assert_int_equal(first.stats.executor, KRS_EXECUTOR_LANES);
+    const Shot whole = first.whole ? first : take_whole(fixture, version, first.view);
+    uint8_t   *meant = render(fixture, text, 1);
+    assert_similar(whole.pixels, meant);
+    free(meant);
+    if (!first.whole)
+        free(first.pixels);
+    free(whole.pixels);
+}
+
+/* Nobody waits for shaders, neither of what is opened nor of an edit.  When they are there other numbers are drawn by them. */
+static void lanes_draw_until_there_are_shaders(void **state)
+{
+    (void)state;
+    Fixture fixture;
+    set_up_with(&fixture, many_solids, KRS_SPECIALIZE_STRUCTURE, KRS_EXECUTOR_DEFAULT);
+    assert_lanes_show(&fixture, 1, many_solids);
+    edit(&fixture, two_boxes);
+    show(&fixture, 0);
+    assert_lanes_show(&fixture, 2, two_boxes);
+    await_rest(&fixture);
+    fixture.view.values[0][0] = 1.5;
+    const unsigned view       = show(&fixture, 0);
+    const Shot     shot       = take_whole(&fixture, 2, view);
+    uint8_t       *meant      = render(&fixture, two_boxes, 1.5);
+    assert_int_equal(shot.stats.executor, KRS_EXECUTOR_KERNELS);
+    assert_memory_equal(shot.pixels, meant, BYTES);
+    free(shot.pixels);
+    free(meant);
+    tear_down(&fixture);
+}
+
+/* While shaders take over the picture has never fewer samples, nor fewer pixels, than it had. */
+static void nobody_sees_who_draws(void **state)
+{
+    enum { MANY = 60000, LATER = 5 };
+    (void)state;
+    Fixture  fixture;
+    uint32_t samples = 0, others = 0;
+    bool     whole = false;
+    set_up_with(&fixture, one_ball, KRS_SPECIALIZE_STRUCTURE, KRS_EXECUTOR_DEFAULT);
+    fixture.view.samples = MANY;
+    edit(&fixture, many_solids);
+    const unsigned view = show(&fixture, 0);
+    for (const double begun = now(); others < LATER; usleep(1000)) {
+        Shot shot;
+        assert_true(now() - begun < TIMEOUT);
+        if (!painter_take(fixture.painter, &shot))
+            continue;
+        free(shot.pixels);
+        if (shot.view != view)
+            continue;
+        assert_true(shot.whole || !whole);
+        assert_true(shot.samples >= samples);
+        whole   = shot.whole;
+        samples = shot.whole ? shot.samples : 0;
+        others += !painter_state(fixture.painter).compiling && shot.whole;
+    }
+    tear_down(&fixture);
+}
+
+/* Solids of which others are taken, no two of the same kinds: no shader is made of so many. */
+static char *many_parts(void)
+{
+    enum { PARTS = 700, SOLIDS = 6, BYTES_OF_SOLID = 60 };
+    static const char *const kinds[] = {"sphere(0.3)", "box([0.3, 0.4, 0.5])", "torus(0.3, 0.1)",
+                                        "cylinder(0.2, 0.6)"};
+    char                    *text    = malloc(100 + PARTS * SOLIDS * BYTES_OF_SOLID);
+    size_t                   length  = 0;
+    assert_non_null(text);
+    length += (size_t)sprintf(text, "param r = 1 in [0.5, 2]; show union([");
+    for (int i = 0; i < PARTS; i++)
+        for (int k = 0; k < SOLIDS; k++)
+            length += (size_t)sprintf(text + length, "%s%s.move([%d.%d, %d, 0.%d])",
+                                      k > 0   ? " - "
+                                      : i > 0 ? ", "
+                                              : "",
+                                      kinds[i >> 2 * k & 3], i % 25 - 12, k, i / 25 - 14, k);
+    sprintf(text + length, "]).scale(0.1 * r);");
+    return text;
+}
+
+static void what_is_too_large_for_shaders_is_drawn(void **state)
+{
+    (void)state;
+    Fixture fixture;
+    char   *text = many_parts();
+    set_up_with(&fixture, text, KRS_SPECIALIZE_STRUCTURE, KRS_EXECUTOR_DEFAULT);
+    assert_non_null(krs_scene_too_large(version_scene(fixture.view.version)));
+    const Shot shot = take_whole(&fixture, 1, 1);
+    assert_int_equal(shot.stats.executor, KRS_EXECUTOR_LANES);
+    free(shot.pixels);
+    await_rest(&fixture);
+    assert_false(painter_state(fixture.painter).compiling);
+    assert_string_equal(painter_state(fixture.painter).unbuilt, "");
+    free(text);
+    tear_down(&fixture);
+}
+
+/* What lanes refuse waits for shaders, and is seen then. */
+static void what_lanes_refuse_waits_for_shaders(void **state)
+{
+    static const char glass[] =
+        "param r = 1 in [0.5, 2]; material glass { transmission: 1, ior: 1.5 } show "
+        "sphere(r).paint(glass);";
+    (void)state;
+    Fixture fixture;
+    set_up_with(&fixture, one_ball, KRS_SPECIALIZE_STRUCTURE, KRS_EXECUTOR_DEFAULT);
+    assert_lanes_show(&fixture, 1, one_ball);
+    edit(&fixture, glass);
+    assert_shows(&fixture, 2, show(&fixture, 0), glass, 1);
+    assert_string_equal(painter_state(fixture.painter).unbuilt, "");
+    tear_down(&fixture);
+}
+
 /* A device that does not answer is lost: that is said, and nobody waits for it. */
 static void lost_devices_are_said(void **state)
 {
     (void)state;
     Fixture              fixture;
     const PainterOptions options = {.renderer = {.device = tested_device(), .timeout = 1e-9},
-                                    .budget   = 40};
+                                    .budget   = 40}; /* lanes fail as well */
     set_up(&fixture, one_ball);
     painter_free(fixture.painter);
     fixture.painter  = painter_new(&options);
@@ -351,6 +502,10 @@ int main(void)
         cmocka_unit_test(the_first_edit_can_be_prepared),
         cmocka_unit_test(edits_overtake_each_other),
         cmocka_unit_test(slopes_that_are_not_used_are_seen),
+        cmocka_unit_test(lanes_draw_until_there_are_shaders),
+        cmocka_unit_test(nobody_sees_who_draws),
+        cmocka_unit_test(what_is_too_large_for_shaders_is_drawn),
+        cmocka_unit_test(what_lanes_refuse_waits_for_shaders),
         cmocka_unit_test(lost_devices_are_said),
         cmocka_unit_test(the_end_does_not_wait_for_shaders_that_nobody_sees),
     };
