@@ -101,9 +101,12 @@ bench-large: deps
 
 # How fast the viewer follows edits, sliders and the camera (bench/README.md).
 NUMBER_EDIT := $(B)/bench/view/number_edit.o
-$(B)/bench/view/view: $(B)/bench/view/view.o $(NUMBER_EDIT) $(FIXTURE) $(B)/live.a $(INTERNAL)
+TRIAL       := $(B)/bench/view/trial.o
+$(B)/bench/view/view: $(B)/bench/view/view.o $(TRIAL) $(NUMBER_EDIT) $(FIXTURE) $(B)/live.a $(INTERNAL)
 	@$(CC_LINK) -o $@ $^ $(LIBS)
-bench-view: $(B)/bench/view/view $(B)/krs
+$(B)/bench/view/first: $(B)/bench/view/first.o $(TRIAL) $(FIXTURE) $(B)/live.a $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
+bench-view: $(B)/bench/view/view $(B)/bench/view/first $(B)/krs
 	@REVISION=$(REVISION) bench/view/view.sh $(B) $(SCENES)
 
 # From a saved number to a written picture.
@@ -132,7 +135,7 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(FIXTURE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o \
-               $(B)/bench/view/view.o $(NUMBER_EDIT) $(B)/bench/edits/edits.o $(ENHANCED)
+               $(B)/bench/view/view.o $(B)/bench/view/first.o $(TRIAL) $(NUMBER_EDIT) $(B)/bench/edits/edits.o $(ENHANCED)
 .PHONY: bench bench-quick minify iterations inverted bench-enhanced bench-normals bench-textures bench-paths bench-algebraic check-device \
         bench-registers bench-parts bench-large bench-radiosity bench-starts \
         bench-lanes bench-mesh bench-view bench-edits

@@ -2,7 +2,7 @@
  * view.c: how fast `krs view` follows an edit, a slider and the camera, at 640x360.
  *
  * It drives what the window shows pictures of (live/pictures/painter.h), without the window.  IDLE in the
- * environment is what view.sh has measured of the window itself.
+ * environment is what view.sh has measured of the window itself, FIRST the file of what it has measured by first.c.
  */
 #include <math.h>
 #include <stdio.h>
@@ -14,29 +14,11 @@
 #include "bench/sheet.h"
 #include "bench/fixture.h"
 #include "bench/view/number_edit.h"
+#include "bench/view/trial.h"
 #include "krs/camera.h"
-#include "live/pictures/painter.h"
 
-enum { WIDTH = 640, HEIGHT = 360, EDITS = 5 };
+enum { EDITS = 5 };
 static const double SECONDS = 2; /* that the camera, and a slider, move */
-static const double BUDGET = 40, TIMEOUT = 120;
-
-typedef struct Trial {
-    const char *path;
-    Document   *document;
-    Painter    *painter;
-    View        view;
-    unsigned    number; /* of the view that was shown last */
-} Trial;
-
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-static void show(Trial *trial) { trial->number = painter_show(trial->painter, &trial->view); }
 
 /* Milliseconds of all processors that this process has used: other work on the machine does not count. */
 static double used_ms(void)
@@ -44,39 +26,6 @@ static double used_ms(void)
     struct timespec time;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
     return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
-}
-
-/* The next picture of the last view: its width. */
-static uint32_t await(Trial *trial, bool whole)
-{
-    for (const double begun = now(); now() - begun < TIMEOUT; usleep(200)) {
-        Shot               shot;
-        const PainterState state = painter_state(trial->painter);
-        if (state.status != KRS_OK)
-            give_up(trial->path, state.message);
-        if (!painter_take(trial->painter, &shot))
-            continue;
-        free(shot.pixels);
-        if (shot.view == trial->number && (shot.whole || !whole) &&
-            shot.version == version_number(trial->view.version))
-            return shot.width;
-    }
-    give_up(trial->path, "there is no picture");
-}
-
-static void take_version(Trial *trial)
-{
-    Version        *version = document_version(trial->document);
-    const KrsScene *scene   = version_scene(version);
-    const size_t    count   = krs_parameter_count(scene);
-    view_free(&(View){.version = trial->view.version, .values = trial->view.values});
-    trial->view.version = version;
-    trial->view.values  = calloc(count + 1, sizeof *trial->view.values);
-    for (size_t i = 0; i < count; i++) {
-        KrsParameter parameter;
-        krs_parameter(scene, i, &parameter);
-        memcpy(trial->view.values[i], parameter.value, sizeof parameter.value);
-    }
 }
 
 /* ---- an edit of a number ---- */
@@ -101,17 +50,17 @@ static double median(double ms[EDITS])
 
 static void edit_once(Trial *trial, NumberEdit *number, Edit *edit)
 {
-    const double begun = now(), before = used_ms();
+    const double begun = trial_now(), before = used_ms();
     number_edit_write(number);
     if (document_read(trial->document) != KRS_OK)
         give_up(trial->path, "the edited text does not compile");
     edit->text = used_ms() - before;
-    take_version(trial);
-    show(trial);
-    await(trial, false);
+    trial_take_version(trial);
+    trial_show(trial);
+    trial_await(trial, false);
     edit->used  = used_ms() - before;
-    edit->clock = 1e3 * (now() - begun);
-    await(trial, true);
+    edit->clock = 1e3 * (trial_now() - begun);
+    trial_await(trial, true);
 }
 
 /* The medians of some edits; below 0: there is no number to edit. */
@@ -120,9 +69,9 @@ static Edit time_edits(Trial *trial)
     double     clock[EDITS], used[EDITS], texts[EDITS];
     NumberEdit number = number_edit_find(trial->document, trial->path, 0);
     const bool found  = number.at > 0;
-    take_version(trial);
-    show(trial);
-    await(trial, true);
+    trial_take_version(trial);
+    trial_show(trial);
+    trial_await(trial, true);
     for (int i = 0; found && i < EDITS; i++) {
         Edit edit;
         edit_once(trial, &number, &edit);
@@ -141,17 +90,17 @@ static double count_pictures(Trial *trial, void (*step)(Trial *trial, int i), ui
     int i = 0;
     for (; i < 8; i++) { /* until it knows what a picture costs */
         step(trial, i);
-        show(trial);
-        await(trial, false);
+        trial_show(trial);
+        trial_await(trial, false);
     }
-    const double begun = now();
+    const double begun = trial_now();
     int          count = 0;
-    for (; now() - begun < SECONDS; count++) {
+    for (; trial_now() - begun < SECONDS; count++) {
         step(trial, i + count);
-        show(trial);
-        *width = await(trial, false);
+        trial_show(trial);
+        *width = trial_await(trial, false);
     }
-    return count / (now() - begun);
+    return count / (trial_now() - begun);
 }
 
 static void orbit(Trial *trial, int i)
@@ -181,35 +130,19 @@ static void slide(Trial *trial, int i)
 
 /* ---- a scene ---- */
 
-static void set_camera(Trial *trial)
-{
-    KrsState *state;
-    if (krs_state_new(version_scene(trial->view.version), &state) != KRS_OK ||
-        krs_state_camera(state, 0, &trial->view.camera) != KRS_OK)
-        give_up(trial->path, "it has no camera");
-    krs_state_free(state);
-}
-
 static void measure(const Sheet *sheet, const char *path)
 {
-    const KrsOptions     with    = {.specialize = KRS_SPECIALIZE_STRUCTURE, .studio = true};
-    const PainterOptions options = {
-        .renderer = {.device = getenv("KRS_DEVICE"), .cache = getenv("KRS_VIEW_CACHE")},
-        .budget   = BUDGET};
-    const char *slash = strrchr(path, '/');
-    Trial       trial = {
-              .path = path, .document = document_new(path, &with), .painter = painter_new(&options)};
-    uint32_t turned = 0, slid = 0;
-    if (!trial.document || !trial.painter || document_read(trial.document) != KRS_OK)
-        give_up(path, "it does not compile");
-    trial.view = (View){
-        .width = WIDTH, .height = HEIGHT, .samples = 1, .integrator = KRS_INTEGRATOR_PREVIEW};
-    const double begun = now();
-    take_version(&trial);
-    set_camera(&trial);
-    show(&trial);
-    await(&trial, false);
-    const double first  = now() - begun;
+    const char  *slash  = strrchr(path, '/');
+    const double begun  = trial_now();
+    Trial        trial  = trial_open(path, KRS_EXECUTOR_DEFAULT);
+    uint32_t     turned = 0, slid = 0;
+    trial_take_version(&trial);
+    trial_take_camera(&trial);
+    trial_show(&trial);
+    trial_await(&trial, false);
+    const double first = trial_now() - begun;
+    trial_await_rest(&trial);
+    trial_await_shaders(&trial);
     const Edit   edit   = time_edits(&trial);
     const double camera = count_pictures(&trial, orbit, &turned);
     const double slider = count_pictures(&trial, slide, &slid);
@@ -220,9 +153,27 @@ static void measure(const Sheet *sheet, const char *path)
         snprintf(edited, sizeof edited, "%.0f | %.0f | %.0f", edit.clock, edit.used, edit.text);
     sheet_print(sheet, "| %s | %.1f | %s | %.1f | %u | %.1f | %u |\n", slash ? slash + 1 : path,
                 first, edited, camera, turned, slider, slid);
-    painter_free(trial.painter);
-    view_free(&trial.view);
-    document_free(trial.document);
+    trial_close(&trial);
+}
+
+/* How soon there are pictures, as first.c has printed it for each scene. */
+static void print_first(const Sheet *sheet)
+{
+    char        line[400];
+    const char *path = getenv("FIRST");
+    FILE       *file = path ? fopen(path, "r") : NULL;
+    if (!file)
+        return;
+    sheet_print(
+        sheet, "\nSeconds until the first picture, the one with all pixels, and shaders: from the "
+               "start, with empty caches, then from an edit of the structure. First by shaders "
+               "alone, then with lanes until there are shaders.\n\n"
+               "| scene | first | whole | shaders | edit: first | whole | shaders | lanes: first | "
+               "whole | shaders | edit: first | whole | shaders |\n"
+               "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    while (fgets(line, sizeof line, file))
+        sheet_print(sheet, "%s", line);
+    fclose(file);
 }
 
 int main(int argc, char **argv)
@@ -233,18 +184,20 @@ int main(int argc, char **argv)
     krs_renderer_free(renderer);
     sheet_print(
         &sheet,
-        "\nAt %dx%d, by the preview, with %.0f ms for a picture of what moves. *first*: seconds "
-        "until the first picture, with shaders; *edit*: milliseconds from a saved number to its "
+        "\nAt %dx%d, by the preview, with %d ms for a picture of what moves. *first*: seconds "
+        "until the first picture, by lanes where they can draw it; *edit*: milliseconds from a "
+        "saved number to its "
         "first picture, the median of %d; *used*: milliseconds of "
         "all processors for that, and of these *text*: what reading and compiling it takes (other "
         "work on the machine makes *edit* longer, but not these); then pictures a second "
         "while the camera turns and while a slider is pulled (or time runs), and how wide they "
         "are.\n\nThe window, when nothing happens, uses %s of a processor.\n\n",
-        WIDTH, HEIGHT, BUDGET, EDITS, idle && *idle ? idle : "an unknown part");
+        TRIAL_WIDTH, TRIAL_HEIGHT, TRIAL_BUDGET, EDITS, idle && *idle ? idle : "an unknown part");
     sheet_print(&sheet, "| scene | first | edit | used | text | camera | wide | slider | wide |\n"
                         "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (int i = 1; i < argc; i++)
         measure(&sheet, argv[i]);
+    print_first(&sheet);
     sheet_close(&sheet);
     return 0;
 }

@@ -1,12 +1,13 @@
 #!/bin/sh
 # view.sh BUILD [SCENE...]: measures the viewer on copies of the examples, or of the scenes of these
-# names; first, in a window of its own on Xvfb, what it costs when nothing happens.
+# names; first, in a window of its own on Xvfb, what it costs when nothing happens, then how soon there are pictures, with
+# empty caches.
 build=$1
 shift
 cd "$(dirname "$0")/../.." || exit 1
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 cp -r examples/. "$work"
-export KRS_VIEW_CACHE="$work/cache"
+export KRS_VIEW_CACHE="$work/cache" XDG_CACHE_HOME="$work/cache" MESA_SHADER_CACHE_DIR="$work/cache"
 
 if command -v Xvfb >/dev/null; then
     mkfifo "$work/number"
@@ -28,5 +29,18 @@ fi
 for name in "${@:-}"; do
     [ -n "$name" ] && scenes="${scenes:-} $work/$name"
 done
+# How soon, by shaders alone and with lanes.
+for scene in ${scenes:-"$work"/*.krs}; do
+    row="| ${scene##*/} |"
+    for executor in kernels auto; do
+        rm -rf "$work/cache"
+        cp "$scene" "$scene.kept"
+        row="$row$("$build/bench/view/first" "$scene" "$executor")" || exit 1
+        mv "$scene.kept" "$scene"
+    done
+    echo "$row"
+done | tee "$work/first"
+rm -rf "$work/cache"
+export FIRST="$work/first"
 # shellcheck disable=SC2086 # a list of names without blanks
 "$build/bench/view/view" ${scenes:-"$work"/*.krs}
