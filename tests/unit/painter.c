@@ -190,8 +190,9 @@ static void what_there_was_is_turned_meanwhile(void **state)
         fixture.view.camera.eye[0] = i;
         turned[i]                  = render(&fixture, one_ball, 1);
     }
+    bool ready = false;
     edit(&fixture, many_solids);
-    for (bool ready = false; !ready && shown < VIEWS;) {
+    while (!ready && shown < VIEWS) {
         const unsigned view = show(&fixture, shown);
         const Shot     shot = take_one_of(&fixture, 1, 2, view);
         ready               = shot.version == 2;
@@ -202,7 +203,8 @@ static void what_there_was_is_turned_meanwhile(void **state)
     assert_true(shown > 0);
     for (int i = 0; i < VIEWS; i++)
         free(turned[i]);
-    assert_shows(&fixture, 2, 0, many_solids, 1);
+    /* Without another view, unless there is a picture already. */
+    assert_shows(&fixture, 2, ready ? show(&fixture, VIEWS) : 0, many_solids, 1);
     assert_false(painter_state(fixture.painter).compiling);
     tear_down(&fixture);
 }
