@@ -33,7 +33,7 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources by folder, in the order of the pipeline: reading down this list is reading the program.
-ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower lower/research family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl target scene passes refute field
+ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower lower/research family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl print/essl target scene passes refute field
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Clients of the compiler: it knows nothing of them.
@@ -60,6 +60,7 @@ VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 # Text files that the program carries: the standard library, what scenes and shaders share, shaders.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
+ESSL     := $(sort $(wildcard compiler/print/essl/*.glsl))
 SHADERS  := $(sort $(wildcard $(addprefix runtime/shaders/,*.comp *.glsl research/*.comp research/*.glsl) runtime/shared/*.h)) \
             include/krs/surface.def include/krs/light_types.def
 # Shaders without a scene are compiled here and now, not on every machine again; what is optimized
@@ -90,7 +91,7 @@ HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(CLIENTS:%.c=$(B)/%.o) $(BRIDGE:%.cpp=$(B)/%.o) $(B)/library_files.o \
-            $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o \
+            $(B)/helper_files.o $(B)/essl_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o \
             $(B)/albedo_tables.o $(B)/fingerprints.o
 
 # Programs of this project are linked with the library's parts; others with the library, which shows its API alone.
@@ -174,6 +175,8 @@ $(B)/library_files.c: $(B)/embed $(LIBRARY)
 	@$(B)/embed library_files compiler/library/ -- $(LIBRARY) >$@
 $(B)/helper_files.c: $(B)/embed $(HELPERS)
 	@$(B)/embed helper_files compiler/print/glsl/ -- $(HELPERS) >$@
+$(B)/essl_files.c: $(B)/embed $(ESSL)
+	@$(B)/embed essl_files compiler/print/essl/ -- $(ESSL) >$@
 $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ include/ -- $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)

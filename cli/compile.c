@@ -20,10 +20,10 @@ static KrsStatus write_output_file(const Options *options, const char *base, con
 
 /* ---- tables ---- */
 
-/* A texel buffer of the GLSL, and the file that has its contents. */
+/* A texel buffer of the GLSL, or a texture of the ESSL, and the file that has its contents. */
 typedef struct TableFile {
     const char *buffer, *ending, *format;
-    uint32_t    binding; /* in set 0 */
+    uint32_t    binding; /* of the GLSL, in set 0 */
 } TableFile;
 
 static const TableFile rows_file  = {"krs_rows", ".rows.bin", "RGBA32F", 1};
@@ -65,26 +65,30 @@ static KrsStatus write_tables(const Options *options, const KrsScene *scene, con
     return status;
 }
 
-static void add_table_json(Text *json, const char *name, const TableFile *file, size_t texels)
+static void add_table_json(Text *json, const char *name, const TableFile *file, size_t texels,
+                           KrsTarget target)
 {
     Text path = {.arena = json->arena};
     text_format(&path, "%s%s", name, file->ending);
-    text_format(json, "{\"name\": \"%s\", \"set\": 0, \"binding\": %u, \"format\": \"%s\", ",
-                file->buffer, file->binding, file->format);
-    text_format(json, "\"texels\": %zu, \"file\": ", texels);
+    text_format(json, "{\"name\": \"%s\", ", file->buffer);
+    if (target == KRS_TARGET_ESSL)
+        text_format(json, "\"width\": %d, ", KRS_TEXTURE_WIDTH);
+    else
+        text_format(json, "\"set\": 0, \"binding\": %u, ", file->binding);
+    text_format(json, "\"format\": \"%s\", \"texels\": %zu, \"file\": ", file->format, texels);
     text_json(json, path.bytes);
     text_add(json, "}");
 }
 
-static void add_tables_json(Text *json, const KrsScene *scene, const char *name)
+static void add_tables_json(Text *json, const KrsScene *scene, const char *name, KrsTarget target)
 {
     size_t rows = krs_table_rows(scene), cells = krs_table_cells(scene);
     text_format(json, ", \"table_rows\": %zu, \"table_cells\": %zu, \"texel_buffers\": [", rows,
                 cells);
     if (cells > 0) {
-        add_table_json(json, name, &rows_file, rows);
+        add_table_json(json, name, &rows_file, rows, target);
         text_add(json, ", ");
-        add_table_json(json, name, &cells_file, cells);
+        add_table_json(json, name, &cells_file, cells, target);
     }
     text_add(json, "]");
 }
@@ -118,7 +122,7 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
     info_add_json(&json, scene);
     text_format(&json, ", \"parameter_slots\": %zu, \"value_slots\": %zu",
                 krs_parameter_slots(scene), krs_value_slots(scene));
-    add_tables_json(&json, scene, name);
+    add_tables_json(&json, scene, name, (KrsTarget)options->language);
     add_textures_json(&json, scene);
     text_add(&json, ", \"entries\": [");
     for (size_t i = 0; i < modules->count; i++) {
@@ -130,19 +134,21 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
 }
 
 /* The entry points, and what they call. */
-static KrsStatus write_glsl(const Options *options, const KrsScene *scene, const char *base)
+static KrsStatus write_text(const Options *options, const KrsScene *scene, const char *base)
 {
     const KrsVariant     variant = compiled_variant(options);
     const KrsTextOptions how     = {.state_values  = variant.values,
                                     .no_early_outs = !variant.many_threads};
-    char                *glsl;
-    KrsStatus            status = krs_text(scene, KRS_TARGET_GLSL, &how, &glsl);
+    Text                 ending  = {.arena = options->arena};
+    char                *text;
+    text_format(&ending, ".%s", language_choices[options->language].name);
+    KrsStatus status = krs_text(scene, (KrsTarget)options->language, &how, &text);
     if (status != KRS_OK) {
-        say("out of memory while printing `%s.glsl`", base);
+        say("out of memory while printing `%s%s`", base, ending.bytes);
         return status;
     }
-    status = write_output_file(options, base, ".glsl", glsl, strlen(glsl));
-    free(glsl);
+    status = write_output_file(options, base, ending.bytes, text, strlen(text));
+    free(text);
     return status;
 }
 
@@ -157,7 +163,7 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
     if (status != KRS_OK)
         say("%s", error.message);
     else
-        status = write_glsl(options, scene, base.bytes);
+        status = write_text(options, scene, base.bytes);
     for (size_t i = 0; i < modules->count && status == KRS_OK; i++) {
         const SpirvModule *module = &modules->items[i];
         Text               ending = {.arena = options->arena};
@@ -175,11 +181,12 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
 KrsStatus command_compile(Options *options)
 {
     KrsScene *scene;
-    Modules   modules;
-    KrsStatus status = scene_open(options, options->files.items[0], &scene);
+    Modules   modules = {0};
+    KrsStatus status  = scene_open(options, options->files.items[0], &scene);
     if (status != KRS_OK)
         return status;
-    status = modules_compile(options, scene, &modules);
+    status = options->language == KRS_TARGET_GLSL ? modules_compile(options, scene, &modules)
+                                                  : scene_check_shaders(options, scene);
     if (status == KRS_OK)
         status = write_all(options, scene, &modules);
     modules_free(&modules);

@@ -24,7 +24,7 @@ PROPERTY    := ops noise textures graph simplify facts derive series zeros local
                parity reach reach_trees iteration_boxes instances instances_apart instances_deformed instance_sums blends_of_many fillets moving_instances moving_scenes overlaps lanes lane_rows lane_instances lane_balls lane_cells found_surfaces csg_nodes iterations
 ORACLES     := research/moebius_images research/enhanced self distant patterns bumps primitives krs_expand folds trees maps moebius operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
-               surfaces rays algebraic fractals metasurfaces device query query_limits picture executors \
+               surfaces rays algebraic fractals metasurfaces device essl query query_limits picture executors \
                albedo furnace thin_film anisotropy tangents subsurface paths direct_glass emissive sky sky_means plate_light detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling closed_rooms \
                occlusion curves sweeps corners hulls lofts boundaries nothing places underestimates bounds stencils light sides steep scales agree far open_surfaces ray_lists specialize outlines glyphs drawings \
                imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_open_surfaces flat_meshes round_meshes slices grids measures meshes mesh_forms mesh_examples
@@ -114,6 +114,8 @@ IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_loo
 $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o $(B)/tests/oracle/pov_trees.o \
         $(B)/import.a $(LINKED)
 	@$(LINK)
+$(B)/tests/oracle/essl: %: %.o $(B)/tests/oracle/oracle.a $(LINKED)
+	@$(LINK) -lEGL -lGLESv2
 $(B)/tests/unit/watcher: $(B)/live.a
 $(addprefix $(B)/tests/unit/, live saved_texts camera_text resolution painter saver profile profiler): $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/live.a $(LINKED)
 	@$(LINK)

@@ -60,6 +60,10 @@ const Choice tone_map_choices[] = {
 #define KRS_TONE_MAP(id, name, about) {#name, about},
 #include "krs/choices.def"
     LAST};
+const Choice language_choices[] = {
+#define KRS_TARGET(id, name, about) {#name, about},
+#include "krs/targets.def"
+    LAST};
 const Choice stereo_choices[] = {
     {"side-by-side", "the left eye's to the left"}, {"over-under", "the left eye's above"}, LAST};
 const Choice specialize_choices[] = {

@@ -65,15 +65,22 @@ static void read_helper(Emitter *e, const char *text, size_t length)
     array_push(e->scratch, &e->helpers, helper);
 }
 
+static void read_file(Emitter *e, const EmbeddedFile *file)
+{
+    for (const char *text = file->text; *text;) {
+        const char *blank  = strstr(text, "\n\n");
+        size_t      length = blank ? (size_t)(blank - text) + 1 : strlen(text);
+        read_helper(e, text, length);
+        text += length + (blank != NULL);
+    }
+}
+
+/* The first of a name and type is found, so a printer's own helper stands for that of its base. */
 void helpers_read(Emitter *e)
 {
-    for (const EmbeddedFile *file = e->printer->helpers; file->name; file++)
-        for (const char *text = file->text; *text;) {
-            const char *blank  = strstr(text, "\n\n");
-            size_t      length = blank ? (size_t)(blank - text) + 1 : strlen(text);
-            read_helper(e, text, length);
-            text += length + (blank != NULL);
-        }
+    for (const Printer *printer = e->printer; printer; printer = printer->base)
+        for (const EmbeddedFile *file = printer->helpers; file && file->name; file++)
+            read_file(e, file);
 }
 
 /* The one whose first operand has this type, if any; NULL: any type. */
@@ -166,8 +173,9 @@ void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands)
 bool module_print_helpers(const Printer *printer, Op op, GraphType type, uint32_t operands,
                           Text *out)
 {
-    const char *call = strstr(printer->operation(op, type), "krs_");
-    Emitter     e    = {.printer = printer, .scratch = out->arena, .helper_text = *out};
+    const Printer whole = printer_with_base(printer, out->arena);
+    const char   *call  = strstr(whole.operation(op, type), "krs_");
+    Emitter       e     = {.printer = &whole, .scratch = out->arena, .helper_text = *out};
     helpers_read(&e);
     bool found = !call || print_called(&e, call, type, operands);
     *out       = e.helper_text;

@@ -356,10 +356,11 @@ static void emit_entry_points(Emitter *e)
 void module_print(const Module *module, const KrsVariant *variant, const KrsFunction *wanted,
                   size_t count, const Printer *printer, Text *out)
 {
-    Emitter e       = emitter_new(module, out->arena);
-    Text    prepare = {.arena = out->arena}, functions = prepare;
+    const Printer whole   = printer_with_base(printer, out->arena);
+    Emitter       e       = emitter_new(module, out->arena);
+    Text          prepare = {.arena = out->arena}, functions = prepare;
     e.variant           = variant;
-    e.printer           = printer;
+    e.printer           = &whole;
     e.helper_text.arena = out->arena;
     for (size_t i = 0; i < count; i++)
         e.wanted[wanted[i]] = true;

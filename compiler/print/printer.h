@@ -2,7 +2,7 @@
  * printer.h: what of a text depends on its language.
  *
  * A shading language is a Printer: its types, operations and templates, and files with the functions
- * that operations call.
+ * that operations call.  One that is nearly another has that for a base.
  */
 #ifndef KRS_PRINTER_H
 #define KRS_PRINTER_H
@@ -28,8 +28,11 @@ typedef enum TextTemplate {
 } TextTemplate;
 
 typedef struct Printer {
-    const char        *name;
-    const char *const *types; /* by GraphType */
+    const char *name;
+    /* Another language, whose words stand wherever this one has none (NULL); its helpers are behind
+       those of this one. */
+    const struct Printer *base;
+    const char *const    *types; /* by GraphType */
     /* An expression of operands $a to $d, by the type of its result; $A is $a without parentheses
        around it.  What is before a semicolon is a statement, which sets $t. */
     const char *(*operation)(Op op, GraphType type);
@@ -45,6 +48,9 @@ typedef struct Printer {
 #include "krs/targets.def"
 /* A printer for each KrsTarget. */
 extern const Printer *const printers[];
+
+/* A printer with its base's words; they are in memory of the arena. */
+Printer printer_with_base(const Printer *printer, Arena *arena);
 
 /* Adds the functions that the text of one operation calls, where its first operand has this type;
    false: it cannot have it. */

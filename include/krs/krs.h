@@ -321,6 +321,9 @@ typedef enum KrsTarget {
     KRS_TARGET_COUNT
 } KrsTarget;
 
+/* Texels of a row of the textures that ESSL reads: texel i is in column i % 4096 of row i / 4096. */
+enum { KRS_TEXTURE_WIDTH = 4096 };
+
 /* Zero asks for what `krs compile` writes. */
 typedef struct KrsTextOptions {
     bool

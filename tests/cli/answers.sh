@@ -141,6 +141,10 @@ run compile --frame-values on --early-outs off wave.krs -o compiled
     grep -q 'vec4 krs_parameter\[4\]' compiled/wave.glsl &&
     ! grep -q 'krs_distance_lod' compiled/wave.glsl
 result $? "values of the frame are read from further slots where that is asked for"
+run compile --language essl wave.krs -o for-web
+[ "$status" -eq 0 ] && [ "$(echo for-web/*)" = "for-web/wave.essl for-web/wave.json" ] &&
+    grep -q '^layout(std140) uniform KrsParameters' for-web/wave.essl && ! grep -q 'set =\|precise\|\[\[' for-web/wave.essl
+result $? "compile --language essl writes the text of WebGL2, and no SPIR-V"
 run query --time 2 wave.krs
 said 2 "at time 2 the slope of the expression at wave.krs:2:11 has no bound" "a frame without one"
 run query --set k=1e38 wave.krs
