@@ -53,43 +53,53 @@ static bool has(const RayBlock *block, float first, float last)
     return count > 0;
 }
 
-/* 1 where a ray marches, or is beside those that do. */
-static inline float is_there(uint32_t state)
-{
-    return (state == RAY_MARCHES) | (state == RAY_IS_BESIDE) ? 1.0f : 0.0f;
-}
-
 static void sum(const RayBlock *block, float sums[RAY_SUMS][RAYS_OF_BLOCK])
 {
     for (int k = 0; k < 3; k++)
         EACH_RAY
         {
-            const float there = is_there(block->state[i]);
-            sums[k][i] += there > 0 ? block->origin[k][i] : 0;
-            sums[3 + k][i] += there > 0 ? block->direction[k][i] : 0;
+            const bool there = (block->state[i] == RAY_MARCHES) |
+                               (block->state[i] == RAY_IS_BESIDE);
+            const float origin = block->origin[k][i], direction = block->direction[k][i],
+                        origins = sums[k][i], directions = sums[3 + k][i];
+            sums[k][i]     = there ? origins + origin : origins;
+            sums[3 + k][i] = there ? directions + direction : directions;
         }
-    EACH_RAY sums[6][i] += is_there(block->state[i]);
+    EACH_RAY
+    {
+        const bool  there = (block->state[i] == RAY_MARCHES) | (block->state[i] == RAY_IS_BESIDE);
+        const float count = sums[6][i];
+        sums[6][i]        = there ? count + 1 : count;
+    }
+}
+
+/* The greatest numbers of rows, of rays that are there. */
+static inline void take_greatest(const RayBlock *block, const float *row, float *most)
+{
+    EACH_RAY
+    {
+        const bool  there  = (block->state[i] == RAY_MARCHES) | (block->state[i] == RAY_IS_BESIDE);
+        const float before = most[i], now = row[i];
+        most[i] = (there & (now > before)) ? now : before;
+    }
 }
 
 static void spread(const RayBlock *block, const float origin[3], const float direction[3],
                    float most[RAY_SPREADS][RAYS_OF_BLOCK])
 {
-    EACH_RAY
-    {
-        const float there = is_there(block->state[i]);
-        const float x = block->origin[0][i] - origin[0], y = block->origin[1][i] - origin[1],
-                    z = block->origin[2][i] - origin[2], u = block->direction[0][i] - direction[0],
-                    v     = block->direction[1][i] - direction[1],
-                    w     = block->direction[2][i] - direction[2];
-        const float from  = there > 0 ? x * x + y * y + z * z : 0,
-                    aside = there > 0 ? u * u + v * v + w * w : 0,
-                    width = there > 0 ? block->width[i] : 0,
-                    wider = there > 0 ? block->spread[i] : 0;
-        most[0][i]        = greater(most[0][i], from);
-        most[1][i]        = greater(most[1][i], aside);
-        most[2][i]        = greater(most[2][i], width);
-        most[3][i]        = greater(most[3][i], wider);
-    }
+    float from[RAYS_OF_BLOCK] = {0}, aside[RAYS_OF_BLOCK] = {0};
+    for (int k = 0; k < 3; k++)
+        EACH_RAY
+        {
+            const float o = block->origin[k][i] - origin[k],
+                        d = block->direction[k][i] - direction[k];
+            from[i] += o * o;
+            aside[i] += d * d;
+        }
+    take_greatest(block, from, most[0]);
+    take_greatest(block, aside, most[1]);
+    take_greatest(block, block->width, most[2]);
+    take_greatest(block, block->spread, most[3]);
 }
 
 static void skip(RayBlock *block, float last)
