@@ -72,7 +72,7 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
     plan->has_paths               = true;
     if (!primary_add_marches(job, plan, WEIGHT_PRIMARY, NULL) ||
         !renderer_create_escapes(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o, KRS_FOR_PATHS, &paths.shaders) ||
+        !rendering_paths(r, o, KRS_FOR_PATHS, job_light_meets_planes(job), &paths.shaders) ||
         !primary_find_plate(job, &paths.plate))
         return false;
     paths.escape      = renderer_escape_of_paths(r);

@@ -285,7 +285,7 @@ static bool add_mirrors(Preview *p)
     const float             weight = 0.2f * each;
     PathShaders             shaders;
     if (!renderer_create_escapes(r->renderer, RAYS_OF_PATHS, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o, KRS_FOR_PICTURES, &shaders))
+        !rendering_paths(r, o, KRS_FOR_PICTURES, false, &shaders))
         return false;
     const March   march  = primary_march_of_paths(job, shaders.march);
     const Shader *escape = renderer_escape_of_paths(r);

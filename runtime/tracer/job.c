@@ -130,8 +130,8 @@ static bool prepare_frame_block(Job *job)
 
 bool job_light_meets_planes(const Job *job)
 {
-    return job->begins_outside && job->options.integrator == KRS_INTEGRATOR_PREVIEW &&
-           rendering_light_meets_planes(job->rendering);
+    return job->begins_outside &&
+           rendering_light_meets_planes(job->rendering, job->options.integrator);
 }
 
 void job_find_rest(const Job *job, double low[3], double high[3])

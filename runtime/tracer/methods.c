@@ -76,11 +76,13 @@ bool rendering_knows_planes(const KrsRendering *rendering)
     return rendering->program->planes && rendering->zone_slots == 0;
 }
 
-/* In media, and from surfaces in mirrors, rays may begin inside of a plane. */
-bool rendering_light_meets_planes(const KrsRendering *rendering)
+/* In media of previews, and from surfaces in their mirrors, rays may begin inside of a plane.  Those of paths begin
+   some roundings above their surface. */
+bool rendering_light_meets_planes(const KrsRendering *rendering, KrsIntegrator integrator)
 {
-    return rendering_knows_planes(rendering) && !rendering->program->mirrors &&
-           !rendering->program->media;
+    const KrsProgram *program = rendering->program;
+    return rendering_knows_planes(rendering) &&
+           (integrator != KRS_INTEGRATOR_PREVIEW || (!program->mirrors && !program->media));
 }
 
 bool rendering_lanes_find_surfaces(const KrsRendering *rendering)

@@ -18,8 +18,8 @@ KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, Krs
                                               uint32_t march_group);
 /* Tells whether rays intersect planes without a march, by shaders for MARCH_WITHOUT_PLANES. */
 bool rendering_knows_planes(const KrsRendering *rendering);
-/* Tells whether rays to lights and for occlusion may do so in previews, if the camera is outside of all. */
-bool rendering_light_meets_planes(const KrsRendering *rendering);
+/* Tells whether rays to lights and for occlusion may do so, if the camera is outside of all. */
+bool rendering_light_meets_planes(const KrsRendering *rendering, KrsIntegrator integrator);
 /* Tells whether lanes can find surfaces: no ray goes on behind one, and shaders can read what is found. */
 bool rendering_lanes_find_surfaces(const KrsRendering *rendering);
 /* Tells whether march groups are marched one after the other; false where they cannot be. */

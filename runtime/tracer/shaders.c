@@ -171,7 +171,7 @@ static uint32_t group_of_paths(const KrsRendering *rendering)
 }
 
 bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
-                     PathShaders *shaders)
+                     bool planes, PathShaders *shaders)
 {
     const RayKind rays  = rendering->rays;
     const bool    roots = rendering_has_roots(rendering, options->methods.trace);
@@ -188,7 +188,7 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
                                 : rendering_shade(rendering);
     shaders->shadows    = find_shader(
            rendering, "secondary.comp",
-           variant_of_rays(rendering, options->methods.schedule, roots, options->integrator, false));
+           variant_of_rays(rendering, options->methods.schedule, roots, options->integrator, planes));
     rendering->rays = rays;
     return shaders->march && shaders->normals && shaders->scatter && shaders->shadows;
 }
@@ -268,7 +268,8 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
                 variant_of_scatter(rendering, KRS_STARTS_PRECISION, KRS_INTEGRATOR_PATH));
         request(requests, "secondary.comp",
                 variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
-                                KRS_INTEGRATOR_PATH, false));
+                                KRS_INTEGRATOR_PATH,
+                                rendering_light_meets_planes(rendering, KRS_INTEGRATOR_PATH)));
     }
     rendering->rays = rays;
 }
@@ -299,7 +300,8 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
     request(requests, "occluders.comp", variant_of_occluders(rendering));
     request(requests, "secondary.comp",
             variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
-                            KRS_INTEGRATOR_PREVIEW, rendering_light_meets_planes(rendering)));
+                            KRS_INTEGRATOR_PREVIEW,
+                            rendering_light_meets_planes(rendering, KRS_INTEGRATOR_PREVIEW)));
     request_marches(requests, trace, schedule);
     if (rendering->program->mirrors)
         request_paths(requests, trace, schedule);

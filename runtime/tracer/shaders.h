@@ -34,13 +34,14 @@ Shader *rendering_shade_found(KrsRendering *rendering);
 Shader *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 Shader *rendering_point_query(KrsRendering *rendering);
 
-/* The shaders of the rays of paths, whatever the rays of the frame are. */
+/* The shaders of the rays of paths, whatever the rays of the frame are.  `planes`: rays to lights meet planes without a
+   march. */
 typedef struct PathShaders {
     Shader *march, *normals, *shadows;
     Shader *scatter; /* scatter.comp, or for previews shade.comp */
 } PathShaders;
 bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
-                     PathShaders *shaders);
+                     bool planes, PathShaders *shaders);
 
 /* Tells whether the shaders that a rendering defers have been compiled before, here or as the cache knows: looks for one
    of them. */
