@@ -48,7 +48,8 @@ static void add_surface(const Paths *paths, uint32_t number)
     add_items(paths, KRS_PHASE_RESOLVE, number == 0 ? &renderer->escapes[rays] : paths->escape,
               number == 0 ? LIST_OF_BAND : LIST_OF_PATHS, LIST_ALL,
               (PassConstants){.value = number});
-    add_items(paths, KRS_PHASE_NORMALS, paths->shaders.normals, LIST_ALL, NO_LIST,
+    /* The list of rays to lights is emptied ahead of the pass that writes two. */
+    add_items(paths, KRS_PHASE_NORMALS, paths->shaders.normals, LIST_ALL, LIST_TO_LIGHTS,
               (PassConstants){0});
     if (number == 0 && paths->plate)
         add_items(paths, KRS_PHASE_NORMALS, paths->plate, LIST_ALL, NO_LIST, (PassConstants){0});
@@ -58,7 +59,7 @@ static void add_surface(const Paths *paths, uint32_t number)
                                      .phase     = KRS_PHASE_SHADOWS,
                                      .weight    = 0.3f * paths->weight,
                                      .shader    = paths->shaders.shadows,
-                                     .in        = LIST_ALL,
+                                     .in        = LIST_TO_LIGHTS,
                                      .out       = NO_LIST,
                                      .constants = {.phase = RAYS_AS_CHOSEN}});
 }

@@ -174,11 +174,6 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
     RayEnd ray = find_end(index);
     Path  path = load(pixel, index, base, slope);
     bool  hits = ray.state == STATE_HIT;
-#ifndef PATH_RAYS
-    store_path(PATH_ORIGIN, index, vec4(path.origin, base));
-    store_path(PATH_DIRECTION, index, vec4(path.direction, slope));
-    store_path(PATH_WEIGHT, index, vec4(path.weight, path.density));
-#endif
     unresolved += ray.unresolved ? 1u : 0u;
     bool lost = ray.unresolved && path.density > 0.0;
 #ifdef PATH_RAYS
@@ -198,8 +193,15 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
 #else
     add_light(index, clamped(find_light_before(path, hits, lost, ray.t, index)));
 #endif
-    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, hits ? begun * ray.side : 0.0));
-    return hits;
+    if (!hits) // nobody reads what is stored of a path that has ended
+        return false;
+#ifndef PATH_RAYS
+    store_path(PATH_ORIGIN, index, vec4(path.origin, base));
+    store_path(PATH_DIRECTION, index, vec4(path.direction, slope));
+    store_path(PATH_WEIGHT, index, vec4(path.weight, path.density));
+#endif
+    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, begun * ray.side));
+    return true;
 }
 
 // Indices in the list are reserved for all pixels of a quarter at once (background.comp).

@@ -38,7 +38,12 @@
 #endif
 
 const uint CHOICES = 3u;      // points of the unit square for each surface of a path
-const uint FIRST_ROULETTE = 3u;
+// From the second surface on a path may end.  At first what counts is how much of the light the surface sends
+// back: where that is half of it, the path is sure to go on.  From surface LATE on what counts is the path's weight.
+const uint  FIRST_ROULETTE = 1u, LATE = 3u;
+const float SURE = 0.5, MAX_CHANCE = 0.95;
+// The part of a light's irradiance that goes to the eye, from which on a path is sure to ask for that light.
+const float SURE_OF_LIGHT = 1.0 / 64.0;
 // How much the width of a ray grows where rough surfaces scatter it, relative to a camera's.
 const float MAX_SPREAD = 3.0;
 
@@ -205,7 +210,16 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     added = finite_or_black(added);
     if (largest(added) > 0.0 && is_behind_plate(point, hit))
         added = vec3(0.0);
+    // Light that hardly comes back to the eye, as beside the lobe of a mirror, is asked for seldom, and counts more.
+    // The first surface always asks, so that light without a size has no noise there.
+    float sent = PI * largest(weight * scattered.rgb);
+    float chance = control.value == 0u || is_direct() || caught ? 1.0 : min(sent / SURE_OF_LIGHT, 1.0);
+    bool  asks = sample_choice(work.corner + pixel, control.ray, 0x50000u + control.value,
+                               control.seed).x < chance;
+    added = asks ? added / max(chance, 1e-30) : vec3(0.0);
     store_path(PATH_LIGHT, index, vec4(added, point.end));
+    if (largest(added) > 0.0)
+        pixel_lists[LIST_TO_LIGHTS * band_pixels() + atomicAdd(counts.sparse, 1u)] = hit.slot;
     row = control.separate != 0u && !is_sky ? ROW_OF_LIGHTS + number : ROW_COLORS;
     if (caught)
         row = row_of_caught;
@@ -240,7 +254,8 @@ float continue_path(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes,
         direction = normalize(direction + (MIN_RISE - rise) * sign(light.z) * facing.xyz);
     bool  goes_on = rise > 0.0 && scattered.w > 0.0 && largest(weight) > 0.0 && largest(weight) < 1e30;
     if (control.value >= FIRST_ROULETTE) {
-        float chance = min(find_survival(weight, kept), 0.95);
+        float chance = control.value < LATE ? min(kept / SURE, 1.0)
+                                            : min(find_survival(weight, kept), MAX_CHANCE);
         goes_on = goes_on && sample_choice(work.corner + pixel, control.ray,
                                            0x10000u + control.value, control.seed).x < chance;
         weight /= max(chance, 1e-30);
@@ -352,10 +367,8 @@ void do_item(uint number)
         return;
     Axes axes = find_axes(normal, surface.tangent);
     Bsdf bsdf = find_bsdf(surface, hit, boundary, axes);
-    if (ends_here(bsdf)) {
-        store_path(PATH_LIGHT, index, vec4(0.0)); // secondary.comp has this pixel as well
+    if (ends_here(bsdf))
         return;
-    }
 #ifdef SUBSURFACE
     if (bsdf.chance_below > 0.0)
         weight *= go_below(pixel, hit, facing, bsdf, axes, surface);

@@ -364,6 +364,7 @@ CONSTANT(LANE_FOUND, 4);
    is the first of GROUP_LISTS lists. */
 CONSTANT(LIST_ALL, 0);
 CONSTANT(LIST_SPARSE, 1);
+CONSTANT(LIST_TO_LIGHTS, 1); /* of paths: pixels with a ray to a light; `sparse` counts them */
 CONSTANT(LIST_REMAINING, 2);
 CONSTANT(LIST_WIDE, 3);
 CONSTANT(LIST_OF_MARCH_GROUP, 4);
