@@ -1,6 +1,6 @@
 #!/bin/sh
 # paths.sh KRS: how many paths of light the integrator `path` follows in a second, for a diffuse scene, plastic,
-# metal, glass, many lights and foliage.  A path goes from the camera through all of its bounces, with a ray
+# metal, glass, many lights, foliage and a city at night.  A path goes from the camera through all of its bounces, with a ray
 # to a light at each.  The median of ROUNDS (3) runs counts, each in a process of its own with warm caches, by
 # the time on the device.  `make bench-paths`.
 set -u
@@ -29,6 +29,7 @@ sed 's/^light window.*/for i in range(30) { light { position: [0.3 * i - 4.5, 4,
 measure() { # scene: millions of paths a second, distances of a path, seconds
     scene=$work/$1.krs
     [ "$1" != foliage ] || scene=$(ls examples/??-fern.krs)
+    [ "$1" != night ] || scene=$(ls examples/??-night.krs)
     "$krs" render "$scene" --quiet --device cpu --integrator path --size "$size" --samples "$samples" \
         --stats json -o "$work/picture.png" 2>/dev/null | tr ',{}' '\n\n\n' | awk -F: '
         /"total"/ && !total { total = $2 }
@@ -39,7 +40,7 @@ measure() { # scene: millions of paths a second, distances of a path, seconds
 
 echo "| scene, $size, $samples samples | million paths a second | distances of a path | seconds |"
 echo "| --- | --- | --- | --- |"
-for name in diffuse plastic metal glass lights foliage; do
+for name in diffuse plastic metal glass lights foliage night; do
     measure "$name" >/dev/null # compiles its kernels
     for _ in $(seq "$rounds"); do measure "$name"; done | sort -n | sed -n "$(((rounds + 1) / 2))p" |
         while read -r speed distances seconds; do
