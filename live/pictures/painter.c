@@ -31,6 +31,9 @@
 #define QUIET_MS  30.0
 /* Samples are added in portions that take about this long. */
 #define PORTION_MS 400.0
+/* While compilers need all processors, lanes take one of so many parts of the time that compilers are expected to take, or
+   have taken.  Coarse pictures of what moves are not counted. */
+#define LANES_PART 4
 
 /* What executors take for a coarse picture of a structure. */
 typedef struct Timing {
@@ -60,6 +63,8 @@ struct Painter {
     View       view;
     bool       reduced;        /* it is not all that is wanted */
     bool       orders;         /* its shaders, as soon as there is a picture */
+    unsigned   ordered;        /* the structure whose shaders were ordered last, */
+    double     ordered_at;     /* and when */
     unsigned   shown;          /* number of `view` */
     unsigned   seen;           /* number of the view that there is a picture of */
     uint32_t   seen_samples;   /* of it; 0: it is a coarse one */
@@ -212,6 +217,10 @@ static void order_shaders(Painter *painter, const View *view)
     if (!painter->orders)
         return;
     painter->orders = false;
+    if (painter->ordered != version_structure(view->version)) {
+        painter->ordered    = version_structure(view->version);
+        painter->ordered_at = now_ms();
+    }
     atomic_store(&painter->prepares, false);
     builder_start(painter->builder, view);
 }
@@ -318,25 +327,35 @@ static KrsStatus show_coarse(Painter *painter)
     return make(painter, FILM_COARSE, divide(width, divisor), divide(height, divisor), 1, true);
 }
 
-/* Returns how much longer lanes take for so many samples of all pixels than they may while shaders are compiled: half of that
-   time, since compilers need all processors. */
-static double excess_of_lanes(const Painter *painter, uint32_t samples)
+/* Tells whether lanes draw what shaders are compiled for. */
+static bool lanes_are_early(const Painter *painter)
 {
-    const Estimate *estimate = &painter->lanes.estimate;
-    const bool      compiles = lanes_draw(painter) && builder_state(painter->builder).building;
-    return compiles ? 2 * samples * estimate->lanes_ms / estimate->compiler_ms : 0;
+    return lanes_draw(painter) && builder_state(painter->builder).building;
 }
 
-/* Makes the finest picture that lanes may make, where that is worth it. */
+/* Makes the finest picture that lanes have time for, where that is worth it. */
 static KrsStatus show_finer(Painter *painter)
 {
-    const double divisor = sqrt(excess_of_lanes(painter, 1));
-    if (divisor <= 1 || 1.3 * divisor > painter->resolutions[1].divisor ||
-        painter->seen != painter->shown || painter->seen_samples > 0)
+    const Estimate *estimate = &painter->lanes.estimate;
+    const double    divisor  = sqrt(LANES_PART * estimate->lanes_ms / estimate->compiler_ms);
+    if (!lanes_are_early(painter) || divisor <= 1 ||
+        1.3 * divisor > painter->resolutions[1].divisor || painter->seen != painter->shown ||
+        painter->seen_samples > 0)
         return KRS_OK;
     painter->grace = 0;
     return make(painter, FILM_COARSE, divide(painter->view.width, divisor),
                 divide(painter->view.height, divisor), 1, true);
+}
+
+/* Returns for how many milliseconds lanes leave the processors to compilers, before they make so many samples of all
+   pixels. */
+static double find_pause(const Painter *painter, uint32_t samples)
+{
+    const Estimate *estimate = &painter->lanes.estimate;
+    const double    ms       = LANES_PART * samples * estimate->lanes_ms;
+    return lanes_are_early(painter) && ms > estimate->compiler_ms
+               ? fmax(painter->ordered_at + ms - now_ms(), 0)
+               : 0;
 }
 
 /* Samples that take about as long as it may be until the picture is seen to improve. */
@@ -347,10 +366,10 @@ static uint32_t choose_portion(Painter *painter, uint32_t missing)
     return portion < missing ? (uint32_t)portion : missing;
 }
 
-/* Waits, while something moves, for the next view. */
-static void wait_for_quiet(Painter *painter)
+/* Waits for the next view, or for shaders, but not for more milliseconds than these. */
+static void wait_for_news(Painter *painter, double ms)
 {
-    const double          until = now_ms() + (painter->moving ? QUIET_MS : 0);
+    const double          until = now_ms() + ms;
     const struct timespec limit = {(time_t)(until / 1e3), (long)(fmod(until, 1e3) * 1e6)};
     pthread_mutex_lock(&painter->lock);
     while (!painter->quit && !is_outdated(painter) && now_ms() < until)
@@ -385,17 +404,20 @@ static KrsStatus show_view(Painter *painter)
     if (painter->seen != painter->shown) {
         painter->filmed = 0;
         status          = show_coarse(painter);
-        wait_for_quiet(painter);
+        wait_for_news(painter, painter->moving ? QUIET_MS : 0);
     }
     if (status == KRS_OK && !is_outdated(painter))
         status = show_finer(painter);
     while (status == KRS_OK && !is_outdated(painter)) {
         const uint32_t samples = samples_of_view(painter);
         /* Other shading modes are of the first sample. */
-        if (samples >= (painter->view.shading == SHADING_LIGHT ? painter->view.samples : 1) ||
-            excess_of_lanes(painter, samples + 1) > 1)
+        if (samples >= (painter->view.shading == SHADING_LIGHT ? painter->view.samples : 1))
             break;
-        status = refine(painter, samples);
+        const double pause = find_pause(painter, samples + 1);
+        if (pause > 0)
+            wait_for_news(painter, pause);
+        else
+            status = refine(painter, samples);
     }
     return status == KRS_INTERRUPTED ? KRS_OK : status;
 }

@@ -230,7 +230,7 @@ printf 'show sphere(1);' >small.krs
 "$krs" view small.krs --rays kernels --size 96x64 --samples 2 >out.view 2>err.view &
 viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name small.krs | head -n 1)
-xdotool mousemove 48 32 key Tab
+xdotool windowactivate --sync "$window" mousemove 48 32 key Tab
 "$krs" render small.krs --rays kernels --size 96x64 --samples 2 --specialize structure -q -o b.png && screen_is b.png
 result $? "a window manager shows it"
 xdotool windowminimize "$window"
@@ -250,7 +250,7 @@ printf 'param h = 1 in [0.5, 4];\nshow box([1, h, 1]);' >tall.krs
 "$krs" view tall.krs --rays lanes --size 96x64 --samples 2 --set h=4 >out.view 2>err.view &
 viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name tall.krs | head -n 1)
-xdotool mousemove 48 32 key Tab
+xdotool windowactivate --sync "$window" mousemove 48 32 key Tab
 "$krs" render tall.krs --rays lanes --size 96x64 --samples 2 --set h=4 --specialize structure -q -o b.png && screen_is b.png
 result $? "by lanes: the camera of a scene without one, and its floor, are for what is set"
 xdotool key --window "$window" Escape
