@@ -389,10 +389,12 @@ static bool refine_by_bounds(Mesher *m)
         contour_find_patches(&m->contour);
         mark_fresh(m);
         find_fresh_groups(m);
+        bounds_begin(m);
         double count = (double)m->tets.fresh.count, few = count / 3;
         if (!for_groups(m, m->options->draft ? draft_group : judge_group,
                         fraction_by_bounds(m->bounded + count, few)))
             return false;
+        bounds_end(m);
         count_refuted(m);
     } while (refine(m, true));
     return true;

@@ -7,6 +7,9 @@
  * bounded.  The sum of barycentric coordinates for good corners is 0 in tetrahedra without good
  * corners, and along a path it falls by no more than its length over the least width.  So where the
  * sum is more than that at the beginning, the path ends where there are bounds.
+ *
+ * Where functions around are different ones, each is 0 where the path begins.  So it is above the
+ * largest value that is on the wrong side where it has grown to that along the path.
  */
 #include "mesh/proof/around.h"
 
@@ -16,6 +19,37 @@
 #include "compiler/base/vec.h"
 
 static const double ROUNDING = 1 + 1e-6, ROUNDED = 1e-9;
+
+/* ---- growths ---- */
+
+void growth_add(Growth *growth, const Range by[3], double sign)
+{
+    bool     full = growth->count == MAX_GROWING;
+    uint32_t at   = full ? MAX_GROWING - 1 : growth->count++;
+    for (int k = 0; k < 3; k++) {
+        double a = sign * by[k].low, b = sign * by[k].high, low = min2(a, b), high = max2(a, b);
+        if (full) {
+            double middle = growth->middle[at][k], rest = growth->rest[at][k];
+            low  = min2(low, middle - rest);
+            high = max2(high, middle + rest);
+        }
+        float middle          = (float)(0.5 * (low + high));
+        growth->middle[at][k] = middle;
+        growth->rest[at][k]   = (float)(max2(high - middle, middle - low) * ROUNDING);
+    }
+}
+
+double growth_along(const Growth *growth, const float direction[3])
+{
+    double least = INFINITY;
+    for (uint32_t i = 0; i < growth->count; i++) {
+        double sum = 0;
+        for (int k = 0; k < 3; k++)
+            sum += growth->middle[i][k] * direction[k] - growth->rest[i][k] * fabsf(direction[k]);
+        least = min2(least, sum);
+    }
+    return least < INFINITY ? least - (ROUNDING - 1) * fabs(least) : 0;
+}
 
 static float distance_of(const Tet *tet)
 {
@@ -52,15 +86,48 @@ void arounds_find(Arounds *arounds, const Tets *tets, Arena *arena)
     }
 }
 
+/* Returns the length of path, in the direction of a tetrahedron, after which all functions around a
+   corner are above what the mesh has on the wrong side. */
+static double path_by_growths(const Arounds *arounds, const Tets *tets, uint32_t point,
+                              const Tet *tet)
+{
+    const Growth *growths = arounds->growths.items;
+    double        longest = 0, grows = 0;
+    uint32_t      last = 0;
+    if (tet->growth == 0)
+        return INFINITY;
+    for (uint32_t at = tets->points.items[point].first; at; at = tets->links.items[at - 1].next) {
+        const Tet *other = &tets->list.items[tets->links.items[at - 1].tet];
+        if (other->state == TET_EMPTY)
+            continue;
+        if (other->growth == 0)
+            return INFINITY;
+        if (other->growth != last)
+            grows = growth_along(&growths[other->growth - 1], growths[tet->growth - 1].direction);
+        last = other->growth;
+        if (!(grows > 0))
+            return INFINITY;
+        longest = max2(longest, other->deviation / grows);
+    }
+    return longest;
+}
+
 /* Returns the length of path after which no point around the corner is on the wrong side of the
    mesh.  Pieces have the sign of the distance, but not its size.  So between different pieces only
    the largest distance to the surface counts. */
-static double path_length(const Around *around, const Tet *tet, double error)
+static double path_length(const Arounds *arounds, const Tets *tets, uint32_t point, const Tet *tet,
+                          double error)
 {
-    double steep = tet->steep > 0 ? tet->steep : 1;
+    static const double SHORT  = 0.25;
+    const Around       *around = &arounds->items[point];
+    double              steep  = tet->steep > 0 ? tet->steep : 1;
     if (!around->in_pieces || !around->mixed)
         return around->deviation / tet->slope;
-    return around->distance <= error ? steep * around->distance / tet->slope : INFINITY;
+    double by_distance = around->distance <= error ? steep * around->distance / tet->slope
+                                                   : INFINITY;
+    if (around->deviation == INFINITY || by_distance <= SHORT * error)
+        return by_distance;
+    return min2(by_distance, path_by_growths(arounds, tets, point, tet));
 }
 
 /* Finds the linear function that is 1 at good corners and 0 at the others. */
@@ -85,7 +152,7 @@ void sure_find(const Arounds *arounds, const Tets *tets, const Tet *tet, double 
     int    count = 0;
     for (int k = 0; k < 4; k++) {
         const Around *around = &arounds->items[tet->points[k]];
-        double        path   = ROUNDING * path_length(around, tet, error);
+        double        path   = ROUNDING * path_length(arounds, tets, tet->points[k], tet, error);
         good[k]              = path <= error && path < around->width;
         if (!good[k])
             continue;

@@ -5,6 +5,7 @@
 #ifndef KRS_MESH_AROUND_H
 #define KRS_MESH_AROUND_H
 
+#include "compiler/graph/range.h"
 #include "mesh/contour/tets.h"
 
 /* Bounds of all tetrahedra that have a point (smooth.h). */
@@ -16,10 +17,29 @@ typedef struct Around {
     bool     mixed;            /* perhaps not all by the same function */
 } Around;
 
+/* How pieces of a cell grow: derivatives of each are within `rest` of `middle`. */
+enum { MAX_GROWING = 4 };
+typedef struct Growth {
+    float    direction[3]; /* in which all grow */
+    float    middle[MAX_GROWING][3], rest[MAX_GROWING][3];
+    uint32_t count, number; /* `number` is where it is kept, 1 and more; 0: nowhere yet */
+} Growth;
+
+typedef struct Growths {
+    Growth *items;
+    size_t  count, capacity;
+} Growths;
+
 typedef struct Arounds {
     Around *items;
     size_t  count, capacity;
+    Growths growths; /* of cells, by the number of tetrahedra */
 } Arounds;
+
+/* Adds a piece with these derivatives, times a sign. */
+void growth_add(Growth *growth, const Range by[3], double sign);
+/* Returns by how much all pieces grow along a direction at least. */
+double growth_along(const Growth *growth, const float direction[3]);
 
 /* The part of a tetrahedron in which the surface is proven to be near to the mesh: where dot(slope,
    p) + offset is above `least`. */

@@ -41,9 +41,14 @@ Box box_and_margin(double margin, const double low[3], const double high[3])
     return box;
 }
 
+static Tet *tet_of_order(Mesher *m, size_t i)
+{
+    return &m->tets.list.items[m->groups.order.items[i]];
+}
+
 Tet *tet_of_group(Mesher *m, const Group *group, uint32_t i)
 {
-    return &m->tets.list.items[m->groups.order.items[group->first + i]];
+    return tet_of_order(m, group->first + i);
 }
 
 /* A tetrahedron and its cell in the finest grid whose cells are no smaller. */
@@ -145,13 +150,24 @@ static void mark_hopeless(Mesher *m, const Placed *placed, size_t count)
     }
 }
 
+/* Tells how functions grow that bound tetrahedra. */
+static void note_growth(Mesher *m, const Placed *placed, size_t count, size_t room,
+                        const Growth *growth)
+{
+    m->new_growths.items[room] = *growth;
+    for (size_t i = 0; i < count; i++)
+        m->tets.list.items[placed[i].tet].growth = (uint32_t)room + 1;
+}
+
 /* Measures tetrahedra where the surface has edges, by its smooth pieces; returns false where no
    pieces are known. */
 static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed *placed,
-                           size_t count)
+                           size_t count, size_t room)
 {
     PieceCell cell;
     pieces_bound(verifier->field, box, &cell);
+    if (cell.known && cell.pieces.side == 0)
+        note_growth(m, placed, count, room, &cell.growth);
     for (size_t i = 0; i < count && cell.known; i++) {
         Tet *tet = &m->tets.list.items[placed[i].tet];
         if (tet->state == TET_EMPTY)
@@ -179,7 +195,8 @@ static bool is_worth_bounding_singly(const Mesher *m, const Placed *placed, size
     return count > 1 && tets_longest_edge(&m->tets, tet) > MIN_SMOOTH * m->error;
 }
 
-static void bound_cell(Mesher *m, Verifier *verifier, const Placed *placed, size_t count)
+static void bound_cell(Mesher *m, Verifier *verifier, const Placed *placed, size_t count,
+                       size_t room)
 {
     double     low[3], high[3], least[3], most[3];
     SmoothCell cell = {0};
@@ -206,15 +223,41 @@ static void bound_cell(Mesher *m, Verifier *verifier, const Placed *placed, size
     }
     measure_in_cell(m, verifier, &cell, placed, count);
     if (cell.known) {
+        note_growth(m, placed, count, room, &cell.growth);
         narrow_bounds(m, verifier, &cell, placed, count);
         mark_hopeless(m, placed, count);
     } else if (!cell.empty)
-        known = measure_pieces(m, verifier, wide, placed, count);
+        known = measure_pieces(m, verifier, wide, placed, count, room);
     field_leave(verifier->field);
     if (!known && is_worth_bounding_singly(m, placed, count))
         for (size_t i = 0; i < count; i++)
             if (m->tets.list.items[placed[i].tet].state != TET_EMPTY)
-                bound_cell(m, verifier, &placed[i], 1);
+                bound_cell(m, verifier, &placed[i], 1, room + i);
+}
+
+void bounds_begin(Mesher *m)
+{
+    static const Growth none = {.count = 0};
+    while (m->new_growths.count < m->groups.order.count)
+        array_push_large(&m->arena, &m->new_growths, none);
+    for (size_t i = 0; i < m->groups.order.count; i++)
+        tet_of_order(m, i)->growth = 0;
+}
+
+void bounds_end(Mesher *m)
+{
+    Growths *kept = &m->around.growths;
+    for (size_t i = 0; i < m->groups.order.count; i++) {
+        Tet *tet = tet_of_order(m, i);
+        if (tet->growth == 0)
+            continue;
+        Growth *growth = &m->new_growths.items[tet->growth - 1];
+        if (growth->number == 0) {
+            array_push_large(&m->arena, kept, *growth);
+            growth->number = (uint32_t)kept->count;
+        }
+        tet->growth = growth->number;
+    }
 }
 
 void bound_group(Mesher *m, Verifier *verifier, const Group *group)
@@ -236,6 +279,6 @@ void bound_group(Mesher *m, Verifier *verifier, const Group *group)
     for (size_t i = 0; i < count; i = end) {
         for (end = i + 1; end < count && placed[end].cell == placed[i].cell;)
             end++;
-        bound_cell(m, verifier, &placed[i], end - i);
+        bound_cell(m, verifier, &placed[i], end - i, group->first + i);
     }
 }

@@ -26,6 +26,7 @@ typedef struct Mesher {
     Marks                 marks;      /* where the mesh is new since proofs were found */
     bool                  has_proofs; /* proofs have been searched */
     Arounds               around;
+    Growths               new_growths; /* of what is bounded now, by its place in the order */
     struct {
         uint32_t *items;
         size_t    count, capacity;

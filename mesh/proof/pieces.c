@@ -23,8 +23,8 @@ static double growth(const FieldPieces *pieces, size_t i, const double direction
 }
 
 /* Searches for a direction in which all pieces grow, from that of their mean, step by step towards
-   the one that grows least; returns by how much all grow at least. */
-static double find_slope(const FieldPieces *pieces)
+   the one that grows least; returns by how much all grow at least along the best one found. */
+static double find_slope(const FieldPieces *pieces, float found[3])
 {
     enum { ROUNDS = 24 };
     double direction[3] = {0, 0, 0}, own[MAX_PIECES][3], best = 0;
@@ -46,6 +46,8 @@ static double find_slope(const FieldPieces *pieces)
                 worst = i;
             }
         }
+        for (int k = 0; k < 3 && least > best; k++)
+            found[k] = (float)direction[k];
         best = max2(best, least);
         add_scaled3(direction, direction, 0.5 / (round + 1), own[worst]);
     }
@@ -57,9 +59,10 @@ void pieces_bound(MeshField *field, Box box, PieceCell *cell)
     cell->known = field_pieces(field, box, &cell->pieces);
     if (!cell->known || cell->pieces.side != 0)
         return;
-    cell->slope = find_slope(&cell->pieces);
-    cell->known = cell->slope > 0;
-    cell->steep = 0;
+    cell->growth = (Growth){.count = 0};
+    cell->slope  = find_slope(&cell->pieces, cell->growth.direction);
+    cell->known  = cell->slope > 0;
+    cell->steep  = 0;
     for (size_t i = 0; i < cell->pieces.count && cell->known; i++) {
         bool   negated = cell->pieces.signs[i] < 0;
         double square  = 0;
@@ -68,6 +71,7 @@ void pieces_bound(MeshField *field, Box box, PieceCell *cell)
             square += most * most;
         }
         cell->steep = max2(cell->steep, ROUNDING * sqrt(square));
+        growth_add(&cell->growth, cell->pieces.slopes[i].by, cell->pieces.signs[i]);
         smooth_forms(&cell->pieces.hessians[i], negated ? cell->below[i] : cell->above[i],
                      negated ? cell->above[i] : cell->below[i]);
     }
@@ -75,47 +79,65 @@ void pieces_bound(MeshField *field, Box box, PieceCell *cell)
 
 /* ---- parts ---- */
 
-/* A point and the values of pieces there, with the sign of the side, so that bounds are sought
-   above 0. */
-typedef struct PartPoint {
-    double at[3], values[MAX_PIECES];
-} PartPoint;
-
+/* A tetrahedron with the values of pieces at its corners, times the sign of the side, so that bounds
+   are sought above 0.  `forms` are what the piece permits between pairs of corners, below 0 or
+   above, and `most` bounds each piece in it. */
 typedef struct Part {
-    PartPoint points[4];
+    double at[4][3];
+    double values[MAX_PIECES][4], forms[MAX_PIECES][6], most[MAX_PIECES];
 } Part;
+
+/* The pair of two corners in `forms`. */
+static const int PAIR[4][4] = {{-1, 0, 1, 2}, {0, -1, 3, 4}, {1, 3, -1, 5}, {2, 4, 5, -1}};
 
 typedef struct Measure {
     const PieceCell *cell;
     double           side; /* 1: values, -1: their negatives */
     double           enough;
+    double           slack[MAX_PIECES]; /* for the rounding of forms, of one whole tetrahedron */
     int              budget;
 } Measure;
 
-static double bend(const Measure *m, size_t piece, const double a[3], const double b[3])
+/* Returns what a piece permits between two corners, not below 0. */
+static double bend(const Measure *m, size_t piece, const Part *part, int pair)
 {
-    return smooth_bend(m->side > 0 ? m->cell->below[piece] : m->cell->above[piece], a, b);
+    return max2(part->forms[piece][pair], 0) * ROUNDING + m->slack[piece];
+}
+
+/* Finds the forms between all corners. */
+static void find_forms(Measure *m, Part *part)
+{
+    for (size_t i = 0; i < m->cell->pieces.count; i++) {
+        const double *form = m->side > 0 ? m->cell->below[i] : m->cell->above[i];
+        double        most = 0;
+        for (int a = 0; a < 4; a++)
+            for (int b = 0; b < a; b++) {
+                double between             = smooth_form(form, part->at[a], part->at[b]);
+                part->forms[i][PAIR[a][b]] = between;
+                most                       = max2(most, fabs(between));
+            }
+        m->slack[i]   = 1e-12 * most;
+        part->most[i] = INFINITY;
+    }
 }
 
 /* Returns a bound of a piece in a part.  Points are taken in the order of their values: those so
    low that pairs with them add nothing leave what the others permit. */
 static double max_of_piece(const Measure *m, size_t piece, const Part *part)
 {
-    double q[4][4], values[4], least = INFINITY, low = -INFINITY;
-    int    order[4] = {0, 1, 2, 3};
+    const double *at = part->values[piece];
+    double        q[4][4], values[4], least = INFINITY, low = -INFINITY;
+    int           order[4] = {0, 1, 2, 3};
     for (int i = 0; i < 4; i++)
-        for (int k = i; k > 0 && part->points[order[k]].values[piece] >
-                                     part->points[order[k - 1]].values[piece];
-             k--) {
+        for (int k = i; k > 0 && at[order[k]] > at[order[k - 1]]; k--) {
             int swap     = order[k];
             order[k]     = order[k - 1];
             order[k - 1] = swap;
         }
     for (int i = 0; i < 4; i++) {
-        values[i] = part->points[order[i]].values[piece];
+        values[i] = at[order[i]];
         for (int j = 0; j < i; j++)
-            q[i][j] = q[j][i] = bend(m, piece, part->points[order[i]].at,
-                                     part->points[order[j]].at);
+            q[i][j] = q[j][i] = bend(m, piece, part, PAIR[order[i]][order[j]]);
         q[i][i] = 0;
     }
     for (int count = 4; count > 0; count--) {
@@ -135,17 +157,21 @@ static double max_of_piece(const Measure *m, size_t piece, const Part *part)
     return least;
 }
 
-static double max_of_part(const Measure *m, const Part *part)
+/* Bounds a part.  A piece that is low enough by far in the whole is not bounded again in parts of
+   it. */
+static double max_of_part(const Measure *m, Part *part)
 {
-    const FieldPieces *pieces = &m->cell->pieces;
-    double             most[MAX_PIECES], stack[MAX_PIECE_STEPS];
-    int                depth = 0;
+    static const double FAR    = 0.3;
+    const FieldPieces  *pieces = &m->cell->pieces;
+    double              stack[MAX_PIECE_STEPS];
+    int                 depth = 0;
     for (size_t i = 0; i < pieces->count; i++)
-        most[i] = max_of_piece(m, i, part);
+        if (part->most[i] > FAR * m->enough)
+            part->most[i] = min2(part->most[i], max_of_piece(m, i, part));
     for (size_t i = 0; i < pieces->step_count; i++) {
         int step = pieces->steps[i];
         if (step >= 0) {
-            stack[depth++] = most[step];
+            stack[depth++] = part->most[step];
             continue;
         }
         double b = stack[--depth], a = stack[depth - 1];
@@ -155,33 +181,45 @@ static double max_of_part(const Measure *m, const Part *part)
     return stack[0];
 }
 
+/* Sets what forms permit between the middle of corners a and b, which takes the place of b, and the
+   others: they are quadratic. */
+static void move_to_middle(double forms[6], int a, int b)
+{
+    double whole = forms[PAIR[a][b]];
+    for (int c = 0; c < 4; c++)
+        if (c != a && c != b)
+            forms[PAIR[b][c]] = 0.5 * (forms[PAIR[a][c]] + forms[PAIR[b][c]]) - 0.25 * whole;
+    forms[PAIR[a][b]] = 0.25 * whole;
+}
+
 /* Halves a part at its longest edge; pieces in its middle are no more than the mean plus what they
    bend. */
 static void halve_part(const Measure *m, const Part *part, Part halves[2])
 {
-    int       from = 0, to = 1;
-    double    longest = 0;
-    PartPoint middle;
+    int    from = 0, to = 1;
+    double longest = 0;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < i; j++) {
-            double length = distance3(part->points[i].at, part->points[j].at);
+            double length = distance3(part->at[i], part->at[j]);
             if (length > longest) {
                 longest = length;
                 from    = i;
                 to      = j;
             }
         }
-    const PartPoint *a = &part->points[from], *b = &part->points[to];
+    halves[0] = halves[1] = *part;
     for (int k = 0; k < 3; k++)
-        middle.at[k] = 0.5 * (a->at[k] + b->at[k]);
-    for (size_t i = 0; i < m->cell->pieces.count; i++)
-        middle.values[i] = 0.5 * (a->values[i] + b->values[i]) + 0.125 * bend(m, i, a->at, b->at);
-    halves[0] = halves[1]  = *part;
-    halves[0].points[from] = middle;
-    halves[1].points[to]   = middle;
+        halves[0].at[from][k] = halves[1].at[to][k] = 0.5 * (part->at[from][k] + part->at[to][k]);
+    for (size_t i = 0; i < m->cell->pieces.count; i++) {
+        double middle = 0.5 * (part->values[i][from] + part->values[i][to]) +
+                        0.125 * bend(m, i, part, PAIR[from][to]);
+        halves[0].values[i][from] = halves[1].values[i][to] = middle;
+        move_to_middle(halves[0].forms[i], to, from);
+        move_to_middle(halves[1].forms[i], from, to);
+    }
 }
 
-static double measure_part(Measure *m, const Part *part, int halvings)
+static double measure_part(Measure *m, Part *part, int halvings)
 {
     enum { MAX_HALVINGS = 9 };
     double most = max_of_part(m, part);
@@ -220,10 +258,11 @@ static void add_cone(Cones *c, int p, int q, int r)
     if (p == c->apex || q == c->apex || r == c->apex || c->most > c->m.enough)
         return;
     for (int i = 0; i < 4; i++) {
-        memcpy(part.points[i].at, c->points->at[numbers[i]], sizeof part.points[i].at);
+        memcpy(part.at[i], c->points->at[numbers[i]], sizeof part.at[i]);
         for (size_t k = 0; k < c->m.cell->pieces.count; k++)
-            part.points[i].values[k] = c->m.side * c->points->values[numbers[i]][k];
+            part.values[k][i] = c->m.side * c->points->values[numbers[i]][k];
     }
+    find_forms(&c->m, &part);
     c->most = max2(c->most, measure_part(&c->m, &part, 0));
 }
 

@@ -18,6 +18,7 @@ typedef struct PieceCell {
     double      above[MAX_PIECES][6], below[MAX_PIECES][6]; /* as of SmoothCell */
     /* All pieces grow by `slope` along one direction, and none by more than `steep` along any. */
     double slope, steep;
+    Growth growth;
 } PieceCell;
 
 /* Bounds the pieces in a box, which the field has entered last. */

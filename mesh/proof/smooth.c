@@ -8,6 +8,7 @@
 
 static const double ROUNDING = 1 + 1e-9;
 static const int    ROW[6] = {0, 1, 2, 1, 0, 0}, COLUMN[6] = {0, 1, 2, 2, 2, 1};
+static const int    PLACE[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}}; /* of rows and columns */
 
 /* ---- cells ---- */
 
@@ -57,8 +58,7 @@ static double find_middle_gradient(const MeshField *field, Box box, double step,
 static double slope_along(const double normal[3], const double gradient[3], double wrong, Box box,
                           const LaneHessian *hessian)
 {
-    static const int PLACE[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
-    double           slope       = dot3(gradient, normal) - wrong;
+    double slope = dot3(gradient, normal) - wrong;
     for (int j = 0; j < 3; j++) {
         Range change = range_of(0);
         for (int k = 0; k < 3; k++)
@@ -68,12 +68,35 @@ static double slope_along(const double normal[3], const double gradient[3], doub
     return slope / (1 + 1e-6);
 }
 
-static double find_slope(const MeshField *field, Box box, double step, const LaneHessian *hessian)
+/* Finds how the value grows, by the narrower bounds of its derivatives: their ranges, or those in
+   the middle and what they change by (the mean value theorem). */
+static void find_growth(const LaneSlope *slope, const double gradient[3], double wrong, Box box,
+                        const LaneHessian *hessian, Growth *growth)
+{
+    Range by[3];
+    for (int j = 0; j < 3; j++) {
+        double change = wrong;
+        for (int k = 0; k < 3; k++)
+            change += range_largest(hessian->by[PLACE[j][k]]) * 0.5 * ROUNDING *
+                      (box.axis[k].high - box.axis[k].low);
+        by[j] = (Range){max2(slope->by[j].low, gradient[j] - change),
+                        min2(slope->by[j].high, gradient[j] + change)};
+    }
+    growth_add(growth, by, 1);
+}
+
+static double find_slope(const MeshField *field, Box box, double step, const LaneSlope *slope,
+                         const LaneHessian *hessian, Growth *growth)
 {
     double gradient[3], normal[3];
     double wrong = find_middle_gradient(field, box, step, hessian, gradient);
     memcpy(normal, gradient, sizeof normal);
-    return normalize3(normal) ? slope_along(normal, gradient, wrong, box, hessian) : 0;
+    if (!normalize3(normal))
+        return 0;
+    for (int k = 0; k < 3; k++)
+        growth->direction[k] = (float)normal[k];
+    find_growth(slope, gradient, wrong, box, hessian, growth);
+    return slope_along(normal, gradient, wrong, box, hessian);
 }
 
 void smooth_bound(const MeshField *field, Box box, double error, SmoothCell *cell)
@@ -88,7 +111,7 @@ void smooth_bound(const MeshField *field, Box box, double error, SmoothCell *cel
     if (!cell->known || cell->empty)
         return;
     smooth_forms(&hessian, cell->above, cell->below);
-    cell->slope  = find_slope(field, box, 1e-2 * error, &hessian);
+    cell->slope  = find_slope(field, box, 1e-2 * error, &slope, &hessian, &cell->growth);
     cell->origin = field_origin(field, box);
     if (find_gradient(&slope, &gradient))
         cell->slope = max2(cell->slope, gradient.least / ROUNDING);
@@ -207,8 +230,7 @@ typedef struct Side {
     double        depths[4]; /* of its corners */
 } Side;
 
-/* Returns the form between two points, which may be below 0. */
-static double form_between(const double form[6], const double a[3], const double b[3])
+double smooth_form(const double form[6], const double a[3], const double b[3])
 {
     double d[3];
     add_scaled3(d, a, -1, b);
@@ -218,7 +240,7 @@ static double form_between(const double form[6], const double a[3], const double
 
 double smooth_bend(const double form[6], const double a[3], const double b[3])
 {
-    return max2(form_between(form, a, b), 0) * ROUNDING;
+    return max2(smooth_form(form, a, b), 0) * ROUNDING;
 }
 
 /* Returns the largest sum of w_i w_j q_ij over all pairs, for weights w >= 0 whose sum is 1.  With
@@ -364,7 +386,7 @@ static double max_from(const double form[6], const double (*corners)[3], int fro
     for (int i = 0; i < 4; i++) {
         most = max2(most, smooth_bend(form, corners[from], corners[i]));
         for (int j = 0; j < i; j++)
-            least = min2(least, form_between(form, corners[i], corners[j]));
+            least = min2(least, smooth_form(form, corners[i], corners[j]));
     }
     return most - ROUNDING * 0.375 * least;
 }

@@ -24,10 +24,13 @@ typedef struct SmoothCell {
     bool     known, empty;
     double   above[6], below[6], slope;
     uint32_t origin; /* of the value: field.h */
+    Growth   growth;
 } SmoothCell;
 
 /* Finds the forms of second derivatives. */
 void smooth_forms(const LaneHessian *hessian, double above[6], double below[6]);
+/* Returns the form between two points, which may be below 0. */
+double smooth_form(const double form[6], const double a[3], const double b[3]);
 /* Returns what a form permits between two points, not below 0. */
 double smooth_bend(const double form[6], const double a[3], const double b[3]);
 /* Returns the largest w0 w1 a + w1 w2 b + w2 w0 c for weights w >= 0 whose sum is 1. */

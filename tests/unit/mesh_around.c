@@ -161,11 +161,80 @@ static void functions_are_told_apart(void **context)
     arena_free(&arena);
 }
 
+/* Returns a growth along the first axis, of one piece with this derivative there. */
+static Growth growth_of(double least, double most)
+{
+    Growth      growth = {.direction = {1, 0, 0}};
+    const Range by[3]  = {{least, most}, {-0.1, 0.1}, {-0.1, 0.1}};
+    growth_add(&growth, by, 1);
+    return growth;
+}
+
+/* Of several functions all must grow along the path of one: as far as to the largest value on the wrong side. */
+static void functions_grow_along_paths(void **context)
+{
+    Memory  memory  = {0};
+    Arena   arena   = {.memory = &memory};
+    Arounds arounds = {0};
+    Tets    tets;
+    Sure    sure;
+    (void)context;
+    open_tets(&tets, &arena, 0);
+    for (int slow = 0; slow < 2; slow++) {
+        Growth growths[2]     = {growth_of(0.5, 0.9), growth_of(slow ? 0.3 : 0.45, 0.7)};
+        arounds.growths.items = growths;
+        for (size_t i = 0; i < tets.list.count; i++) {
+            tets.list.items[i].steep     = 1;
+            tets.list.items[i].slope     = 0.5F;
+            tets.list.items[i].origin    = 1 + (uint32_t)i % 2;
+            tets.list.items[i].growth    = 1 + (uint32_t)i % 2;
+            tets.list.items[i].deviation = (float)(0.4 * ERROR);
+        }
+        arounds_find(&arounds, &tets, &arena);
+        for (size_t i = 0; i < tets.list.count; i++) {
+            sure_find(&arounds, &tets, &tets.list.items[i], ERROR, &sure);
+            assert_int_equal(sure.everywhere, !slow);
+        }
+    }
+    arena_free(&arena);
+}
+
+/* No derivatives in the ranges grow less, of pieces as many as are kept and more. */
+static void growths_hold(void **context)
+{
+    (void)context;
+    for (int turn = 0; turn < 2000; turn++) {
+        Growth growth = {.count = 0};
+        Range  by[MAX_GROWING + 2][3];
+        float  direction[3];
+        double least = INFINITY;
+        int    count = 1 + turn % (MAX_GROWING + 2);
+        for (int k = 0; k < 3; k++)
+            direction[k] = (float)random_between(&chance, -1, 1);
+        for (int i = 0; i < count; i++) {
+            double sign = i % 2 ? 1 : -1, sum = 0;
+            for (int k = 0; k < 3; k++) {
+                double low = random_between(&chance, -1, 1);
+                by[i][k]   = (Range){low, low + random_between(&chance, 0, 0.3)};
+                sum += fmin(sign * by[i][k].low * direction[k],
+                            sign * by[i][k].high * direction[k]);
+            }
+            growth_add(&growth, by[i], sign);
+            least = fmin(least, sum);
+        }
+        double found = growth_along(&growth, direction);
+        assert_true(found <= least + 1e-12);
+        assert_true(count > MAX_GROWING || found >= least - 1e-5);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_way_ends_in_a_bad_one),
         cmocka_unit_test(functions_are_told_apart),
+        cmocka_unit_test(functions_grow_along_paths),
+        cmocka_unit_test(growths_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
