@@ -46,7 +46,8 @@ typedef struct Collapse {
     struct {
         Candidate *items;
         size_t     count, capacity;
-    } heap; /* the least first */
+    } heap;                      /* the least first; a vertex is in it once at most */
+    bool                *queued; /* of a vertex: it is in the heap */
     Arena               *arena;
     const CollapseRules *rules;
 } Collapse;
@@ -162,8 +163,9 @@ static uint32_t corner_after(const uint32_t triangle[3], uint32_t vertex)
 static void propose_vertex(Collapse *c, uint32_t vertex, const Candidate *after)
 {
     uint32_t  star[MAX_STAR];
-    size_t    count = star_of(c, vertex, star);
-    Candidate least = {INFINITY, vertex, NO_VERTEX, c->stamps[vertex]};
+    size_t    count   = star_of(c, vertex, star);
+    Candidate least   = {INFINITY, vertex, NO_VERTEX, c->stamps[vertex]};
+    c->queued[vertex] = false;
     if (c->fixed[vertex] || count > MAX_STAR)
         return;
     for (size_t i = 0; i < count; i++) {
@@ -176,6 +178,7 @@ static void propose_vertex(Collapse *c, uint32_t vertex, const Candidate *after)
         if (is_before(&candidate, &least) && (!after || is_before(after, &candidate)))
             least = candidate;
     }
+    c->queued[vertex] = least.to != NO_VERTEX;
     if (least.to != NO_VERTEX)
         push(c, least);
 }
@@ -341,18 +344,22 @@ static void move_over(Collapse *c, const uint32_t *star, size_t count, const Mad
     }
 }
 
-/* Proposes new collapses of a vertex and its neighbours, and makes the old ones stale. */
-static void propose_around(Collapse *c, uint32_t vertex)
+/* Makes the collapse of a vertex stale.  It is proposed again when its turn comes, since most cost
+   more then; or now if there was none. */
+static void renew(Collapse *c, uint32_t vertex)
+{
+    c->stamps[vertex]++;
+    if (!c->queued[vertex])
+        propose_vertex(c, vertex, NULL);
+}
+
+static void renew_around(Collapse *c, uint32_t vertex)
 {
     uint32_t star[MAX_STAR];
     size_t   count = star_of(c, vertex, star);
-    c->stamps[vertex]++;
-    propose_vertex(c, vertex, NULL);
-    for (size_t i = 0; i < count && count <= MAX_STAR; i++) {
-        uint32_t other = corner_after(c->triangles[star[i]], vertex);
-        c->stamps[other]++;
-        propose_vertex(c, other, NULL);
-    }
+    renew(c, vertex);
+    for (size_t i = 0; i < count && count <= MAX_STAR; i++)
+        renew(c, corner_after(c->triangles[star[i]], vertex));
 }
 
 static void collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t from, uint32_t to)
@@ -372,8 +379,7 @@ static void collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t f
     for (int k = 0; k < 10; k++)
         c->quadrics[to].of[k] += c->quadrics[from].of[k];
     c->first[from] = 0;
-    c->stamps[from]++;
-    propose_around(c, to);
+    renew_around(c, to);
 }
 
 static void collapse_all(Collapse *c)
@@ -386,8 +392,11 @@ static void collapse_all(Collapse *c)
         Candidate candidate = pop(c);
         uint32_t  star[MAX_STAR];
         Made      made;
-        if (candidate.stamp != c->stamps[candidate.from])
+        c->queued[candidate.from] = false;
+        if (candidate.stamp != c->stamps[candidate.from]) {
+            propose_vertex(c, candidate.from, NULL);
             continue;
+        }
         size_t count = star_of(c, candidate.from, star);
         if (count <= MAX_STAR &&
             may_collapse(c, star, count, candidate.from, candidate.to, &made)) {
@@ -406,6 +415,7 @@ static void begin(Collapse *c, size_t vertex_count, size_t count)
     c->stamps   = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->marks    = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->fixed    = arena_new_array(c->arena, bool, vertex_count + 1);
+    c->queued   = arena_new_array(c->arena, bool, vertex_count + 1);
     c->off      = arena_new_array(c->arena, double, count + 1);
     c->missed   = arena_new_array(c->arena, double, count + 1);
     c->points   = arena_new_array(c->arena, uint32_t, count + 1);
