@@ -48,6 +48,7 @@ typedef struct Collapse {
         size_t     count, capacity;
     } heap;                      /* the least first; a vertex is in it once at most */
     bool                *queued; /* of a vertex: it is in the heap */
+    size_t               left;   /* triangles */
     Arena               *arena;
     const CollapseRules *rules;
 } Collapse;
@@ -169,7 +170,9 @@ static void propose_vertex(Collapse *c, uint32_t vertex, const Candidate *after)
     if (c->fixed[vertex] || count > MAX_STAR)
         return;
     for (size_t i = 0; i < count; i++) {
-        uint32_t  to     = corner_after(c->triangles[star[i]], vertex);
+        uint32_t to = corner_after(c->triangles[star[i]], vertex);
+        if (c->rules->border && c->rules->border[to])
+            continue;
         double    length = distance3(c->at[vertex], c->at[to]), square = length * length;
         Candidate candidate = least;
         candidate.to        = to;
@@ -291,7 +294,7 @@ static bool are_near(const Collapse *c, const uint32_t *star, size_t count, uint
     made->off += added;
     made->missed += added;
     return (made->missed <= most || are_points_near(c, star, count, from, made)) &&
-           (made->off <= most || are_made_near(c, made));
+           (made->off <= most || (c->rules->is_good && are_made_near(c, made)));
 }
 
 static bool may_collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t from,
@@ -368,6 +371,7 @@ static void collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t f
         uint32_t *triangle = c->triangles[star[i]];
         if (has_corner(triangle, to)) {
             c->dead[star[i]] = true;
+            c->left--;
             continue;
         }
         for (uint32_t k = 0; k < 3; k++)
@@ -385,7 +389,7 @@ static void collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t f
 static void collapse_all(Collapse *c)
 {
     size_t tried = 0, most = c->heap.count;
-    while (c->heap.count > 0) {
+    while (c->heap.count > 0 && c->left > c->rules->enough) {
         if (tried++ % ASK_EVERY == 0 &&
             !c->rules->is_wanted(c->rules->user, 1 - (double)c->heap.count / (double)most))
             return;
@@ -416,13 +420,14 @@ static void begin(Collapse *c, size_t vertex_count, size_t count)
     c->marks    = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->fixed    = arena_new_array(c->arena, bool, vertex_count + 1);
     c->queued   = arena_new_array(c->arena, bool, vertex_count + 1);
-    c->off      = arena_new_array(c->arena, double, count + 1);
-    c->missed   = arena_new_array(c->arena, double, count + 1);
+    c->left     = count;
+    c->off      = c->rules->off;
+    c->missed   = c->rules->missed;
     c->points   = arena_new_array(c->arena, uint32_t, count + 1);
     c->other    = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->quadrics = arena_new_array(c->arena, Quadric, vertex_count + 1);
-    for (size_t i = 0; i < count; i++)
-        c->off[i] = c->missed[i] = c->rules->distance;
+    if (c->rules->border)
+        memcpy(c->fixed, c->rules->border, vertex_count * sizeof *c->fixed);
     for (uint32_t i = 0; i < 3 * count; i++) {
         uint32_t vertex = c->triangles[i / 3][i % 3];
         add_corner(c, vertex, i);
@@ -437,17 +442,33 @@ static void begin(Collapse *c, size_t vertex_count, size_t count)
     }
 }
 
+/* Drops dead triangles; returns how many are left. */
+static size_t gather(Collapse *c, size_t vertex_count, size_t count)
+{
+    uint32_t *below = c->rules->below;
+    size_t    left  = 0;
+    for (size_t i = 0; i < vertex_count; i++)
+        below[i] = UINT32_MAX;
+    for (size_t i = 0; i < count; i++) {
+        if (c->dead[i])
+            continue;
+        for (uint32_t point = c->points[i]; point; point = c->other[point - 1])
+            below[point - 1] = (uint32_t)left;
+        memmove(c->triangles[left], c->triangles[i], sizeof *c->triangles);
+        c->off[left]      = c->off[i];
+        c->missed[left++] = c->missed[i];
+    }
+    return left;
+}
+
 size_t collapse_edges(const double (*vertices)[3], size_t vertex_count, uint32_t (*triangles)[3],
                       size_t count, const CollapseRules *rules, Arena *arena)
 {
     Collapse  c    = {.at = vertices, .triangles = triangles, .arena = arena, .rules = rules};
     ArenaMark mark = arena_mark(arena);
-    size_t    left = 0;
     begin(&c, vertex_count, count);
     collapse_all(&c);
-    for (size_t i = 0; i < count; i++)
-        if (!c.dead[i])
-            memmove(triangles[left++], triangles[i], sizeof *triangles);
+    size_t left = gather(&c, vertex_count, count);
     arena_rewind(arena, mark);
     return left;
 }

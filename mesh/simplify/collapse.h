@@ -17,13 +17,17 @@ typedef bool IsWanted(void *user, double part);
 typedef struct CollapseRules {
     const bool *kept; /* of triangles: corners stay */
     /* Of vertices without triangles: a triangle that they are near to, or UINT32_MAX. What replaces
-       it must be within the error of them. */
-    const uint32_t *below;
-    double          error;
-    double          distance; /* between that mesh and the triangles at first */
-    IsGoodTriangle *is_good;
+       it must be within the error of them, and takes its place here. */
+    uint32_t *below;
+    double    error;
+    /* Of triangles, bounds of how far they are from that mesh, and of how far what they replace is
+       from them; afterwards of those that are left. */
+    double         *off, *missed;
+    IsGoodTriangle *is_good; /* NULL: only what these bounds prove is good */
     IsWanted       *is_wanted;
     void           *user;
+    size_t          enough; /* it ends when no more triangles are left */
+    const bool     *border; /* of vertices: they have further triangles, and stay; NULL: none has */
 } CollapseRules;
 
 /* Collapses edges, those first that change least, where all triangles that this makes are good and

@@ -14,7 +14,7 @@
 #include "compiler/base/vec.h"
 #include "krs/krs.h"
 #include "mesh/common/numbering.h"
-#include "mesh/simplify/collapse.h"
+#include "mesh/simplify/blocks.h"
 #include "mesh/simplify/near.h"
 #include "mesh/simplify/slivers.h"
 
@@ -30,6 +30,12 @@ static const double FIRST_RADIUS = 1, FIRST_RADIUS_OF_COLLAPSE = 0.25;
    goes too far in many places. */
 static const double FIRST_ERROR = 0.25, LAST_ERROR = 0.5;
 
+/* What is known of triangles, as rules of collapses have it. */
+typedef struct Known {
+    double   *off, *missed;
+    uint32_t *below;
+} Known;
+
 typedef struct Simplifier {
     Memory                memory;
     Arena                 arena, lasting; /* of a trial, and of all */
@@ -40,8 +46,10 @@ typedef struct Simplifier {
     uint32_t (*triangles)[3]; /* of the mesh's vertices */
     bool  *kept;              /* of the best triangles: they stay as they are */
     size_t triangle_count;
-    uint32_t (*best)[3]; /* the best triangles without faults */
+    uint32_t (*best)[3]; /* the best triangles without faults, or what blocks left */
     size_t    best_count;
+    Known     known, best_known; /* of the last trial, if it collapsed edges, and of the best */
+    bool      collapsed;
     Numbering judged; /* of new triangles, bounds of how far they are from the mesh, in steps */
     Numbering noted;  /* new triangles that are near, and in `facing` */
     NearMesh  original;
@@ -72,6 +80,7 @@ static void propose(Simplifier *s, double error, double goal)
     for (size_t i = 0; i < s->best_count; i++)
         if (!s->kept[i])
             memcpy(rest[count++], s->best[i], sizeof *rest);
+    s->collapsed      = false;
     s->triangle_count = meshopt_simplify(&s->triangles[0][0], &rest[0][0], 3 * count,
                                          &s->positions[0][0], mesh->vertex_count,
                                          sizeof *s->positions, 0, (float)error / scale,
@@ -314,7 +323,8 @@ static size_t count_faults(Simplifier *s, double radius, size_t most, double goa
     Judgement judgement = {.s = s, .now = &new.bvh, .radius = radius};
     report_open(&new.edges, note_fault, &judgement);
     check_rings(&judgement, &new);
-    check_crossings(&judgement, &new, begun + (goal - begun) / 3);
+    if (judgement.faults <= most)
+        check_crossings(&judgement, &new, begun + (goal - begun) / 3);
     if (judgement.faults <= most) {
         check_new(&judgement, &new, begun + 2 * (goal - begun) / 3);
         check_original(&judgement, &new, goal);
@@ -370,8 +380,9 @@ static bool is_wanted(void *user, double part)
 static void find_below(Simplifier *s, uint32_t *below)
 {
     const double(*at)[3] = (const double(*)[3])s->mesh->vertices;
-    bool *used           = arena_new_array(&s->arena, bool, s->mesh->vertex_count + 1);
-    Bvh   best;
+    ArenaMark mark       = arena_mark(&s->arena);
+    bool     *used       = arena_new_array(&s->arena, bool, s->mesh->vertex_count + 1);
+    Bvh       best;
     bvh_new(&best, at, (const uint32_t(*)[3])s->best, s->best_count, &s->arena);
     for (size_t i = 0; i < 3 * s->best_count; i++)
         used[s->best[i / 3][i % 3]] = true;
@@ -380,61 +391,158 @@ static void find_below(Simplifier *s, uint32_t *below)
         if (!used[i])
             bvh_find_nearest(&best, at[i], s->error, &below[i]);
     }
+    arena_rewind(&s->arena, mark);
+}
+
+static CollapseRules rules_of(Simplifier *s, const Known *known, double error)
+{
+    return (CollapseRules){.kept      = s->kept,
+                           .below     = known->below,
+                           .error     = error,
+                           .off       = known->off,
+                           .missed    = known->missed,
+                           .is_good   = is_good,
+                           .is_wanted = is_wanted,
+                           .user      = s};
 }
 
 static void propose_collapses(Simplifier *s, double error, double goal)
 {
-    const KrsMesh *mesh  = s->mesh;
-    ArenaMark      mark  = arena_mark(&s->arena);
-    uint32_t      *below = arena_new_array(&s->arena, uint32_t, mesh->vertex_count + 1);
-    CollapseRules  rules = {
-         s->kept, below,     error, s->best_count < mesh->triangle_count ? error : 0,
-         is_good, is_wanted, s};
-    s->begun = s->fraction;
-    s->goal  = goal;
-    find_below(s, below);
+    const KrsMesh *mesh = s->mesh;
+    const Known   *best = &s->best_known, *now = &s->known;
+    CollapseRules  rules = rules_of(s, now, error);
+    s->begun             = s->fraction;
+    s->goal              = goal;
     memcpy(s->triangles, s->best, s->best_count * sizeof *s->best);
+    memcpy(now->off, best->off, s->best_count * sizeof *now->off);
+    memcpy(now->missed, best->missed, s->best_count * sizeof *now->missed);
+    memcpy(now->below, best->below, mesh->vertex_count * sizeof *now->below);
     s->triangle_count = collapse_edges((const double(*)[3])mesh->vertices, mesh->vertex_count,
                                        s->triangles, s->best_count, &rules, &s->arena);
-    arena_rewind(&s->arena, mark);
+    s->collapsed      = true;
+}
+
+static void begin_with_mesh(Simplifier *s)
+{
+    const KrsMesh *mesh = s->mesh;
+    s->best_count       = mesh->triangle_count;
+    memcpy(s->best, mesh->triangles, s->best_count * sizeof *s->best);
+    memset(s->best_known.off, 0, s->best_count * sizeof *s->best_known.off);
+    memset(s->best_known.missed, 0, s->best_count * sizeof *s->best_known.missed);
+    memset(s->best_known.below, 0xff, mesh->vertex_count * sizeof *s->best_known.below);
+}
+
+/* Collapses edges of the mesh in blocks; what is left is the best then, though nothing was judged. */
+static void collapse_in_blocks(Simplifier *s, double goal)
+{
+    const KrsMesh *mesh  = s->mesh;
+    CollapseRules  rules = rules_of(s, &s->best_known, s->error);
+    s->begun             = s->fraction;
+    s->goal              = goal;
+    size_t left          = collapse_blocks((const double(*)[3])mesh->vertices, mesh->vertex_count,
+                                           (const uint32_t(*)[3])mesh->triangles, mesh->triangle_count,
+                                           s->original.bvh.order, &rules, s->best, &s->arena);
+    if (left > 0)
+        s->best_count = left;
+    else
+        begin_with_mesh(s);
 }
 
 /* ---- trials ---- */
 
+/* Makes what the last trial proposed the best. */
+static void take_proposal(Simplifier *s)
+{
+    Known known = s->best_known;
+    memcpy(s->best, s->triangles, s->triangle_count * sizeof *s->best);
+    memcpy(s->best_facing, s->facing, s->mesh->triangle_count * sizeof *s->facing);
+    s->best_count = s->triangle_count;
+    if (s->collapsed) {
+        s->best_known = s->known;
+        s->known      = known;
+        return;
+    }
+    for (size_t i = 0; i < s->best_count; i++)
+        known.off[i] = known.missed[i] = s->error;
+    find_below(s, known.below);
+}
+
 typedef struct Trial {
     void (*propose)(Simplifier *s, double error, double goal);
     double error, radius; /* in errors */
-    bool   may_give_up, had_faults;
+    bool   may_give_up, had_faults, gave_up, taken;
 } Trial;
 
 /* Simplifies the best triangles further, unless all trials have faults or it is stopped. */
-static void try_all(Simplifier *s, Trial *trial, double goal)
+static void try_until_right(Simplifier *s, Trial *trial, double goal)
 {
     double radius = trial->radius * s->error;
     memset(s->kept, 0, s->best_count * sizeof *s->kept);
     for (int i = 0; i < MAX_TRIALS; i++, radius *= GROWTH) {
-        trial->propose(s, trial->error * s->error, s->fraction + 0.25 * (goal - s->fraction));
+        trial->propose(s, trial->error * s->error, s->fraction + 0.4 * (goal - s->fraction));
         if (atomic_load(&s->stopped) || s->triangle_count == 0 ||
             s->triangle_count >= s->best_count)
             return;
         double most   = MANY_FAULTS + PART_OF_FAULTS * (double)s->triangle_count;
         size_t faults = count_faults(s, radius, trial->may_give_up ? (size_t)most : SIZE_MAX,
-                                     0.5 * (s->fraction + goal));
+                                     s->fraction + 0.6 * (goal - s->fraction));
         trial->had_faults |= faults > 0;
-        if (atomic_load(&s->stopped) || (trial->may_give_up && (double)faults > most))
+        trial->gave_up = trial->may_give_up && (double)faults > most;
+        if (atomic_load(&s->stopped) || trial->gave_up)
             return;
         if (faults == 0) {
-            memcpy(s->best, s->triangles, s->triangle_count * sizeof *s->best);
-            s->best_count = s->triangle_count;
-            memcpy(s->best_facing, s->facing, s->mesh->triangle_count * sizeof *s->facing);
+            take_proposal(s);
+            trial->taken = true;
             return;
         }
     }
 }
 
+/* Does that, and what is done of the work is `goal` then. */
+static void try_all(Simplifier *s, Trial *trial, double goal)
+{
+    try_until_right(s, trial, goal);
+    s->fraction = fmax(s->fraction, goal);
+}
+
+/* Makes room for what is known of as many triangles as the mesh has. */
+static Known make_known(Simplifier *s)
+{
+    const KrsMesh *mesh = s->mesh;
+    return (Known){arena_new_array(&s->arena, double, mesh->triangle_count + 1),
+                   arena_new_array(&s->arena, double, mesh->triangle_count + 1),
+                   arena_new_array(&s->arena, uint32_t, mesh->vertex_count + 1)};
+}
+
 /* Makes all trials. meshoptimizer removes most triangles in little time where the surface is
    smooth.  Single collapses remove half of what it leaves, and all where its proposals cross
-   themselves, as flat faces do.  What was kept around faults is tried once more. */
+   themselves, as flat faces do: most in blocks then, unless the rest of them has faults that stay.
+   What was kept around faults is tried once more. */
+static void find_all(Simplifier *s)
+{
+    Trial first = {.propose     = propose,
+                   .error       = FIRST_ERROR,
+                   .radius      = FIRST_RADIUS,
+                   .may_give_up = true},
+          next  = first,
+          rest  = {.propose = propose_collapses, .error = 1, .radius = FIRST_RADIUS_OF_COLLAPSE},
+          again = rest, once_more = rest;
+    next.error = LAST_ERROR;
+    begin_with_mesh(s);
+    try_all(s, &first, 0.1);
+    if (first.gave_up)
+        collapse_in_blocks(s, 0.3);
+    else
+        try_all(s, &next, 0.3);
+    try_all(s, &rest, 0.9);
+    if (first.gave_up && !rest.taken && !atomic_load(&s->stopped)) {
+        begin_with_mesh(s);
+        try_all(s, &again, 0.97);
+    }
+    if (rest.had_faults)
+        try_all(s, &once_more, 1);
+}
+
 static void find_triangles(Simplifier *s)
 {
     const KrsMesh *mesh  = s->mesh;
@@ -451,19 +559,10 @@ static void find_triangles(Simplifier *s)
     s->queries     = arena_new_array(&s->arena, NearQuery, MAX_PARTS);
     near_mesh_new(&s->original, (const double(*)[3])mesh->vertices,
                   (const uint32_t(*)[3])mesh->triangles, count, &s->arena);
-    s->best_count = count;
+    s->known      = make_known(s);
+    s->best_known = make_known(s);
     if (count > 0)
-        memcpy(s->best, mesh->triangles, count * sizeof *s->best);
-    Trial trials[] = {{propose, FIRST_ERROR, FIRST_RADIUS, true, false},
-                      {propose, LAST_ERROR, FIRST_RADIUS, true, false},
-                      {propose_collapses, 1, FIRST_RADIUS_OF_COLLAPSE, false, false},
-                      {propose_collapses, 1, FIRST_RADIUS_OF_COLLAPSE, false, false}};
-    for (size_t i = 0; i < sizeof trials / sizeof *trials && count > 0; i++) {
-        double goal = 0.5 * (s->fraction + 1);
-        if (i < 3 || trials[2].had_faults)
-            try_all(s, &trials[i], goal);
-        s->fraction = goal;
-    }
+        find_all(s);
 }
 
 /* Copies the best triangles, with the vertices that they use. */

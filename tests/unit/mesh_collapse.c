@@ -11,7 +11,7 @@
 
 #include "compiler/base/vec.h"
 #include "mesh/common/crossing.h"
-#include "mesh/simplify/collapse.h"
+#include "mesh/simplify/blocks.h"
 #include "mesh/simplify/fans.h"
 #include "tests/support/random.h"
 
@@ -28,6 +28,7 @@ typedef struct Ring {
     Random   random;
     double   chance; /* that one is good */
     uint32_t below[COUNT];
+    double   off[TRIANGLES], missed[TRIANGLES];
     double   error;
     double   apart; /* before anything is left out; above the error: each triangle is asked for */
 } Ring;
@@ -88,10 +89,18 @@ static void count_report(void *user, uint32_t triangle)
 
 static size_t collapse(Ring *ring)
 {
-    CollapseRules rules = {ring->kept, ring->below, ring->error, ring->apart,
-                           may_be,     goes_on,     ring};
-    size_t        left  = collapse_edges((const double(*)[3])ring->vertices, COUNT, ring->triangles,
-                                         TRIANGLES, &rules, &ring->arena),
+    CollapseRules rules = {.kept      = ring->kept,
+                           .below     = ring->below,
+                           .error     = ring->error,
+                           .off       = ring->off,
+                           .missed    = ring->missed,
+                           .is_good   = may_be,
+                           .is_wanted = goes_on,
+                           .user      = ring};
+    for (size_t i = 0; i < TRIANGLES; i++)
+        ring->off[i] = ring->missed[i] = ring->apart;
+    size_t left = collapse_edges((const double(*)[3])ring->vertices, COUNT, ring->triangles,
+                                 TRIANGLES, &rules, &ring->arena),
            open = 0, used = 0;
     TriangleEdges edges = sort_edges((const uint32_t(*)[3])ring->triangles, left, &ring->arena);
     report_open(&edges, count_report, &open);
@@ -270,6 +279,75 @@ static void rules_by_chance_leave_it_closed(void **state)
     }
 }
 
+/* A torus of several blocks, its triangles along rings of 200. */
+enum { LONG = 200, MANY = LONG * LONG };
+typedef struct Large {
+    double   vertices[MANY][3], off[2 * MANY], missed[2 * MANY];
+    uint32_t triangles[2 * MANY][3], order[2 * MANY], left[2 * MANY][3], below[MANY];
+} Large;
+
+static Large *large_new(void)
+{
+    Large *large = calloc(1, sizeof *large);
+    assert_non_null(large);
+    for (uint32_t i = 0; i < MANY; i++) {
+        uint32_t u = i / LONG, v = i % LONG, next = (u + 1) % LONG, across = (v + 1) % LONG;
+        double   a = u * 6.283185307179586 / LONG, b = v * 6.283185307179586 / LONG,
+               reach           = 1 + 0.4 * cos(b);
+        double   place[3]      = {reach * cos(a), reach * sin(a), 0.4 * sin(b)};
+        uint32_t corners[2][3] = {{i, next * LONG + v, next * LONG + across},
+                                  {i, next * LONG + across, u * LONG + across}};
+        memcpy(large->vertices[i], place, sizeof place);
+        memcpy(large->triangles[2 * (size_t)i], corners, sizeof corners);
+        large->order[2 * i]     = 2 * i;
+        large->order[2 * i + 1] = 2 * i + 1;
+    }
+    return large;
+}
+
+/* What blocks leave is closed, has the handle, and is near: a vertex that went to the triangle that it is said to. */
+static void blocks_meet_at_their_borders(void **state)
+{
+    const double  error  = 0.01;
+    Memory        memory = {0};
+    Arena         arena  = {.memory = &memory};
+    Large        *large  = large_new();
+    CollapseRules rules  = {.below     = large->below,
+                            .error     = error,
+                            .off       = large->off,
+                            .missed    = large->missed,
+                            .is_wanted = goes_on};
+    const double(*at)[3] = (const double(*)[3])large->vertices;
+    size_t open = 0, used = 0, gone = 0;
+    (void)state;
+    size_t left = collapse_blocks(at, MANY, (const uint32_t(*)[3])large->triangles, 2 * MANY,
+                                  large->order, &rules, large->left, &arena);
+    assert_true(left > 100 && left < 2 * MANY / 3);
+    TriangleEdges edges = sort_edges((const uint32_t(*)[3])large->left, left, &arena);
+    report_open(&edges, count_report, &open);
+    assert_int_equal(open, 0);
+    for (uint32_t i = 0; i < MANY; i++) {
+        bool uses = i < edges.vertex_count && edges.begins[i + 1] > edges.begins[i];
+        used += uses;
+        assert_int_equal(large->below[i] == UINT32_MAX, uses);
+        if (uses)
+            continue;
+        double corners[3][3], nearest[3];
+        gone++;
+        assert_true(large->below[i] < left);
+        for (int c = 0; c < 3; c++)
+            memcpy(corners[c], at[large->left[large->below[i]][c]], sizeof corners[c]);
+        triangle_nearest((const double(*)[3])corners, at[i], nearest);
+        assert_true(distance3(nearest, at[i]) <= error * (1 + 1e-9));
+    }
+    for (size_t i = 0; i < left; i++)
+        assert_true(large->off[i] <= error && large->missed[i] <= error);
+    assert_int_equal(2 * used, left); /* the Euler number is 0 */
+    print_message("# %zu of %d triangles, %zu vertices gone\n", left, 2 * MANY, gone);
+    arena_free(&arena);
+    free(large);
+}
+
 /* Two tetrahedra, with a corner in common and apart. */
 static void sheets_that_meet_in_a_vertex_are_told(void **state)
 {
@@ -299,6 +377,7 @@ int main(void)
         cmocka_unit_test(distances_of_fans_are_enough),
         cmocka_unit_test(small_moves_need_no_questions),
         cmocka_unit_test(rules_by_chance_leave_it_closed),
+        cmocka_unit_test(blocks_meet_at_their_borders),
         cmocka_unit_test(sheets_that_meet_in_a_vertex_are_told),
     };
     return cmocka_run_group_tests_name("collapsed edges", tests, NULL, NULL);
