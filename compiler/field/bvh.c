@@ -1,4 +1,4 @@
-/* bvh.c: boxes of triangles, halved at the middle of their centres. */
+/* bvh.c: makes boxes of triangles, halved at the middle of their centres. */
 #include "compiler/field/bvh.h"
 
 #include <string.h>
@@ -11,13 +11,6 @@ static void triangle_corners(const Bvh *bvh, uint32_t triangle, double corners[3
 {
     for (int i = 0; i < 3; i++)
         memcpy(corners[i], bvh->vertices[bvh->triangles[triangle][i]], sizeof corners[i]);
-}
-
-static double center_of(const Bvh *bvh, uint32_t triangle, int axis)
-{
-    const uint32_t *corners = bvh->triangles[triangle];
-    return bvh->vertices[corners[0]][axis] + bvh->vertices[corners[1]][axis] +
-           bvh->vertices[corners[2]][axis];
 }
 
 static void find_box(const Bvh *bvh, BvhNode *node, uint32_t first, uint32_t count)
@@ -35,37 +28,57 @@ static void find_box(const Bvh *bvh, BvhNode *node, uint32_t first, uint32_t cou
             }
 }
 
-/* Brings those whose centre is below the middle to the front; returns how many. */
-static uint32_t divide(const Bvh *bvh, const BvhNode *node, uint32_t first, uint32_t count)
+/* Thrice the centre of a triangle.  They are in the order of the tree, so that they are read one
+   after the other. */
+typedef struct Center {
+    double at[3];
+} Center;
+
+/* Brings those whose centre is below the middle of all to the front; returns how many. */
+static uint32_t divide(const Bvh *bvh, Center *centers, uint32_t first, uint32_t count)
 {
-    int axis = 0;
-    for (int k = 1; k < 3; k++)
-        if (node->high[k] - node->low[k] > node->high[axis] - node->low[axis])
-            axis = k;
-    double   middle = 1.5 * (node->low[axis] + node->high[axis]);
-    uint32_t front  = 0;
+    double   low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    uint32_t front = 0;
+    int      axis  = 0;
     for (uint32_t i = first; i < first + count; i++)
-        if (center_of(bvh, bvh->order[i], axis) < middle) {
-            uint32_t swap               = bvh->order[i];
-            bvh->order[i]               = bvh->order[first + front];
-            bvh->order[first + front++] = swap;
+        for (int k = 0; k < 3; k++) {
+            low[k]  = min2(low[k], centers[i].at[k]);
+            high[k] = max2(high[k], centers[i].at[k]);
+        }
+    for (int k = 1; k < 3; k++)
+        if (high[k] - low[k] > high[axis] - low[axis])
+            axis = k;
+    double middle = 0.5 * (low[axis] + high[axis]);
+    for (uint32_t i = first; i < first + count; i++)
+        if (centers[i].at[axis] < middle) {
+            uint32_t at = first + front++, swap = bvh->order[i];
+            Center   center = centers[i];
+            bvh->order[i]   = bvh->order[at];
+            centers[i]      = centers[at];
+            bvh->order[at]  = swap;
+            centers[at]     = center;
         }
     return front == 0 || front == count ? count / 2 : front;
 }
 
-static void build(Bvh *bvh, uint32_t first, uint32_t count, int depth)
+static void build(Bvh *bvh, Center *centers, uint32_t first, uint32_t count, int depth)
 {
     BvhNode *node = &bvh->nodes[bvh->node_count++];
-    find_box(bvh, node, first, count);
-    node->first = first;
-    node->count = count;
-    if (count <= FEW || depth == MAX_DEPTH)
+    node->first   = first;
+    node->count   = count;
+    if (count <= FEW || depth == MAX_DEPTH) {
+        find_box(bvh, node, first, count);
         return;
-    uint32_t front = divide(bvh, node, first, count);
+    }
+    uint32_t front = divide(bvh, centers, first, count);
     node->count    = 0;
-    build(bvh, first, front, depth + 1);
+    build(bvh, centers, first, front, depth + 1);
     node->second = (uint32_t)bvh->node_count;
-    build(bvh, first + front, count - front, depth + 1);
+    build(bvh, centers, first + front, count - front, depth + 1);
+    for (int k = 0; k < 3; k++) {
+        node->low[k]  = min2(node[1].low[k], bvh->nodes[node->second].low[k]);
+        node->high[k] = max2(node[1].high[k], bvh->nodes[node->second].high[k]);
+    }
 }
 
 void bvh_new(Bvh *bvh, const double (*vertices)[3], const uint32_t (*triangles)[3], size_t count,
@@ -74,11 +87,18 @@ void bvh_new(Bvh *bvh, const double (*vertices)[3], const uint32_t (*triangles)[
     *bvh = (Bvh){.vertices = vertices, .triangles = triangles, .triangle_count = count};
     if (count == 0)
         return;
-    bvh->order = arena_new_array(arena, uint32_t, count);
-    bvh->nodes = arena_new_array(arena, BvhNode, 2 * count);
-    for (size_t i = 0; i < count; i++)
+    bvh->order        = arena_new_array(arena, uint32_t, count);
+    bvh->nodes        = arena_new_array(arena, BvhNode, 2 * count);
+    ArenaMark mark    = arena_mark(arena);
+    Center   *centers = arena_new_array(arena, Center, count);
+    for (size_t i = 0; i < count; i++) {
         bvh->order[i] = (uint32_t)i;
-    build(bvh, 0, (uint32_t)count, 0);
+        for (int k = 0; k < 3; k++)
+            centers[i].at[k] = vertices[triangles[i][0]][k] + vertices[triangles[i][1]][k] +
+                               vertices[triangles[i][2]][k];
+    }
+    build(bvh, centers, 0, (uint32_t)count, 0);
+    arena_rewind(arena, mark);
 }
 
 void bvh_free(Bvh *bvh, size_t count, Arena *arena)
