@@ -55,7 +55,7 @@ static void mark_fresh(Mesher *m)
 
 /* The parts of the work that are done when bounds refute nothing more, and when cells have verified
    all.  After that each round of cells does about half of what is left. */
-static const double BOUNDS_DONE = 0.35, CELLS_DONE = 0.8;
+static const double BOUNDS_DONE = 0.65, CELLS_DONE = 0.85;
 /* Tetrahedra that will be bounded for each that is refuted now. */
 static const double FOLLOWING = 8;
 
