@@ -188,7 +188,7 @@ static void close_scene(Opened *o)
 /* ---- balls ---- */
 
 typedef struct Count {
-    size_t points, wrong, steep, flat, capped, whole_steps, steps, changes;
+    size_t points, wrong, steep, flat, capped, whole_steps, steps;
 } Count;
 
 static void random_in_ball(const double middle[3], double radius, double point[3])
@@ -311,8 +311,6 @@ static Count try_scene(const char *text, double part)
         fail_msg("%s", text);
     for (int i = 0; i < BALLS; i++)
         try_ball(&o, part, &count);
-    for (uint32_t i = 1; i < o.cells.count; i++)
-        count.changes += o.cells.steps[i].op != o.cells.steps[i - 1].op;
     close_scene(&o);
     return count;
 }
@@ -365,7 +363,6 @@ static Count try_random(void (*make)(char *text, size_t room), int scenes, doubl
         all.points += count.points;
         all.wrong += count.wrong;
         all.steep += count.steep;
-        all.changes += count.changes;
         all.flat += count.flat;
         all.capped += count.capped;
         all.whole_steps += count.whole_steps;
@@ -384,8 +381,6 @@ static void trees_of_shapes(void **context)
     assert_int_equal(count.steep, 0);
     assert_true(count.capped > count.points / 50);
     assert_true(2 * count.steps < count.whole_steps);
-    /* Steps that do the same follow each other. */
-    assert_true(4 * count.changes < count.whole_steps / (BALLS * DEPTH));
 }
 
 /* Fields whose slope is that of their steepest part, which is seldom near. */

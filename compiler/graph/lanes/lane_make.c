@@ -387,8 +387,6 @@ static LaneTape make(const Tape *tape, const Node *roots, size_t root_count, boo
         array_push(arena, &steps.outputs, emit_least(&b, roots, root_count, cuts));
     for (size_t i = 0; i < root_count; i++)
         add_outputs(&b, roots[i]);
-    if (steepest)
-        lane_steps_order(&steps);
     for (size_t i = 0; i < steps.steps.count; i++)
         steps.steps.items[i].kin = steps.steps.items[i].origin = (uint32_t)i + 1;
     LaneTape made   = lane_steps_finish(&steps, tape);

@@ -33,8 +33,6 @@ uint32_t lane_steps_number(LaneSteps *steps, double number);
 /* Finds how fast each node changes with the point at most, wherever that is; infinite: it may jump,
    or there is no bound. */
 double *lane_steepest(const Graph *graph, Arena *arena);
-/* lane_order.c: lets steps of one operation follow each other, as far as operands come before. */
-void lane_steps_order(LaneSteps *steps);
 /* Drops the steps that no output needs, and gives the others rows. */
 LaneTape lane_steps_finish(LaneSteps *steps, const Tape *tape);
 
