@@ -38,11 +38,12 @@ sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Clients of the compiler: it knows nothing of them.
 CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays,$(call sources,$(room)))
+# What the system is asked for.
+PLATFORM := $(call sources,platform/linux)
 # Points and rays side by side, once for each instruction set.
-ifneq ($(firstword $(subst -, ,$(shell $(CC) -dumpmachine))),x86_64)
-COMPILER := $(filter-out %_avx2.c %_avx512.c,$(COMPILER))
-CLIENTS  := $(filter-out %_avx2.c %_avx512.c,$(CLIENTS))
-endif
+OTHERS   := $(if $(filter x86_64-%,$(shell $(CC) -dumpmachine)),%/sets_plain.c,%_avx2.c %_avx512.c %/sets_x86.c)
+COMPILER := $(filter-out $(OTHERS),$(COMPILER))
+CLIENTS  := $(filter-out $(OTHERS),$(CLIENTS))
 LANES    := $(filter compiler/graph/lanes/lanes_% rays/lanes_%,$(COMPILER) $(CLIENTS))
 TARGET   := $(call sources,compiler/target)
 BRIDGE   := compiler/target/glslang_bridge.cpp
@@ -79,7 +80,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(if $(filter 1,$(WERROR)),-Werror
 # All can be linked into a shared library, and no name of ours is seen outside but those of the public headers.
 # Structs of programs here have the size that the library knows (KRS_SIZED in krs/krs.h).
 COMMON   := -I. -Iinclude -DKRS_LIBRARY -MMD -MP -pthread -fPIC -fvisibility=hidden
-STYLE    := -std=c17 -D_GNU_SOURCE $(WARNINGS) $(COMMON)
+# Numbers are rounded as they are written: a scene has the same text on every machine (base/elementary.h).
+STYLE    := -std=c17 -D_GNU_SOURCE -ffp-contract=off $(WARNINGS) $(COMMON)
 CC_C     = $(CC) $(STYLE) $(HEADERS) $(CPPFLAGS) $(CFLAGS)
 # Headers of libraries in C++ are long: under the sanitizers -O1 would take three times as long as -O0.
 CC_CXX   = $(CXX) -std=c++17 -Wall -Wextra $(COMMON) $(HEADERS) $(CPPFLAGS) $(CXXFLAGS) \
@@ -90,7 +92,7 @@ CC_LINK  = $(CC) $(CFLAGS) $(LDFLAGS) -Wl,--exclude-libs,ALL
 HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
-OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(CLIENTS:%.c=$(B)/%.o) $(BRIDGE:%.cpp=$(B)/%.o) $(B)/library_files.o \
+OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(PLATFORM:%.c=$(B)/%.o) $(CLIENTS:%.c=$(B)/%.o) $(BRIDGE:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(B)/essl_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o \
             $(B)/albedo_tables.o $(B)/fingerprints.o
 
@@ -160,7 +162,9 @@ $(B)/live/window/cells.o: FAST = $(if $(CHAFA),-DKRS_HAS_CHAFA)
 # Loops over lanes become vector instructions; results are the same on every machine.  What sanitizers
 # watch cannot become such: trying it takes minutes, and clang warns that it failed.
 $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass-failed,-O3) \
-                               -ffp-contract=off -fno-math-errno -fno-trapping-math
+                               -fno-math-errno -fno-trapping-math
+# Its series are loops.
+$(B)/compiler/base/elementary.o: FAST := -O3
 $(B)/compiler/graph/lanes/lanes_avx2.o $(B)/rays/lanes_avx2.o: FAST += -mavx2
 $(B)/compiler/graph/lanes/lanes_avx512.o $(B)/rays/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
 # Intervals are two numbers that come in registers: joined into a vector they would go through memory, and wait there.

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "measure/measure.h"
 
@@ -69,7 +70,8 @@ static void add_to_base(Lying *lying, const Sample *sample)
 {
     double offset[3];
     add_scaled3(offset, sample->at, -1, lying->m->measures->center);
-    lying->angles[lying->count++] = atan2(dot3(offset, lying->front), dot3(offset, lying->right));
+    lying->angles[lying->count++] = real_atan2(dot3(offset, lying->front),
+                                               dot3(offset, lying->right));
     lying->result->base += sample->area;
 }
 
@@ -77,7 +79,7 @@ static KrsOrientation lie(const Measurer *m, const double up[3], double *angles)
 {
     KrsOrientation result = {0};
     Lying          lying  = {.m = m, .angles = angles, .result = &result};
-    double low, high, steepest = sin(m->options->overhang > 0 ? m->options->overhang : M_PI_4);
+    double low, high, steepest = real_sin(m->options->overhang > 0 ? m->options->overhang : M_PI_4);
     memcpy(result.up, up, sizeof result.up);
     find_axes(up, lying.right, lying.front);
     find_heights(m, up, &low, &high);

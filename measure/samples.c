@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/field/roots.h"
 #include "measure/measure.h"
@@ -263,8 +264,8 @@ static void slide_to_thinnest(const Searcher *s, Sample *sample, double step)
             double angle      = 2 * M_PI * i / DIRECTIONS;
             around[i]         = *sample;
             around[i].snapped = false;
-            add_scaled3(around[i].at, around[i].at, step * cos(angle), u);
-            add_scaled3(around[i].at, around[i].at, step * sin(angle), v);
+            add_scaled3(around[i].at, around[i].at, step * real_cos(angle), u);
+            add_scaled3(around[i].at, around[i].at, step * real_sin(angle), v);
         }
         snap(s, around, DIRECTIONS);
         find_walls(s, around, DIRECTIONS);

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "measure/cut.h"
 #include "measure/measure.h"
@@ -312,7 +313,7 @@ void measure_volume(Measurer *m)
         if (!(ratio < 1) || sum.cells > MAX_CELLS / 2)
             break;
         round->enough *= fmax(fmax(1.0 / 64, fmin(0.25, 0.7 * ratio * ratio)),
-                              pow((double)sum.cells / MAX_CELLS, 1.5));
+                              real_pow((double)sum.cells / MAX_CELLS, 1.5));
     }
     m->begun = begun;
     m->goal  = goal;

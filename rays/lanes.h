@@ -32,5 +32,7 @@ typedef struct RaySet {
 } RaySet;
 
 extern const RaySet ray_set_plain, ray_set_avx2, ray_set_avx512;
+/* The set of the instruction set that lane tapes are run by. */
+const RaySet *ray_set_of_lanes(void);
 
 #endif

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "rays/ray_field.h"
 
 /* Slabs of a tile, and parts of each in the next depth. */
@@ -337,7 +338,7 @@ static float slab_at(float first, float last, float clear, int number)
     const float even = first < last ? sqrtf(first / last) : 1, part = (float)number / SLABS;
     if (number == 0 || number == SLABS)
         return number == 0 ? first : last;
-    return clear > 0 ? clear * powf(last / clear, part)
+    return clear > 0 ? clear * (float)real_pow(last / clear, part)
                      : first + (last - first) * part * (even + (1 - even) * part);
 }
 

@@ -8,23 +8,6 @@
 #include "rays/ray_field.h"
 #include "rays/waves.h"
 
-/* Returns the set of the instruction set that lane tapes are run by. */
-static const RaySet *set_of_lanes(void)
-{
-    static const RaySet *const sets[] = {
-        &ray_set_plain,
-#if defined(__x86_64__)
-        &ray_set_avx2,
-        &ray_set_avx512
-#endif
-    };
-    const char *name = lane_used_set()->name;
-    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++)
-        if (strcmp(sets[i]->name, name) == 0)
-            return sets[i];
-    return &ray_set_plain;
-}
-
 /* The box that has cubes: around the scene or, where that is endless, around what is not, with room beside it. */
 static void bound_space(const RayField *field, float low[3], float high[3])
 {
@@ -96,7 +79,7 @@ RayField *ray_field_new(KrsState *state, bool planes)
     *field = (RayField){
         .memory = {.allocate = from->allocate, .release = from->release, .user = from->user},
         .state  = state,
-        .set    = set_of_lanes(),
+        .set    = ray_set_of_lanes(),
         .planes = planes && state->scene->program.planes};
     field->arena.memory     = &field->memory;
     field->memory.exhausted = &exhausted;

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
 /* The part of the error that chords may be from the outline; dropped points have the rest. */
@@ -34,7 +35,7 @@ static Stretch stretch_between(const OutlinePoint *from, const OutlinePoint *to)
                        .corners = {from->corner, to->corner}};
     for (int k = 0; k < 2; k++)
         stretch.along[k] = to->at[k] - from->at[k];
-    stretch.length = hypot(stretch.along[0], stretch.along[1]);
+    stretch.length = real_hypot(stretch.along[0], stretch.along[1]);
     for (int k = 0; k < 2 && stretch.length > 0; k++)
         stretch.along[k] /= stretch.length;
     stretch.left[0] = -stretch.along[1];
@@ -114,8 +115,8 @@ static void narrow(const Section *s, Search *search, bool evenly)
 static void find_between(const Section *s, Search *search, double at[2])
 {
     enum { MAX_ROUNDS = 30 };
-    const double length = hypot(search->outside[0] - search->inside[0],
-                                search->outside[1] - search->inside[1]);
+    const double length = real_hypot(search->outside[0] - search->inside[0],
+                                     search->outside[1] - search->inside[1]);
     bool         evenly = false;
     for (int i = 0; i < MAX_ROUNDS && (search->high - search->low) * length > s->enough; i++) {
         double width = search->high - search->low;
@@ -165,7 +166,7 @@ static bool find_ends(const Section *s, const Stretch *stretch, Ends *ends)
     slice_gradients(s->field, &s->plane, (const double(*)[2])points, 1e-3 * stretch->length,
                     ends->normals);
     for (int i = 0; i < 2; i++) {
-        ends->steep[i] = hypot(ends->normals[i][0], ends->normals[i][1]);
+        ends->steep[i] = real_hypot(ends->normals[i][0], ends->normals[i][1]);
         if (!(ends->steep[i] > 0))
             return false;
         ends->normals[i][0] /= ends->steep[i];
@@ -205,7 +206,7 @@ static bool meet_tangents(const Section *s, const Stretch *stretch, const Ends *
 static bool point_towards(const Section *s, const OutlinePoint *from, const OutlinePoint *to,
                           double reach, OutlinePoint *point)
 {
-    double length = hypot(to->at[0] - from->at[0], to->at[1] - from->at[1]), distance;
+    double length = real_hypot(to->at[0] - from->at[0], to->at[1] - from->at[1]), distance;
     double points[2][2], gradients[2][2];
     *point = *to;
     if (length <= reach)
@@ -282,7 +283,7 @@ static bool is_near_enough(const Section *s, const Stretch *stretch, const Ends 
 static void box_between(const Section *s, const double from[2], const double to[2], double low[2],
                         double high[2])
 {
-    double wider = width_beside(s, hypot(to[0] - from[0], to[1] - from[1]));
+    double wider = width_beside(s, real_hypot(to[0] - from[0], to[1] - from[1]));
     for (int k = 0; k < 2; k++) {
         low[k]  = min2(from[k], to[k]) - wider;
         high[k] = max2(from[k], to[k]) + wider;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/minmax.h"
 
 /* The parts of the error for dropped points, and for arcs; chords have the rest. */
@@ -45,9 +46,9 @@ static double area_of(const OutlinePoint *points, const double *bulges, size_t c
         const double *a = points[i].at, *b = points[(i + 1) % count].at, *o = points[0].at;
         area += 0.5 * ((a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]));
         if (bulges && bulges[i] != 0) {
-            double chord = hypot(b[0] - a[0], b[1] - a[1]), angle = 4 * atan(bulges[i]);
-            double radius = chord / (2 * sin(0.5 * angle));
-            area += 0.5 * radius * radius * (angle - sin(angle));
+            double chord = real_hypot(b[0] - a[0], b[1] - a[1]), angle = 4 * real_atan(bulges[i]);
+            double radius = chord / (2 * real_sin(0.5 * angle));
+            area += 0.5 * radius * radius * (angle - real_sin(angle));
         }
     }
     return area;
@@ -59,7 +60,7 @@ static double width_of(const OutlinePoint *points, size_t count)
     double length = 0;
     for (size_t i = 0; i < count; i++) {
         const double *a = points[i].at, *b = points[(i + 1) % count].at;
-        length += hypot(b[0] - a[0], b[1] - a[1]);
+        length += real_hypot(b[0] - a[0], b[1] - a[1]);
     }
     return length > 0 ? 2 * fabs(area_of(points, NULL, count)) / length : 0;
 }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
 enum { MAX_BOXES = 1500, MAX_OPEN = 256, SAMPLES = 12 };
@@ -87,8 +88,8 @@ static void slide_down(Extent *e, const Box *box)
         for (int k = 0; k < DIRECTIONS; k++) {
             memcpy(points[k], e->at, sizeof points[k]);
             points[k][e->axis] -= e->sign * LEAST * height;
-            points[k][(e->axis + 1) % 3] += step * cos(2 * M_PI / DIRECTIONS * k);
-            points[k][(e->axis + 2) % 3] += step * sin(2 * M_PI / DIRECTIONS * k);
+            points[k][(e->axis + 1) % 3] += step * real_cos(2 * M_PI / DIRECTIONS * k);
+            points[k][(e->axis + 2) % 3] += step * real_sin(2 * M_PI / DIRECTIONS * k);
         }
         field_distances(e->field, (const double(*)[3])points, DIRECTIONS, distances);
         for (int k = 0; k < DIRECTIONS && e->best == before; k++)

@@ -3,13 +3,14 @@
 
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/minmax.h"
 
 /* ---- beginnings ---- */
 
 static double distance2(const double a[2], const double b[2])
 {
-    return hypot(b[0] - a[0], b[1] - a[1]);
+    return real_hypot(b[0] - a[0], b[1] - a[1]);
 }
 
 static size_t farthest_from(const OutlinePoint *points, size_t count, const double from[2])
@@ -47,7 +48,7 @@ static double distance_to_line(const double at[2], const double from[2], const d
     double length2  = along[0] * along[0] + along[1] * along[1];
     double part     = length2 > 0 ? (off[0] * along[0] + off[1] * along[1]) / length2 : 0;
     part            = max2(0, min2(1, part));
-    return hypot(off[0] - part * along[0], off[1] - part * along[1]);
+    return real_hypot(off[0] - part * along[0], off[1] - part * along[1]);
 }
 
 /* Returns the point between two that is farthest from the line between them, if that is more than
@@ -144,8 +145,8 @@ static bool arc_of(const double from[2], const double via[2], const double to[2]
     arc->radius    = distance2(arc->centre, from);
     /* The inscribed angle is half of the central one. */
     double c[2]  = {to[0] - via[0], to[1] - via[1]};
-    double angle = atan2(a[0] * c[1] - a[1] * c[0], a[0] * c[0] + a[1] * c[1]);
-    arc->bulge   = tan(0.5 * angle);
+    double angle = real_atan2(a[0] * c[1] - a[1] * c[0], a[0] * c[0] + a[1] * c[1]);
+    arc->bulge   = real_tan(0.5 * angle);
     return fabs(angle) < 0.75 * M_PI;
 }
 
@@ -207,7 +208,7 @@ static double distance_to_whole(const Piece2 *piece, const double at[2])
         return fabs(distance2(at, piece->centre) - piece->radius);
     double along[2] = {piece->to[0] - piece->from[0], piece->to[1] - piece->from[1]};
     double cross    = along[0] * (at[1] - piece->from[1]) - along[1] * (at[0] - piece->from[0]);
-    return fabs(cross) / hypot(along[0], along[1]);
+    return fabs(cross) / real_hypot(along[0], along[1]);
 }
 
 /* Finds where a line and a circle, or two circles, touch, as near to `near` as they do. */
@@ -224,7 +225,7 @@ static bool touching_point(const Piece2 *a, const Piece2 *b, const double near[2
         to[0] = other->from[1] - other->to[1];
         to[1] = other->to[0] - other->from[0];
     }
-    double length = hypot(to[0], to[1]);
+    double length = real_hypot(to[0], to[1]);
     double side   = to[0] * (near[0] - round->centre[0]) + to[1] * (near[1] - round->centre[1]);
     for (int k = 0; k < 2 && length > 0; k++)
         touch[k] = round->centre[k] + (side < 0 ? -1 : 1) * round->radius * to[k] / length;
@@ -239,12 +240,12 @@ static void end_piece_at(Piece2 *piece, bool at_end, const double touch[2])
         return;
     double a[2]  = {piece->from[0] - piece->centre[0], piece->from[1] - piece->centre[1]};
     double b[2]  = {piece->to[0] - piece->centre[0], piece->to[1] - piece->centre[1]};
-    double sweep = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    double sweep = real_atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
     if (piece->bulge > 0 && sweep < 0)
         sweep += 2 * M_PI;
     if (piece->bulge < 0 && sweep > 0)
         sweep -= 2 * M_PI;
-    piece->bulge = tan(0.25 * sweep);
+    piece->bulge = real_tan(0.25 * sweep);
 }
 
 /* Moves the end of a piece and the beginning of the next, near `near`, to where they touch; returns
@@ -314,7 +315,7 @@ static void join_ends(Pieces *pieces, double error)
     if (pieces->count < 4)
         return;
     Piece2 *first = &pieces->items[0], *last = &pieces->items[pieces->count - 1];
-    double  sweep = 4 * fabs(atan(first->bulge) + atan(last->bulge));
+    double  sweep = 4 * fabs(real_atan(first->bulge) + real_atan(last->bulge));
     if ((first->radius > 0) != (last->radius > 0) || first->bulge * last->bulge < 0 ||
         sweep > M_PI || distance_to_whole(last, first->to) > error ||
         distance_to_whole(first, last->from) > error)

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
 enum {
@@ -163,7 +164,7 @@ static double probe_thickness(const Section *s, double side, const double from[2
     for (int step = 0; step < STEPS; step++) {
         memcpy(pair[1], pair[0], sizeof pair[1]);
         slice_gradients(s->field, &s->plane, (const double(*)[2])pair, 1e-4 * side, gradients);
-        double steep = hypot(gradients[0][0], gradients[0][1]);
+        double steep = real_hypot(gradients[0][0], gradients[0][1]);
         if (!(fabs(distance) < 2 * steep * side))
             return 0;
         for (int i = 0; i < POINTS; i++) {
@@ -219,8 +220,8 @@ static bool leads_to(const Section *s, Fan *fan, bool inside, double reach, doub
         int deepest = 0, found = -1;
         for (int i = 0; i < DIRECTIONS; i++) {
             double angle = middle + step * (i - DIRECTIONS / 2);
-            points[i][0] = fan->at[0] + reach * cos(angle);
-            points[i][1] = fan->at[1] + reach * sin(angle);
+            points[i][0] = fan->at[0] + reach * real_cos(angle);
+            points[i][1] = fan->at[1] + reach * real_sin(angle);
         }
         slice_distances(s->field, &s->plane, (const double(*)[2])points, DIRECTIONS, distances);
         for (int i = 0; i < DIRECTIONS; i++) {

@@ -12,7 +12,7 @@ KEEPS_cache      := $(call sources_of,compiler/target) runtime/device/shader.c r
 # The sums of a film's samples: the library, less what only meshes, judges or says something, or writes files.
 KEEPS_film       := $(filter-out compiler/front/format% compiler/front/synonyms% \
                     compiler/base/diag% include/krs/mesh.h include/krs/slice.h include/krs/grid.h include/krs/measure.h, $(call sources_of,include/krs $(filter-out compiler/refute compiler/field \
-                    compiler/base/embed runtime/writer runtime/display, $(call folders_of,compiler runtime)))) tools/albedo_tables.c
+                    compiler/base/embed runtime/writer runtime/display, $(call folders_of,compiler platform/linux runtime)))) tools/albedo_tables.c
 # A picture that has begun: also the layout of the file, and what the command makes of its options.
 KEEPS_checkpoint := $(KEEPS_film) $(wildcard $(addprefix cli/, render.c parse_options.c options/options.* options/choices.[ch] options/values.[ch] \
                     $(addprefix picture/, checkpoint.[ch] render.h picture.[ch] light_groups.[ch] frame_paths.[ch] read_exr.[ch])))

@@ -9,7 +9,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
+
+#include "compiler/base/pages.h"
 
 enum { FIRST_BLOCK_BYTES = 4096 };
 
@@ -22,22 +23,6 @@ enum {
     ALIGNMENT    = _Alignof(max_align_t),
     HEADER_BYTES = (sizeof(ArenaBlock) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT
 };
-
-/* Where the system has pages of this size, it needs to be asked for them.  Large blocks are filled
-   from one end to the other, and are looked up everywhere: each page less is a fault less. */
-enum { LARGE_PAGE = 2 << 20 };
-
-static void use_large_pages(void *block, size_t size)
-{
-#ifdef MADV_HUGEPAGE
-    const uintptr_t first = ((uintptr_t)block + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
-    const uintptr_t end   = ((uintptr_t)block + size) / LARGE_PAGE * LARGE_PAGE;
-    if (end > first)
-        madvise((void *)first, end - first, MADV_HUGEPAGE); /* a hint: nothing depends on it */
-#else
-    (void)block, (void)size;
-#endif
-}
 
 static _Noreturn void out_of_memory(const Memory *memory) { longjmp(*memory->exhausted, 1); }
 
@@ -58,7 +43,7 @@ static ArenaBlock *block_new(Memory *memory, size_t bytes)
     if (memory->allocate)
         memset(block, 0, size);
     else
-        use_large_pages(block, size);
+        pages_enlarge(block, size);
     block->size = size;
     memory->used += size;
     return block;
@@ -91,14 +76,14 @@ static void *take_from_new_block(Arena *arena, size_t bytes)
     if (bytes > capacity / 4 && arena->newest) {
         /* A large object has a block of its own, listed behind the newest one, so that the free
            bytes of the newest block can still be used. */
-        block->older = arena->newest->older;
+        block->older         = arena->newest->older;
         arena->newest->older = block;
         return block_bytes(block);
     }
-    block->older = arena->newest;
+    block->older  = arena->newest;
     arena->newest = block;
-    arena->next = (char *)block_bytes(block) + bytes;
-    arena->left = block->size - HEADER_BYTES - bytes;
+    arena->next   = (char *)block_bytes(block) + bytes;
+    arena->left   = block->size - HEADER_BYTES - bytes;
     return block_bytes(block);
 }
 
@@ -162,12 +147,12 @@ void arena_clear(Arena *arena)
         arena_free(arena);
         return;
     }
-    const size_t all = first->size - HEADER_BYTES;
-    const bool only = arena->newest == first;
+    const size_t all  = first->size - HEADER_BYTES;
+    const bool   only = arena->newest == first;
     memset(block_bytes(first), 0, only ? all - arena->left : all);
     while (arena->newest != first) {
         ArenaBlock *block = arena->newest;
-        arena->newest = block->older;
+        arena->newest     = block->older;
         block_free(arena->memory, block);
     }
     arena->next = block_bytes(first);

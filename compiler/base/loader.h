@@ -7,9 +7,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "compiler/base/disk.h"
+
 /* A caller's function that returns the text of a file, or NULL.  The path is the one shown in
    diagnostics.  The caller owns the text. */
 typedef const char *TextSupplier(void *user, const char *path, size_t *length);
+
+/* A caller's function that returns the bytes of a font, and which of several in them is meant, or NULL.  The name is NULL
+   where any font will do. */
+typedef const char *FontSupplier(void *user, const char *name, size_t *length, int *face);
 
 /* A caller's function that is told of each file before it is read. */
 typedef void TextObserver(void *user, const char *path);
@@ -19,19 +25,13 @@ typedef struct Loader {
     void         *user;
     TextObserver *observer; /* may be NULL */
     void         *observer_user;
+    FontSupplier *fonts; /* NULL: they are those of the system */
+    void         *fonts_user;
     bool          confined; /* only files below the folder `root` may be read */
     int           root;     /* descriptor of that folder; -1 where it could not be opened */
     char         *scene;    /* the scene's path, simplified; paths of used files begin like it */
     char         *scene_folder; /* path from the root to its folder; NULL: it is not in there */
 } Loader;
-
-typedef struct Loaded {
-    const char *text; /* NULL: it could not be read */
-    size_t      length;
-    const char *reason;  /* why it could not be read; a static text */
-    bool        outside; /* the file is outside of the root */
-    char       *owned;   /* to be freed when the text is no longer needed */
-} Loaded;
 
 /* Sets all members but the caller's functions and what is handed to them.  `root` may be NULL: nothing is confined.  False when
    there is no memory. */

@@ -3,13 +3,9 @@
  */
 #include "compiler/base/source.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "compiler/base/paths.h"
 
@@ -111,58 +107,7 @@ Span span_join(Span from, Span to)
                   from.end > to.end ? from.end : to.end};
 }
 
-char *source_read(const char *path, size_t *length, const char **reason)
-{
-    struct stat about;
-    int         fd = open(path, O_RDONLY | O_CLOEXEC);
-    *reason        = strerror(errno);
-    if (fd < 0)
-        return NULL;
-    if (fstat(fd, &about) == 0 && S_ISDIR(about.st_mode)) {
-        *reason = "it is a folder";
-        close(fd);
-        return NULL;
-    }
-    return source_read_open(fd, length, reason);
-}
-
 const char source_no_memory[] = "there is not enough memory";
-
-char *source_read_open(int fd, size_t *length, const char **reason)
-{
-    FILE *file = fdopen(fd, "rb");
-    char *text = NULL;
-    *reason    = source_no_memory;
-    if (!file) {
-        close(fd);
-        return NULL;
-    }
-    size_t capacity = 0;
-    *length         = 0;
-    *reason         = NULL;
-    while (*length <= MAX_SOURCE_BYTES) { /* a limit, since devices have no end */
-        if (*length == capacity) {
-            capacity     = capacity ? 2 * capacity : 16384;
-            char *larger = realloc(text, capacity);
-            *reason      = larger ? NULL : source_no_memory;
-            if (!larger)
-                break;
-            text = larger;
-        }
-        size_t count = fread(text + *length, 1, capacity - *length, file);
-        *length += count;
-        if (count == 0) {
-            *reason = ferror(file) ? strerror(errno) : NULL;
-            break;
-        }
-    }
-    fclose(file);
-    if (*reason) {
-        free(text);
-        text = NULL;
-    }
-    return text;
-}
 
 /* ---- the hash: FNV-1a (Fowler, Noll, Vo) ---- */
 

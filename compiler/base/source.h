@@ -45,13 +45,6 @@ enum { MAX_SOURCE_BYTES = 16 << 20 };
 /* The reason that memory has run out. */
 extern const char source_no_memory[];
 
-/* The bytes of a file, which the caller frees with free().  On failure NULL, and *reason is a
-   static text.  Of a file longer than MAX_SOURCE_BYTES, a little more than that is read: *length
-   then shows that it is too long. */
-char *source_read(const char *path, size_t *length, const char **reason);
-/* The same for an open file, which is closed. */
-char *source_read_open(int fd, size_t *length, const char **reason);
-
 /* Adds a copy of a text of at most MAX_SOURCE_BYTES and returns its number. */
 uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length,
                     bool library);

@@ -6,9 +6,11 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
+
 static inline double linear_of_srgb(double value)
 {
-    return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+    return value <= 0.04045 ? value / 12.92 : real_pow((value + 0.055) / 1.055, 2.4);
 }
 
 #endif

@@ -4,6 +4,7 @@
  * Constants are computed here and now; anything else becomes a node.  Vectors of numbers are
  * worked element by element, so that [x, 0, z] - [1, 0, 0] stays cheap and exact.
  */
+#include "compiler/base/elementary.h"
 #include "compiler/eval/elaborate.h"
 
 #include <math.h>
@@ -225,7 +226,7 @@ static bool fold_numbers(TokenKind op, double a, double b, double *result)
     case TOKEN_STAR: *result = a * b; break;
     case TOKEN_SLASH: *result = a / b; break;
     case TOKEN_PERCENT: *result = a - b * floor(a / b); break;
-    case TOKEN_CARET: *result = pow(a, b); break;
+    case TOKEN_CARET: *result = real_pow(a, b); break;
     default: return false;
     }
     return true;

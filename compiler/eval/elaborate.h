@@ -18,6 +18,7 @@
 #include "compiler/family/family.h"
 #include "compiler/front/files.h"
 #include "compiler/front/synonyms.h"
+#include "compiler/outline/fonts.h"
 #include "compiler/shape/scene.h"
 #include "compiler/shape/slope.h"
 
@@ -71,6 +72,7 @@ typedef struct FileBytes {
     const char          *path;
     const unsigned char *bytes;
     size_t               length;
+    int                  face; /* of a font: which of several */
 } FileBytes;
 
 struct Elaboration {
@@ -321,8 +323,8 @@ Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index)
 /* Reads a file that an argument names, relative to the file that has the call; false: reported.  It is
    read once. */
 bool read_beside(Elaboration *e, const Argument *argument, const char *path, FileBytes *bytes);
-/* A file of the system, which scenes cannot name; false: it cannot be read. */
-bool read_system_file(Elaboration *e, const char *path, FileBytes *bytes);
+/* Reads a font that a scene names by its name, or any where that is NULL: the caller's, or one of the system. */
+FontSearch read_font(Elaboration *e, const char *name, FileBytes *bytes);
 
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */

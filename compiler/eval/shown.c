@@ -42,14 +42,21 @@ static uint64_t hash_of_place(const Component *component)
     return hash_with(hash, component->span.end);
 }
 
+/* Places of texts tell which it is: addresses differ from run to run. */
+static uint64_t hash_of_declaration(const Shape *shape)
+{
+    const Syntax *syntax = shape->declaration ? shape->declaration->syntax : NULL;
+    return syntax ? hash_with(syntax->span.source, syntax->span.start) : 0;
+}
+
 /* What a shape is made of and how, without its numbers. */
 static uint64_t hash_of_form(const Shape *shape, int *left)
 {
     uint64_t hash = hash_with(shape->kind, shape->child_count);
-    hash = hash_with(hash, (uintptr_t)(shape->declaration ? shape->declaration->syntax : NULL));
-    hash = hash_with(hash, shape->blend.kind);
-    hash = hash_with(hash, shape->blend.width != NODE_NONE);
-    hash = hash_with(hash, shape->stage_count);
+    hash          = hash_with(hash, hash_of_declaration(shape));
+    hash          = hash_with(hash, shape->blend.kind);
+    hash          = hash_with(hash, shape->blend.width != NODE_NONE);
+    hash          = hash_with(hash, shape->stage_count);
     for (uint32_t i = 0; i<shape->child_count && * left> 0; i++) {
         --*left;
         hash = hash_with(hash, hash_of_form(shape->children[i], left));

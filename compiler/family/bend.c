@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/build.h"
 #include "compiler/lower/join.h"
 #include "compiler/lower/map_chain.h"
@@ -20,7 +21,7 @@ static Range range_sinc(Range a)
     double middle = 0.5 * (a.low + a.high), half = 0.5 * (a.high - a.low);
     if (!isfinite(half))
         return (Range){-0.2173, 1};
-    double value = middle == 0 ? 1 : sin(middle) / middle, rise = 0.5 * half + 1e-15;
+    double value = middle == 0 ? 1 : real_sin(middle) / middle, rise = 0.5 * half + 1e-15;
     return (Range){fmax(value - rise, -0.2173), fmin(value + rise, 1)};
 }
 
@@ -212,7 +213,8 @@ static Node unbent_height(Graph *g, Node rate, Node y, Node u, Node w)
     Node tangent = over(g, u, w);
     if (graph_is_constant(g, rate)) /* it is not 0: make_bend */
         return over(g, graph_op1(g, OP_atan, tangent), rate);
-    return mul(g, over(g, y, w), over_angle(g, OP_atan, tangent));
+    Node angle = over_angle(g, OP_atan, tangent);
+    return mul(g, over(g, y, w), angle);
 }
 
 /* *lengths: how much longer things along y are there than they were. */

@@ -33,8 +33,8 @@ Lowered lower_choice(Lowering *l, const Shape *shape, LowerContext context)
     if (chosen.distance == NODE_NONE)
         return chosen;
     Node condition  = shape->values[0];
-    chosen.distance = graph_op3(g, OP_select, condition, distance_or_nowhere(g, yes),
-                                distance_or_nowhere(g, no));
+    Node otherwise  = distance_or_nowhere(g, no);
+    chosen.distance = graph_op3(g, OP_select, condition, distance_or_nowhere(g, yes), otherwise);
     if (l->surfaces && yes.distance != NODE_NONE && no.distance != NODE_NONE)
         chosen.surface = choose_surface(g, condition, yes.surface, no.surface);
     return chosen;

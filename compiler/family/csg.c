@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/lower/blend.h"
 #include "compiler/lower/boundary.h"
 #include "compiler/lower/join.h"
@@ -55,7 +56,7 @@ const Shape *make_csg_node(ShapeBuilder *builder, ShapeKind kind, const Shape *c
            n of them is at most sqrt(n): for two operands the factor of the table.  What pairs of tools are
            to a solid is less: (1 + sqrt 2) / sqrt 2. */
         if (info->slope > 1)
-            csg_node->slope *= pow(info->slope, log2(acting_at_once(builder, csg_node)));
+            csg_node->slope *= real_pow(info->slope, real_log2(acting_at_once(builder, csg_node)));
     }
     return csg_node;
 }
@@ -205,7 +206,8 @@ static Lowered xor_by_parts(Lowering *l, const Shape *shape, LowerContext contex
         return join_two(l, shape->blend, a, b);
     Lowered result = join_two(l, shape->blend, a, b);
     /* What they share is the complement of: */
-    Lowered shared  = join_two(l, shape->blend, complement(l, a), complement(l, b));
+    b               = complement(l, b);
+    Lowered shared  = join_two(l, shape->blend, complement(l, a), b);
     result.distance = graph_op2(l->graph, OP_max, result.distance, shared.distance);
     return result;
 }

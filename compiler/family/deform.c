@@ -26,6 +26,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/build.h"
 
 /* ---- how they are made ---- */
@@ -93,7 +94,7 @@ const Shape *in_region(ShapeBuilder *builder, const Shape *shape, double most)
     return wider;
 }
 
-double shear_slope(double b) { return 0.5 * (b + hypot(b, 2)); }
+double shear_slope(double b) { return 0.5 * (b + real_hypot(b, 2)); }
 
 Range range_cell(Range range, int i)
 {
@@ -188,7 +189,7 @@ Node cut_distance(Graph *g, Node distance, double width, Node steep, Node *cost)
 double axis_radius(Box box)
 {
     double x = range_largest(box.axis[0]), z = range_largest(box.axis[2]);
-    return fmax(hypot(x, z), 1e-9);
+    return fmax(real_hypot(x, z), 1e-9);
 }
 
 Node across_scaled(Graph *g, Node point, Node y, Node factor)

@@ -21,6 +21,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/lanes/lanes.h"
@@ -243,13 +244,13 @@ static TrialRay trial_ray(Box box, uint32_t i)
     double              length = 0, coordinates[6];
     for (int k = 0; k < 6; k++) {
         Range  side    = box.axis[k % 3];
-        double t       = fmod(0.5 + (i + 1) * pow(root, -(k + 1)), 1);
+        double t       = fmod(0.5 + (i + 1) * real_pow(root, -(k + 1)), 1);
         coordinates[k] = side.low + t * (side.high - side.low);
     }
     for (int k = 0; k < 3; k++) {
         ray.from[k]      = coordinates[k];
         ray.direction[k] = coordinates[k + 3] - coordinates[k];
-        length           = hypot(length, ray.direction[k]);
+        length           = real_hypot(length, ray.direction[k]);
     }
     for (int k = 0; k < 3; k++)
         ray.direction[k] /= length > 0 ? length : 1;

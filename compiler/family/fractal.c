@@ -10,6 +10,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/fractal.h"
 
 static Node pair(ShapeBuilder *builder, double a, double b)
@@ -27,7 +28,7 @@ static Node radius_node(ShapeBuilder *builder, Node c, uint32_t power)
     Node whole = graph_number(g, power), less = graph_number(g, power - 1);
     Node one = graph_number(g, 1), twice = graph_op2(g, OP_mul, size, graph_number(g, 2));
     Node r = graph_op2(g, OP_pow, twice, graph_number(g, 1.0 / power));
-    r      = graph_op2(g, OP_max, r, graph_number(g, exp2(1.0 / (power - 1))));
+    r      = graph_op2(g, OP_max, r, graph_number(g, real_exp2(1.0 / (power - 1))));
     for (int i = 0; i < 4; i++) {
         Node lower = graph_power(g, r, less);
         Node above = graph_op2(g, OP_mul, graph_op2(g, OP_mul, lower, r), less);

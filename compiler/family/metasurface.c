@@ -27,6 +27,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/lower/box_distance.h"
 #include "compiler/lower/surface.h"
@@ -59,7 +60,7 @@ const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32
 /* exp(-4 x), lowered to be 0 at 1. */
 static Node faded(Graph *g, Node x)
 {
-    double end   = exp(-4);
+    double end   = real_exp(-4);
     Node   power = graph_op2(g, OP_mul, x, graph_number(g, -4));
     Node   high  = graph_op1(g, OP_exp, power);
     high         = graph_op2(g, OP_sub, high, graph_number(g, end));

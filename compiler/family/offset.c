@@ -127,8 +127,8 @@ static bool surface_asks_front(Lowering *l, const Surface *surface)
 /* 0 where a number is negative, else 1. */
 static Node is_positive(Graph *g, Node number)
 {
-    Node zero = graph_number(g, 0);
-    return graph_op3(g, OP_select, graph_op2(g, OP_less, number, zero), zero, graph_number(g, 1));
+    Node zero = graph_number(g, 0), one = graph_number(g, 1);
+    return graph_op3(g, OP_select, graph_op2(g, OP_less, number, zero), zero, one);
 }
 
 /* Which side of an open surface without thickness is seen: the normal is on the side of the ray, the gradient of

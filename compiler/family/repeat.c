@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/symbolic/parity.h"
 #include "compiler/lower/boundary.h"
 #include "compiler/lower/box_distance.h"
@@ -350,7 +351,7 @@ static bool ends_across(Box box)
 /* Rotation about y that brings an angle to the x axis. */
 static Node rotate_about_y(Graph *g, Node point, double angle)
 {
-    double c = cos(angle), s = sin(angle);
+    double c = real_cos(angle), s = real_sin(angle);
     Node   r0 = graph_vec3(g, c, 0, s), r1 = graph_vec3(g, 0, 1, 0), r2 = graph_vec3(g, -s, 0, c);
     return angle == 0 ? point : graph_op4(g, OP_rotate, point, r0, r1, r2);
 }
@@ -359,14 +360,14 @@ static Node rotate_about_y(Graph *g, Node point, double angle)
    has no end across the axis is taken to cross them. */
 static double sector_margin(Box content, double angle, double half_sector)
 {
-    double least = INFINITY, c = cos(angle), s = sin(angle);
+    double least = INFINITY, c = real_cos(angle), s = real_sin(angle);
     if (!ends_across(content))
         return -INFINITY;
     for (int corner = 0; corner < 4; corner++) {
         double x     = corner & 1 ? content.axis[0].high : content.axis[0].low;
         double z     = corner & 2 ? content.axis[2].high : content.axis[2].low;
         double along = c * x + s * z, across = -s * x + c * z;
-        least = fmin(least, along * sin(half_sector) - fabs(across) * cos(half_sector));
+        least = fmin(least, along * real_sin(half_sector) - fabs(across) * real_cos(half_sector));
     }
     return least;
 }
@@ -414,8 +415,8 @@ typedef struct Sector {
 static Node across_sector(Graph *g, const Sector *sector, Node local, double factor)
 {
     Node z = graph_component(g, local, 2), x = graph_component(g, local, 0);
-    Node sine    = graph_number(g, sin(sector->half));
-    Node cosine  = graph_number(g, factor * cos(sector->half));
+    Node sine    = graph_number(g, real_sin(sector->half));
+    Node cosine  = graph_number(g, factor * real_cos(sector->half));
     Node along   = graph_op2(g, OP_mul, x, sine);
     Node lateral = graph_op1(g, OP_abs, z);
     lateral      = graph_op2(g, OP_mul, lateral, cosine);
@@ -453,7 +454,7 @@ Lowered lower_repeat_polar(Lowering *l, const Shape *shape, LowerContext context
     double       centre[3];
     box_centre(content->box, centre);
     Sector sector = {.half = M_PI / shape->cells[0]};
-    sector.angle  = ends_across(content->box) ? atan2(centre[2], centre[0]) : 0;
+    sector.angle  = ends_across(content->box) ? real_atan2(centre[2], centre[0]) : 0;
     sector.margin = sector_margin(content->box, sector.angle, sector.half);
     if (shape->cells[0] < 3 || sector.margin < 0)
         return all_around(l, shape, context, 0, shape->cells[0]);
@@ -463,7 +464,7 @@ Lowered lower_repeat_polar(Lowering *l, const Shape *shape, LowerContext context
     Node     local  = graph_op2(g, OP_cell_polar, facing, count);
     Lowered  result = lower_in_sector(l, shape, context, &sector, local);
     Node     mapped = rotate_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
-    double   width  = hypot(centre[0], centre[2]) * sin(sector.half);
+    double   width  = real_hypot(centre[0], centre[2]) * real_sin(sector.half);
     CellRule rule   = choose_cell_rule(l, content, mapped, 2, sector.margin, width, false, context);
     if (rule == SYMMETRIC || result.distance == NODE_NONE)
         return result;

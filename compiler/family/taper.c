@@ -75,14 +75,15 @@ static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y, Node *is
     fraction      = graph_op3(g, OP_clamp, fraction, zero, one);
     Node slant    = add(g, foot, graph_op2(g, OP_scale, side, fraction));
     Node height   = graph_op3(g, OP_clamp, y, f->bottom, f->top);
-    Node level    = over(g, sub(g, height, f->bottom), graph_number(g, f->height));
+    Node whole    = graph_number(g, f->height);
+    Node level    = over(g, sub(g, height, f->bottom), whole);
     Node reach    = graph_op3(g, OP_mix, f->low, f->high, level);
     Node disc     = graph_op2(g, OP_vec2, least(g, r, reach), height);
     Node to_slant = graph_op1(g, OP_length, sub(g, position, slant));
     Node to_disc  = graph_op1(g, OP_length, sub(g, position, disc));
     Node nearer   = graph_op2(g, OP_less, to_disc, to_slant);
-    Node within   = graph_op2(g, OP_and, graph_op2(g, OP_less_equal, f->bottom, y),
-                              graph_op2(g, OP_less_equal, y, f->top));
+    Node below    = graph_op2(g, OP_less_equal, y, f->top);
+    Node within   = graph_op2(g, OP_and, graph_op2(g, OP_less_equal, f->bottom, y), below);
     *is_inside    = graph_op2(g, OP_and, within, graph_op2(g, OP_less_equal, r, reach));
     return graph_op3(g, OP_select, nearer, disc, slant);
 }

@@ -33,15 +33,17 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
+
 double julia_radius(double c, uint32_t power)
 {
-    double r = fmax(exp2(1.0 / (power - 1)), pow(2 * c, 1.0 / power));
+    double r = fmax(real_exp2(1.0 / (power - 1)), real_pow(2 * c, 1.0 / power));
     for (int i = 0; i < 60; i++) /* Newton's steps come down to the root, as R^p is convex */
-        r = ((power - 1) * pow(r, power) + c) / (power * pow(r, power - 1) - 1);
+        r = ((power - 1) * real_pow(r, power) + c) / (power * real_pow(r, power - 1) - 1);
     return r;
 }
 
-double mandelbulb_radius(uint32_t power) { return exp2(1.0 / (power - 1)); }
+double mandelbulb_radius(uint32_t power) { return real_exp2(1.0 / (power - 1)); }
 
 uint32_t fractal_loops(Op op, double iterations)
 {
@@ -53,8 +55,8 @@ uint32_t fractal_loops(Op op, double iterations)
 /* |w|^p + |c| <= |w| for some |w|, as long as |c| is at most this. */
 double mandelbulb_core(double power)
 {
-    double r = pow(power, -1 / (power - 1));
-    return r - pow(r, power);
+    double r = real_pow(power, -1 / (power - 1));
+    return r - real_pow(r, power);
 }
 
 /* ---- orbits ---- */
@@ -101,7 +103,7 @@ static void julia_step(double z[4], const double c[4], int power)
    times `power`, by powers of complex numbers.  Returns |sin(power t) / sin t| |w|^(power - 1). */
 static double triplex_step(double w[3], const double c[3], int power)
 {
-    double across   = hypot(w[0], w[2]), tilt[2], turn[2];
+    double across   = real_hypot(w[0], w[2]), tilt[2], turn[2];
     double about[2] = {across > 0 ? w[2] / across : 1, across > 0 ? w[0] / across : 0};
     raise(tilt, (double[]){w[1], 1}, power, across * across);
     raise(turn, about, power, 1);
@@ -139,7 +141,7 @@ static NodeValue trap_value(Trap trap) { return (NodeValue){{trap.nearest, trap.
 /* The radius around z whose image f keeps within x: (|z|^p + x)^(1/p) - |z| without loss. */
 static double step_back(double size, double x, int power)
 {
-    double sum = 1, lower = 1, root = pow(pow(size, power) + x, 1.0 / power);
+    double sum = 1, lower = 1, root = real_pow(real_pow(size, power) + x, 1.0 / power);
     for (int i = 1; i < power; i++) {
         lower *= size;
         sum = sum * root + lower;
@@ -179,13 +181,13 @@ NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size)
 /* ---- Mandelbulbs ---- */
 
 /* The orbit is followed until it is as far away as single precision can raise to the power. */
-static double bailout(double power) { return fmin(16, exp2(32 / power)); }
+static double bailout(double power) { return fmin(16, real_exp2(32 / power)); }
 
 /* The least that the mean square of the stretch counts as. */
 #define MIN_STRETCH 0.85
 
 /* A step from there stretches by a quarter: nothing beside the 1 that each adds. */
-static double min_size(double power) { return pow(4 * power, -1 / (power - 1)); }
+static double min_size(double power) { return real_pow(4 * power, -1 / (power - 1)); }
 
 NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
 {
@@ -198,7 +200,7 @@ NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
     if (from_origin > MANDELBULB_NEAR * radius)
         return (NodeValue){{from_origin - radius}};
     for (int n = 0; n < last && modulus <= bailout(power); n++) {
-        double radial  = pow(fmax(modulus, least), power - 1);
+        double radial  = real_pow(fmax(modulus, least), power - 1);
         double lateral = triplex_step(w, c, power_of(&o[1]));
         double mean    = (2 * radial * radial + lateral * lateral) / 3;
         sum += steep;
@@ -207,7 +209,8 @@ NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
     }
     double margin = radius - modulus;
     if (margin < 0)
-        distance = fmin(0.5 * modulus * log(modulus / radius) / steep, fmax(from_origin - core, 0));
+        distance = fmin(0.5 * modulus * real_log(modulus / radius) / steep,
+                        fmax(from_origin - core, 0));
     else
         distance = -0.5 * margin / (steep + (power - 1) / (2 * least) * sum * margin);
     return (NodeValue){{fmax(distance, from_origin - radius)}};

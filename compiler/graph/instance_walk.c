@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "compiler/base/bits.h"
+#include "compiler/base/elementary.h"
 #include "compiler/base/far.h"
 
 void instance_walk_begin(InstanceWalk *walk, const InstanceFunction *function,
@@ -133,7 +134,7 @@ static double end_of_states(const InstanceFunction *function, const Graph *graph
                             const NodeValue *states)
 {
     return function->joins  ? joined(function, graph, states)
-           : function->sums ? states[0].v[0] - states[2].v[0] * log(fmax(states[1].v[0], 1))
+           : function->sums ? states[0].v[0] - states[2].v[0] * real_log(fmax(states[1].v[0], 1))
                             : states[0].v[0];
 }
 

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/blend_shares.h"
 #include "compiler/graph/fractal.h"
 
@@ -59,7 +60,7 @@ static double length(const NodeValue *a, uint32_t size)
     if (sum > 1e-200 && sum < 1e200)
         return sqrt(sum);
     for (uint32_t i = 1; i < size; i++)
-        whole = hypot(whole, a->v[i]);
+        whole = real_hypot(whole, a->v[i]);
     return whole;
 }
 
@@ -138,9 +139,9 @@ static NodeValue evaluate_cell_polar(const NodeValue *o, uint32_t size)
     const double *p = o[0].v, count = o[1].v[0];
     if (!(count >= 1))
         return o[0];
-    double sector = 2 * acos(-1) / count;
+    double sector = 2 * M_PI / count;
     double angle  = sector * floor(value_atan2(p[2], p[0]) / sector + 0.5);
-    double c = cos(angle), s = sin(angle);
+    double c = real_cos(angle), s = real_sin(angle);
     return vector3(c * p[0] + s * p[2], p[1], c * p[2] - s * p[0]);
 }
 

@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/graph.h"
 
 static inline uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
@@ -39,8 +40,8 @@ static inline double value_mod(double a, double b)
 }
 
 /* The sign of a zero means nothing here. */
-static inline double value_pow(double a, double b) { return pow(a + 0.0, b); }
-static inline double value_atan2(double a, double b) { return atan2(a + 0.0, b + 0.0); }
+static inline double value_pow(double a, double b) { return real_pow(a + 0.0, b); }
+static inline double value_atan2(double a, double b) { return real_atan2(a + 0.0, b + 0.0); }
 
 static inline double value_smoothstep(double a, double b, double c)
 {

@@ -12,6 +12,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
+
 static const double PI = 3.14159265358979323846;
 
 int box_longest_axis(const Box *box)
@@ -101,7 +103,7 @@ double hypot_upward(double a, double b)
 {
     if (a == 0 || b == 0)
         return a + b;
-    double length = hypot(a, b);
+    double length = real_hypot(a, b);
     return length + length * 0x1p-51;
 }
 
@@ -174,19 +176,22 @@ Range range_inversesqrt_slope(Range a, Range value)
     return range_mul(range_of(-0.5), range_div(value, range_above(a, 0)));
 }
 
-Range range_exp(Range a) { return widened_within(exp(a.low), exp(a.high), 0, HUGE_VAL); }
-Range range_exp2(Range a) { return widened_within(exp2(a.low), exp2(a.high), 0, HUGE_VAL); }
+Range range_exp(Range a) { return widened_within(real_exp(a.low), real_exp(a.high), 0, HUGE_VAL); }
+Range range_exp2(Range a)
+{
+    return widened_within(real_exp2(a.low), real_exp2(a.high), 0, HUGE_VAL);
+}
 
 Range range_log(Range a)
 {
     a = range_above(a, 0);
-    return widened(log(a.low), log(a.high));
+    return widened(real_log(a.low), real_log(a.high));
 }
 
 Range range_log2(Range a)
 {
     a = range_above(a, 0);
-    return widened(log2(a.low), log2(a.high));
+    return widened(real_log2(a.low), real_log2(a.high));
 }
 
 /* Tells whether a holds peak + n * period for a whole n; in doubt, yes. */
@@ -210,15 +215,15 @@ static Range range_wave(Range a, double at_low, double at_high, double peak)
     return wave;
 }
 
-Range range_sin(Range a) { return range_wave(a, sin(a.low), sin(a.high), PI / 2); }
-Range range_cos(Range a) { return range_wave(a, cos(a.low), cos(a.high), 0); }
+Range range_sin(Range a) { return range_wave(a, real_sin(a.low), real_sin(a.high), PI / 2); }
+Range range_cos(Range a) { return range_wave(a, real_cos(a.low), real_cos(a.high), 0); }
 
 Range range_tan(Range a)
 {
     if (!isfinite(a.low) || !isfinite(a.high) || range_largest(a) > 1e9 ||
         range_holds(a, PI / 2, PI))
         return ANYTHING;
-    return widened(tan(a.low), tan(a.high));
+    return widened(real_tan(a.low), real_tan(a.high));
 }
 
 /* 1 + tan^2, but for the jump from one end of the line to the other at a pole. */
@@ -231,8 +236,11 @@ Range range_tan_slope(Range value)
 
 static double unit(double a) { return min2(max2(a, -1), 1); }
 
-Range range_asin(Range a) { return widened(asin(unit(a.low)), asin(unit(a.high))); }
-Range range_acos(Range a) { return widened_within(acos(unit(a.high)), acos(unit(a.low)), 0, 4); }
+Range range_asin(Range a) { return widened(real_asin(unit(a.low)), real_asin(unit(a.high))); }
+Range range_acos(Range a)
+{
+    return widened_within(real_acos(unit(a.high)), real_acos(unit(a.low)), 0, 4);
+}
 
 /* 1 / sqrt(1 - a^2), and 0 where a is clamped. */
 Range range_asin_slope(Range a)
@@ -245,13 +253,13 @@ Range range_asin_slope(Range a)
     return widened_within(low, high, 0, HUGE_VAL);
 }
 
-Range range_atan(Range a) { return widened(atan(a.low), atan(a.high)); }
-Range range_sinh(Range a) { return widened(sinh(a.low), sinh(a.high)); }
-Range range_tanh(Range a) { return widened_within(tanh(a.low), tanh(a.high), -1, 1); }
+Range range_atan(Range a) { return widened(real_atan(a.low), real_atan(a.high)); }
+Range range_sinh(Range a) { return widened(real_sinh(a.low), real_sinh(a.high)); }
+Range range_tanh(Range a) { return widened_within(real_tanh(a.low), real_tanh(a.high), -1, 1); }
 
 Range range_cosh(Range a)
 {
-    return widened_within(cosh(range_least(a)), cosh(range_largest(a)), 1, HUGE_VAL);
+    return widened_within(real_cosh(range_least(a)), real_cosh(range_largest(a)), 1, HUGE_VAL);
 }
 
 Range range_sech_square(Range a)
@@ -350,11 +358,11 @@ static Range range_corners(double f(double, double), Range a, Range b)
 Range range_pow(Range a, Range b)
 {
     if (a.low >= 0)
-        return range_intersect((Range){0, HUGE_VAL}, range_corners(pow, range_above(a, 0), b));
+        return range_intersect((Range){0, HUGE_VAL}, range_corners(real_pow, range_above(a, 0), b));
     if (!range_is_single(b) || floor(b.low) != b.low || (b.low < 0 && a.high >= 0))
         return ANYTHING;
     bool even = fmod(b.low, 2) == 0;
-    return range_corners(pow, even ? range_abs(a) : a, b);
+    return range_corners(real_pow, even ? range_abs(a) : a, b);
 }
 
 Range range_pow_slope(Range a, Range b)
@@ -372,7 +380,7 @@ Range range_pow_slope_exponent(Range a, Range value)
 /* Tells whether the half line b < 0, a = 0, across which the angle jumps, meets the inside. */
 static bool crosses_cut(Range a, Range b) { return a.low < 0 && a.high >= 0 && b.low < 0; }
 
-static double angle_of(double a, double b) { return atan2(a + 0.0, b + 0.0); } /* no -0 */
+static double angle_of(double a, double b) { return real_atan2(a + 0.0, b + 0.0); } /* no -0 */
 
 Range range_atan2(Range a, Range b)
 {

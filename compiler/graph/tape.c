@@ -21,7 +21,7 @@ typedef struct NodeSet {
 /* Tells whether the node is new; then it takes its slot. */
 static bool set_take(NodeSet *set, Node node)
 {
-    size_t i = node * (size_t)0x9E3779B97F4A7C15u >> 20 & (set->size - 1);
+    size_t i = (size_t)(node * (uint64_t)0x9E3779B97F4A7C15u >> 20) & (set->size - 1);
     for (; set->slots[i]; i = (i + 1) & (set->size - 1))
         if (set->slots[i] == node + 1)
             return false;
@@ -44,18 +44,42 @@ static void set_add(NodeSet *set, Node node, Arena *arena)
     set->nodes[set->count++] = node;
 }
 
-static int compare_nodes(const void *a, const void *b)
-{
-    return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
-}
-
 /* Most lists are short: they are sorted as cards are. */
 enum { MAX_CARDS = 32 };
 
-static void sort_nodes(Node *nodes, size_t count)
+/* Nodes of the same byte keep their order. */
+static void sort_by_byte(const Node *from, Node *to, size_t count, int shift)
 {
+    size_t places[257] = {0};
+    for (size_t i = 0; i < count; i++)
+        places[(from[i] >> shift & 255) + 1]++;
+    for (int i = 0; i < 255; i++)
+        places[i + 1] += places[i];
+    for (size_t i = 0; i < count; i++)
+        to[places[from[i] >> shift & 255]++] = from[i];
+}
+
+/* Sorts by the last byte first, and ends where all others are 0. */
+static void sort_many(NodeSet *set, Arena *arena)
+{
+    Node *other = arena_new_array(arena, Node, set->count), most = 0;
+    for (size_t i = 0; i < set->count; i++)
+        most = set->nodes[i] > most ? set->nodes[i] : most;
+    set->capacity = set->count;
+    for (int shift = 0; shift < 32 && most >> shift; shift += 8) {
+        Node *sorted = other;
+        sort_by_byte(set->nodes, sorted, set->count, shift);
+        other      = set->nodes;
+        set->nodes = sorted;
+    }
+}
+
+static void sort_nodes(NodeSet *set, Arena *arena)
+{
+    Node        *nodes = set->nodes;
+    const size_t count = set->count;
     if (count > MAX_CARDS) {
-        qsort(nodes, count, sizeof *nodes, compare_nodes);
+        sort_many(set, arena);
         return;
     }
     for (size_t i = 1; i < count; i++) {
@@ -90,7 +114,7 @@ static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_co
         if (e->op == OP_row && graph->instances)
             add_column(&set, graph, e, arena);
     }
-    sort_nodes(set.nodes, set.count);
+    sort_nodes(&set, arena);
     return set;
 }
 
@@ -144,7 +168,7 @@ static Tape *find_functions(const Graph *graph, NodeSet *set, Arena *arena)
     for (size_t id = count; id-- > 0;)
         if (functions[id].graph)
             fill_function(functions, (uint32_t)id, graph, set, arena);
-    sort_nodes(set->nodes, set->count);
+    sort_nodes(set, arena);
     return functions;
 }
 

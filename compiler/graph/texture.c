@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/half.h"
 
 /* ---- texels ---- */
@@ -162,9 +163,9 @@ static void note_square(Texture *texture, const NodeValue corners[2][2])
         for (int j = 0; j < 2; j++) {
             double squares = 0;
             for (int k = 0; k < TEXTURE_CHANNELS; k++) {
-                double across      = fabs(corners[i][1].v[k] - corners[i][0].v[k]);
-                double up          = fabs(corners[1][j].v[k] - corners[0][j].v[k]);
-                double square      = pow(size->width * across, 2) + pow(size->height * up, 2);
+                double across = fabs(corners[i][1].v[k] - corners[i][0].v[k]);
+                double up     = fabs(corners[1][j].v[k] - corners[0][j].v[k]);
+                double square = real_pow(size->width * across, 2) + real_pow(size->height * up, 2);
                 texture->across[k] = fmax(texture->across[k], across);
                 texture->up[k]     = fmax(texture->up[k], up);
                 squares += square;
@@ -286,7 +287,7 @@ static NodeValue level_value(const Texture *texture, uint32_t level, const doubl
 static double level_of(double width)
 {
     const double widest = 1 << MAX_TEXTURE_LEVELS;
-    return !(width < widest) ? log2(widest) : width > 1 ? log2(width) : 0;
+    return !(width < widest) ? real_log2(widest) : width > 1 ? real_log2(width) : 0;
 }
 
 NodeValue texture_value(const Texture *texture, const double uv[2], double width)

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/build.h"
 #include "compiler/graph/instances/iterations.h"
 #include "compiler/lower/instance_groups.h"
@@ -141,7 +142,7 @@ static bool map_all(const PlaneMap *map, Curves *curves)
 {
     double size = map->m[0][0] * map->m[1][1] - map->m[0][1] * map->m[1][0];
     double ways = map->m[0][0] * map->m[0][1] + map->m[1][0] * map->m[1][1];
-    double x = hypot(map->m[0][0], map->m[1][0]), y = hypot(map->m[0][1], map->m[1][1]);
+    double x = real_hypot(map->m[0][0], map->m[1][0]), y = real_hypot(map->m[0][1], map->m[1][1]);
     bool   even = fabs(x - y) <= 1e-12 * x && fabs(ways) <= 1e-12 * x * y;
     for (size_t i = 0; i < curves->count; i++) {
         Curve *curve = &curves->items[i];
@@ -190,8 +191,8 @@ static double length_of(const Curves *curves)
 {
     double length = 0;
     for (size_t i = 0; i < curves->count; i++)
-        length += hypot(curves->items[i].to[0] - curves->items[i].from[0],
-                        curves->items[i].to[1] - curves->items[i].from[1]);
+        length += real_hypot(curves->items[i].to[0] - curves->items[i].from[0],
+                             curves->items[i].to[1] - curves->items[i].from[1]);
     return length;
 }
 
@@ -247,7 +248,7 @@ static void outside_at(const Curve *curve, double t, double normal[2])
 {
     double tangent[2];
     curve_tangent(curve, t, tangent);
-    double length = hypot(tangent[0], tangent[1]);
+    double length = real_hypot(tangent[0], tangent[1]);
     normal[0]     = tangent[1] / length;
     normal[1]     = -tangent[0] / length;
 }
@@ -264,9 +265,9 @@ static double bulge_of(const Curve *curve)
     double first[2], last[2];
     outside_at(curve, 0, first);
     outside_at(curve, 1, last);
-    double turn = atan2(first[0] * last[1] - first[1] * last[0],
-                        first[0] * last[0] + first[1] * last[1]);
-    return curve->radius > 0 ? tan(0.25 * turn) : 0;
+    double turn = real_atan2(first[0] * last[1] - first[1] * last[0],
+                             first[0] * last[0] + first[1] * last[1]);
+    return curve->radius > 0 ? real_tan(0.25 * turn) : 0;
 }
 
 /* What lies beside a curve, to the right of it.  Of an arc around what is outside no more than up to its centre:
@@ -287,7 +288,7 @@ static void draw_beside(Path *path, const Curve *curve, double by)
     path_arc(path, curve->from, -bulge);
 }
 
-static double angle_of(const double v[2]) { return atan2(v[1], v[0]); }
+static double angle_of(const double v[2]) { return real_atan2(v[1], v[0]); }
 
 /* The sector around the end of a curve, up to the next curve to its right. */
 static void draw_corner(Path *path, const Curves *curves, const Curve *curve, double by,
@@ -297,7 +298,7 @@ static void draw_corner(Path *path, const Curves *curves, const Curve *curve, do
     outside_at(curve, 1, normal);
     for (size_t i = 0; i < curves->count; i++) {
         const Curve *other = &curves->items[i];
-        if (hypot(other->from[0] - curve->to[0], other->from[1] - curve->to[1]) > 1e-8 * size)
+        if (real_hypot(other->from[0] - curve->to[0], other->from[1] - curve->to[1]) > 1e-8 * size)
             continue;
         outside_at(other, 0, next);
         /* What is outside there; from half of a turn on it has a sector. */
@@ -310,10 +311,10 @@ static void draw_corner(Path *path, const Curves *curves, const Curve *curve, do
         return;
     double begin = angle_of(normal);
     away(curve->to, normal, by, ends[0]);
-    away(curve->to, (double[]){cos(begin + turn), sin(begin + turn)}, by, ends[1]);
+    away(curve->to, (double[]){real_cos(begin + turn), real_sin(begin + turn)}, by, ends[1]);
     path_move(path, curve->to);
     path_line(path, ends[0]);
-    path_arc(path, ends[1], tan(0.25 * turn));
+    path_arc(path, ends[1], real_tan(0.25 * turn));
     path_close(path);
 }
 
@@ -382,7 +383,7 @@ static bool gather_mirror(Gathering *g, const Shape *shape, Curves *curves)
     g->changed = true;
     if (!known(g, shape->values[0], 0, &u[0]) || !known(g, shape->values[0], 1, &u[1]) ||
         !known(g, shape->values[1], 0, &w) || !gather(g, shape->children[0], curves) ||
-        !(hypot(u[0], u[1]) > 1 - 1e-9))
+        !(real_hypot(u[0], u[1]) > 1 - 1e-9))
         return false;
     double   far = 4 * (size_of(curves) + fabs(w)), at[2] = {w * u[0], w * u[1]};
     double   along[2] = {-u[1] * far, u[0] * far};
@@ -484,8 +485,8 @@ static Arc arc_of(const Curve *curve)
     double ends[2];
     for (int k = 0; k < 2; k++)
         arc.centre[k] = curve->centre[k];
-    ends[0]     = atan2(curve->from[1] - arc.centre[1], curve->from[0] - arc.centre[0]);
-    ends[1]     = atan2(curve->to[1] - arc.centre[1], curve->to[0] - arc.centre[0]);
+    ends[0]     = real_atan2(curve->from[1] - arc.centre[1], curve->from[0] - arc.centre[0]);
+    ends[1]     = real_atan2(curve->to[1] - arc.centre[1], curve->to[0] - arc.centre[0]);
     double turn = remainder(ends[1] - ends[0], 2 * M_PI);
     arc.middle  = ends[0] + 0.5 * turn;
     arc.half    = 0.5 * fabs(turn);
@@ -498,7 +499,7 @@ static bool join_arc(Arc *arc, const Arc *next, double size)
     double slack = 1e-7 * size;
     double turn  = remainder(next->middle - arc->middle, 2 * M_PI);
     if (fabs(arc->radius - next->radius) > slack ||
-        hypot(arc->centre[0] - next->centre[0], arc->centre[1] - next->centre[1]) > slack ||
+        real_hypot(arc->centre[0] - next->centre[0], arc->centre[1] - next->centre[1]) > slack ||
         arc->half + next->half > M_PI + 1e-7)
         return false;
     /* The second may go on at either end of the first. */
@@ -576,8 +577,9 @@ static Node square_to_line(Graph *g, const Curve *line, Node point)
     double square   = way[0] * way[0] + way[1] * way[1];
     double share[2] = {way[0] / square, way[1] / square};
     Node   away = sub(g, point, known_vec2(g, line->from)), along = known_vec2(g, share);
-    Node   t  = graph_op2(g, OP_dot, away, along);
-    t         = graph_op3(g, OP_clamp, t, graph_number(g, 0), graph_number(g, 1));
+    Node   t   = graph_op2(g, OP_dot, away, along);
+    Node   one = graph_number(g, 1), zero = graph_number(g, 0);
+    t         = graph_op3(g, OP_clamp, t, zero, one);
     Node part = mul(g, known_vec2(g, way), t);
     away      = sub(g, away, part);
     return graph_op2(g, OP_dot, away, away);
@@ -586,20 +588,22 @@ static Node square_to_line(Graph *g, const Curve *line, Node point)
 /* Mirrored at its middle, an arc has one end; what is beyond that is nearest to it. */
 static Node square_to_arc(Graph *g, const Arc *arc, Node point)
 {
-    double middle[2] = {cos(arc->middle), sin(arc->middle)}, left[2] = {-middle[1], middle[0]};
-    double end[2] = {arc->radius * cos(arc->half), arc->radius * sin(arc->half)};
-    Node   away   = sub(g, point, known_vec2(g, arc->centre));
-    Node   length = graph_op1(g, OP_length, away);
-    Node   over   = sub(g, length, graph_number(g, arc->radius));
+    double middle[2] = {real_cos(arc->middle), real_sin(arc->middle)},
+           left[2]   = {-middle[1], middle[0]};
+    double end[2]    = {arc->radius * real_cos(arc->half), arc->radius * real_sin(arc->half)};
+    Node   away      = sub(g, point, known_vec2(g, arc->centre));
+    Node   length    = graph_op1(g, OP_length, away);
+    Node   over      = sub(g, length, graph_number(g, arc->radius));
     if (arc->half > M_PI - 1e-7)
         return mul(g, over, over);
     Node x      = graph_op2(g, OP_dot, away, known_vec2(g, middle));
     Node y      = graph_op2(g, OP_dot, away, known_vec2(g, left));
     y           = graph_op1(g, OP_abs, y);
-    Node up     = mul(g, y, graph_number(g, cos(arc->half)));
-    Node along  = mul(g, x, graph_number(g, sin(arc->half)));
+    Node up     = mul(g, y, graph_number(g, real_cos(arc->half)));
+    Node along  = mul(g, x, graph_number(g, real_sin(arc->half)));
     Node beside = graph_op2(g, OP_less, up, along);
-    Node beyond = sub(g, vec2(g, x, y), known_vec2(g, end));
+    Node corner = known_vec2(g, end);
+    Node beyond = sub(g, vec2(g, x, y), corner);
     Node within = vec2(g, over, graph_number(g, 0));
     Node to     = graph_op3(g, OP_select, beside, within, beyond);
     return graph_op2(g, OP_dot, to, to);

@@ -83,7 +83,8 @@ static Node axes_of(Graph *g, Node place, Arena *scratch)
     Node hk   = graph_op2(g, OP_dot, seen[0], seen[1]);
     Node half = graph_number(g, 0.5), one = graph_number(g, 1);
     Node mean = mul(g, half, add(g, hh, kk)), half_difference = mul(g, half, sub(g, hh, kk));
-    Node root = root_of(g, add(g, mul(g, half_difference, half_difference), mul(g, hk, hk)), 2);
+    Node mixed = mul(g, hk, hk);
+    Node root  = root_of(g, add(g, mul(g, half_difference, half_difference), mixed), 2);
     /* Twice the angle of the long side has this cosine; there is none where it is a circle. */
     Node double_cosine = over(g, half_difference, at_least(g, root, 1e-30));
     Node cosine        = root_of(g, at_least(g, mul(g, half, add(g, one, double_cosine)), 0), 2);
@@ -93,7 +94,8 @@ static Node axes_of(Graph *g, Node place, Arena *scratch)
     Node width         = add(g, pixel.radius, pixel.radius);
     Node length        = mul(g, width, root_of(g, add(g, mean, root), 2));
     Node across        = mul(g, width, root_of(g, at_least(g, sub(g, mean, root), 0), 2));
-    return graph_op3(g, OP_vec3, mul(g, length, cosine), mul(g, length, sine), across);
+    Node up            = mul(g, length, sine);
+    return graph_op3(g, OP_vec3, mul(g, length, cosine), up, across);
 }
 
 Node lower_footprints(Graph *graph, Node root, Arena *scratch)

@@ -12,6 +12,8 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
+
 /* X is at least this fraction of the radius of the sphere, so that all numbers are finite. */
 static const double NEAR_POLE = 1e-6;
 
@@ -190,7 +192,7 @@ static Ball ball_about(Lowering *l, Node centre, double radius)
     for (uint32_t i = 0; i < 3; i++) {
         Range range    = frame_range(l, centre, i);
         ball.centre[i] = 0.5 * (range.low + range.high);
-        spread         = hypot(spread, 0.5 * (range.high - range.low));
+        spread         = real_hypot(spread, 0.5 * (range.high - range.low));
     }
     ball.radius = isfinite(spread) ? radius + spread : HUGE_VAL;
     return ball;

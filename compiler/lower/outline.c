@@ -31,14 +31,15 @@ static Node vector_of(const Row *row, uint32_t column)
 
 static Node unit_clamp(Graph *g, Node t)
 {
-    return graph_op3(g, OP_clamp, t, graph_number(g, 0), graph_number(g, 1));
+    Node one = graph_number(g, 1), zero = graph_number(g, 0);
+    return graph_op3(g, OP_clamp, t, zero, one);
 }
 
 /* a b' - a' b */
 static Node cross_of(Graph *g, Node a, Node b)
 {
-    Node first  = mul(g, graph_component(g, a, 0), graph_component(g, b, 1));
-    Node second = mul(g, graph_component(g, a, 1), graph_component(g, b, 0));
+    Node y = graph_component(g, b, 1), first = mul(g, graph_component(g, a, 0), y);
+    Node x = graph_component(g, b, 0), second = mul(g, graph_component(g, a, 1), x);
     return sub(g, first, second);
 }
 
@@ -101,7 +102,8 @@ static Node curve_distance(const Row *row)
     Node   square       = graph_op2(g, OP_dot, tangent, tangent);
     f[3]                = number_of(row, COLUMN_BEND_BEND);
     f[2]                = mul(g, tangent_bend, graph_number(g, 3));
-    f[1]                = sub(g, add(g, square, square), graph_op2(g, OP_dot, away, bend));
+    f[1]                = graph_op2(g, OP_dot, away, bend);
+    f[1]                = sub(g, add(g, square, square), f[1]);
     f[0]                = neg(g, graph_op2(g, OP_dot, away, tangent));
     Node t              = largest_root(g, f);
     /* The nearest point is there or at t = 0. */

@@ -25,6 +25,7 @@
  */
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/far.h"
 #include "compiler/graph/build.h"
 #include "compiler/graph/symbolic/series.h"
@@ -54,7 +55,7 @@ static const double TINY     = 1e-30;
 static Node interval_length(Lowering *l, const Series *s)
 {
     Graph *g        = l->graph;
-    Node   least    = graph_number(g, pow(10, 34.0 / s->degree));
+    Node   least    = graph_number(g, real_pow(10, 34.0 / s->degree));
     Node   whole    = mul(g, s->c[0], graph_number(g, MAX_FALL));
     Node   exponent = NODE_NONE;
     for (uint32_t k = 1; k <= s->degree; k++) {
@@ -178,7 +179,8 @@ static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
     Node origin = entrance(l, shape->field->zeros.box, ray, enter);
     if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
         return NODE_NONE;
-    Node step   = add(g, along_series(l, &s), mul(g, side, enter));
+    Node before = mul(g, side, enter);
+    Node step   = add(g, along_series(l, &s), before);
     Node misses = graph_op2(g, OP_less, leave, enter);
     return graph_op3(g, OP_select, misses, graph_number(g, NOWHERE * shape->field->zeros.sign),
                      step);
@@ -194,9 +196,10 @@ static Node along_cut(Lowering *l, const Shape *shape, Ray ray)
     Node        origin = clamp_to(l, ray.point, shape->field->region);
     if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
         return NODE_NONE;
-    Node offset  = sub(g, ray.point, origin);
-    Node outside = graph_op2(g, OP_less, graph_number(g, 0), graph_op2(g, OP_dot, offset, offset));
-    return graph_op3(g, OP_select, outside, graph_number(g, 0), along_series(l, &s));
+    Node offset = sub(g, ray.point, origin);
+    Node square = graph_op2(g, OP_dot, offset, offset), zero = graph_number(g, 0);
+    Node outside = graph_op2(g, OP_less, zero, square);
+    return graph_op3(g, OP_select, outside, zero, along_series(l, &s));
 }
 
 static Node along_polynomial(Lowering *l, const Shape *shape, Ray ray)
@@ -231,10 +234,12 @@ static Node along_ball(Lowering *l, const Shape *shape, Ray ray)
     Node   offset = graph_op2(g, OP_scale, ray.direction, m);
     Node   miss   = graph_op1(g, OP_length, add(g, ray.point, offset));
     Node   size   = graph_op1(g, OP_length, ray.point);
-    Node   half   = at_least(g, mul(g, sub(g, r, miss), add(g, r, miss)), 0);
+    Node   sum    = add(g, r, miss);
+    Node   half   = at_least(g, mul(g, sub(g, r, miss), sum), 0);
     Node   end    = add(g, m, root_of(g, over(g, half, square), 2));
     Node   height = sub(g, size, r);
-    Node   near = over(g, over(g, mul(g, height, add(g, size, r)), square), at_least(g, end, TINY));
+    Node   far    = at_least(g, end, TINY);
+    Node   near   = over(g, over(g, mul(g, height, add(g, size, r)), square), far);
     Node   behind = graph_op2(g, OP_less, m, graph_number(g, 0));
     Node   misses = graph_op2(g, OP_or, behind, graph_op2(g, OP_less, r, miss));
     Node   enters = graph_op3(g, OP_select, misses, graph_number(g, NOWHERE), near);
@@ -386,12 +391,14 @@ static Node along_open_surface(Lowering *l, const Shape *shape, Ray ray)
         return step;
     Node here   = value_at(l, shape->children[0], ray.point);
     Node before = value_at(l, shape->children[0], previous_point(l, ray));
-    Node turned = mul(g, graph_op1(g, OP_sign, here), graph_op1(g, OP_sign, before));
+    Node turned = graph_op1(g, OP_sign, before);
+    turned      = mul(g, graph_op1(g, OP_sign, here), turned);
     Node size = graph_op1(g, OP_abs, here), all = graph_op1(g, OP_abs, before);
     all         = at_least(g, add(g, size, all), TINY);
     Node inside = mul(g, ray.back, over(g, size, all));
-    return graph_op3(g, OP_select, graph_op2(g, OP_less, turned, graph_number(g, 0)),
-                     neg(g, inside), graph_op1(g, OP_abs, step));
+    step        = graph_op1(g, OP_abs, step);
+    inside      = neg(g, inside);
+    return graph_op3(g, OP_select, graph_op2(g, OP_less, turned, graph_number(g, 0)), inside, step);
 }
 
 static Node along_part(Lowering *l, const Shape *shape, Ray ray)

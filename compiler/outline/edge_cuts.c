@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/outline/edges.h"
 
 enum {
@@ -32,7 +33,7 @@ typedef struct Cutter {
 
 static double distance_between(const double a[2], const double b[2])
 {
-    return hypot(a[0] - b[0], a[1] - b[1]);
+    return real_hypot(a[0] - b[0], a[1] - b[1]);
 }
 
 static void add_cut(Cutter *cutter, uint32_t edge, double t, uint32_t knot)
@@ -145,8 +146,8 @@ static double bulge(const Cutter *cutter, const Span2 *span)
         double half = fmin(0.5 * distance_between(span->ends[0], span->ends[1]), curve->radius);
         return half * half / (curve->radius + sqrt(curve->radius * curve->radius - half * half));
     }
-    double bend = hypot(curve->from[0] - 2 * curve->via[0] + curve->to[0],
-                        curve->from[1] - 2 * curve->via[1] + curve->to[1]);
+    double bend = real_hypot(curve->from[0] - 2 * curve->via[0] + curve->to[0],
+                             curve->from[1] - 2 * curve->via[1] + curve->to[1]);
     double part = span->t[1] - span->t[0];
     return curve->straight ? 0 : 0.25 * bend * part * part;
 }
@@ -173,7 +174,7 @@ static bool may_cross(const Span2 *a, const Span2 *b, double slack)
         for (int end = 0; end < 2; end++) {
             double to[2] = {other->ends[end][0] - line->ends[0][0],
                             other->ends[end][1] - line->ends[0][1]};
-            side[end]    = cross2(chord, to) / fmax(hypot(chord[0], chord[1]), 1e-300);
+            side[end]    = cross2(chord, to) / fmax(real_hypot(chord[0], chord[1]), 1e-300);
         }
         if (fmin(side[0], side[1]) > slack || fmax(side[0], side[1]) < -slack)
             return false;
@@ -241,8 +242,10 @@ typedef struct EdgeBox {
 
 static int compare_boxes(const void *a, const void *b)
 {
-    double x = ((const EdgeBox *)a)->low[0], y = ((const EdgeBox *)b)->low[0];
-    return (x > y) - (x < y);
+    const EdgeBox *x = a, *y = b;
+    if (x->low[0] != y->low[0])
+        return x->low[0] < y->low[0] ? -1 : 1;
+    return (x->edge > y->edge) - (x->edge < y->edge);
 }
 
 /* Sorted along the axis, which counts as the first one, along which the edges reach farther. */
@@ -293,7 +296,9 @@ static int compare_cuts(const void *a, const void *b)
     const Cut *x = a, *y = b;
     if (x->edge != y->edge)
         return (x->edge > y->edge) - (x->edge < y->edge);
-    return (x->t > y->t) - (x->t < y->t);
+    if (x->t != y->t)
+        return x->t < y->t ? -1 : 1;
+    return (x->knot > y->knot) - (x->knot < y->knot);
 }
 
 /* The part of an edge from t to u, between two knots. */

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
+
 static size_t slot_of(const Knots *knots, double x, double y)
 {
     uint64_t hash = (uint64_t)(int64_t)x * 0x9e3779b97f4a7c15u ^
@@ -39,7 +41,7 @@ static uint32_t find_in_cell(const Knots *knots, double x, double y, const doubl
     uint32_t number = knots->slots[slot_of(knots, x, y)];
     for (; number; number = knots->items[number - 1].next) {
         const double *at = knots->items[number - 1].at;
-        if (hypot(at[0] - point[0], at[1] - point[1]) <= knots->tolerance)
+        if (real_hypot(at[0] - point[0], at[1] - point[1]) <= knots->tolerance)
             break;
     }
     return number;

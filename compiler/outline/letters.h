@@ -1,8 +1,8 @@
 /*
- * letters.h: texts as contours: FreeType, HarfBuzz and fontconfig, for the rest of the compiler.
+ * letters.h: texts as contours: FreeType and HarfBuzz, for the rest of the compiler.
  *
  * HarfBuzz says which glyphs a text has and where they stand, with kerning and ligatures.  FreeType
- * reads their contours.  fontconfig knows the fonts of the system.
+ * reads their contours.
  */
 #ifndef KRS_LETTERS_H
 #define KRS_LETTERS_H
@@ -11,23 +11,6 @@
 
 #include "compiler/base/text.h"
 #include "compiler/outline/path.h"
-
-/* A font of the system.  `path` is malloc'ed. */
-typedef struct FoundFont {
-    char *path;
-    int   face; /* of several in the file */
-} FoundFont;
-
-typedef enum FontSearch {
-    FONT_FOUND,
-    FONT_UNKNOWN, /* there are fonts, but none of this name */
-    FONT_NONE,    /* there are no fonts at all */
-    FONT_NO_MEMORY
-} FontSearch;
-
-/* The font that a name means, as fontconfig reads it: "DejaVu Serif", "DejaVu Sans:bold".  NULL: a
-   usual one without serifs. */
-FontSearch font_find(const char *name, FoundFont *found);
 
 /* A font as a file has it. */
 typedef struct Font {

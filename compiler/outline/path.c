@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
+
 enum { MAX_QUADRATICS = 64 /* of a cubic curve */ };
 
 Curve line_between(const double from[2], const double to[2])
@@ -60,7 +62,7 @@ void path_quadratic(Path *path, const double via[2], const double to[2])
         chord[k] = to[k] - curve.from[k];
         way[k]   = via[k] - curve.from[k];
     }
-    double size = fmax(hypot(chord[0], chord[1]), hypot(way[0], way[1]));
+    double size = fmax(real_hypot(chord[0], chord[1]), real_hypot(way[0], way[1]));
     if (fabs(cross_of(chord, way)) > 1e-9 * size * size) {
         add_curve(path, &curve);
         return;
@@ -78,7 +80,7 @@ void path_quadratic(Path *path, const double via[2], const double to[2])
 /* Each part of an arc turns by a quarter of a circle at most. */
 void path_arc(Path *path, const double to[2], double bulge)
 {
-    double from[2] = {path->at[0], path->at[1]}, turn = 4 * atan(bulge);
+    double from[2] = {path->at[0], path->at[1]}, turn = 4 * real_atan(bulge);
     double chord[2] = {to[0] - from[0], to[1] - from[1]};
     /* From the middle of the chord the centre is to the left by this share of the chord. */
     double left  = 0.25 * (1 / bulge - bulge);
@@ -90,16 +92,16 @@ void path_arc(Path *path, const double to[2], double bulge)
     }
     arc.centre[0] = 0.5 * (from[0] + to[0]) - left * chord[1];
     arc.centre[1] = 0.5 * (from[1] + to[1]) + left * chord[0];
-    arc.radius    = hypot(from[0] - arc.centre[0], from[1] - arc.centre[1]);
-    double begin  = atan2(from[1] - arc.centre[1], from[0] - arc.centre[0]);
-    double part = turn / count, far = arc.radius / cos(0.5 * part);
+    arc.radius    = real_hypot(from[0] - arc.centre[0], from[1] - arc.centre[1]);
+    double begin  = real_atan2(from[1] - arc.centre[1], from[0] - arc.centre[0]);
+    double part = turn / count, far = arc.radius / real_cos(0.5 * part);
     for (int i = 1; i <= count; i++) {
         double end = begin + i * part, middle = end - 0.5 * part;
         memcpy(arc.from, path->at, sizeof arc.from);
-        arc.via[0] = arc.centre[0] + far * cos(middle);
-        arc.via[1] = arc.centre[1] + far * sin(middle);
-        arc.to[0]  = i < count ? arc.centre[0] + arc.radius * cos(end) : to[0];
-        arc.to[1]  = i < count ? arc.centre[1] + arc.radius * sin(end) : to[1];
+        arc.via[0] = arc.centre[0] + far * real_cos(middle);
+        arc.via[1] = arc.centre[1] + far * real_sin(middle);
+        arc.to[0]  = i < count ? arc.centre[0] + arc.radius * real_cos(end) : to[0];
+        arc.to[1]  = i < count ? arc.centre[1] + arc.radius * real_sin(end) : to[1];
         add_curve(path, &arc);
     }
 }
@@ -112,8 +114,8 @@ void path_cubic(Path *path, const double first[2], const double second[2], const
     double from[2] = {path->at[0], path->at[1]}, third[2];
     for (int k = 0; k < 2; k++)
         third[k] = to[k] - 3 * second[k] + 3 * first[k] - from[k];
-    double away   = sqrt(3) / 36 * hypot(third[0], third[1]);
-    double parts  = ceil(cbrt(away / path->tolerance));
+    double away   = sqrt(3) / 36 * real_hypot(third[0], third[1]);
+    double parts  = ceil(real_cbrt(away / path->tolerance));
     int    count  = parts > 1 ? (int)fmin(parts, MAX_QUADRATICS) : 1;
     double old[2] = {from[0], from[1]}, slope[2];
     for (int k = 0; k < 2; k++)
@@ -149,8 +151,8 @@ void path_take(Path *path, const Path *other)
 /* Returns the weight of `via` among the control points. */
 static double weight_of(const Curve *curve)
 {
-    return curve->radius > 0 ? curve->radius / hypot(curve->via[0] - curve->centre[0],
-                                                     curve->via[1] - curve->centre[1])
+    return curve->radius > 0 ? curve->radius / real_hypot(curve->via[0] - curve->centre[0],
+                                                          curve->via[1] - curve->centre[1])
                              : 1;
 }
 
@@ -270,10 +272,10 @@ static double arc_nearest(const Curve *curve, const double point[2])
         from[k]   = curve->from[k] - curve->centre[k];
         at[k]     = point[k] - curve->centre[k];
     }
-    double half  = atan2(cross_of(middle, from), middle[0] * from[0] + middle[1] * from[1]);
-    double angle = atan2(cross_of(middle, at), middle[0] * at[0] + middle[1] * at[1]);
+    double half  = real_atan2(cross_of(middle, from), middle[0] * from[0] + middle[1] * from[1]);
+    double angle = real_atan2(cross_of(middle, at), middle[0] * at[0] + middle[1] * at[1]);
     if (fabs(angle) <= fabs(half))
-        return clamp_unit(0.5 - 0.5 * tan(0.5 * angle) / tan(0.5 * half));
+        return clamp_unit(0.5 - 0.5 * real_tan(0.5 * angle) / real_tan(0.5 * half));
     return (angle < 0) == (half < 0) ? 0 : 1;
 }
 

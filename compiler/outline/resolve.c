@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/outline/edges.h"
 
 #define TOLERANCE 1e-9 /* of the size */
@@ -93,7 +94,7 @@ static int compare_edges(const void *a, const void *b)
 static bool is_one(const Edge *a, const Edge *b, double tolerance)
 {
     return a->from == b->from && a->to == b->to &&
-           hypot(a->curve.via[0] - b->curve.via[0], a->curve.via[1] - b->curve.via[1]) <=
+           real_hypot(a->curve.via[0] - b->curve.via[0], a->curve.via[1] - b->curve.via[1]) <=
                8 * tolerance;
 }
 
@@ -152,7 +153,7 @@ static double leaving_angle(const Edge *edge, bool last)
     const double *at = last ? edge->curve.to : edge->curve.from;
     double        near[2];
     curve_point(&edge->curve, last ? 1 - 1e-4 : 1e-4, near);
-    return atan2(near[1] - at[1], near[0] - at[0]);
+    return real_atan2(near[1] - at[1], near[0] - at[0]);
 }
 
 static int compare_ends(const void *a, const void *b)
@@ -160,7 +161,9 @@ static int compare_ends(const void *a, const void *b)
     const End *x = a, *y = b;
     if (x->knot != y->knot)
         return x->knot < y->knot ? -1 : 1;
-    return compare_numbers(x->angle, y->angle);
+    if (x->angle != y->angle)
+        return compare_numbers(x->angle, y->angle);
+    return x->edge != y->edge ? (x->edge > y->edge) - (x->edge < y->edge) : x->last - y->last;
 }
 
 static End *sorted_ends(const Making *making)
@@ -187,7 +190,7 @@ static double angle_inside(const End *begins, const End *ends)
 static void set_corner(const End *begins, const End *ends, double lean, Piece *pieces)
 {
     double angle = angle_inside(begins, ends);
-    double turn  = fmin(fmax(tan(0.5 * (M_PI - angle)), -1e3), 1e3);
+    double turn  = fmin(fmax(real_tan(0.5 * (M_PI - angle)), -1e3), 1e3);
     double leans = angle < SHARP ? lean : angle > 2 * M_PI - SHARP ? -lean : 0;
 
     pieces[begins->edge].corner[0] = -turn;
@@ -298,5 +301,5 @@ double piece_distance(const Piece *piece, const double point[2])
     double away[2] = {point[0] - at[0], point[1] - at[1]};
     double corner  = t <= 0 ? piece->corner[0] : t >= 1 ? piece->corner[1] : 0;
     double side    = corner * dot2(tangent, away) - cross2(tangent, away);
-    return (side < 0 ? -1 : 1) * hypot(away[0], away[1]) - piece->lean;
+    return (side < 0 ? -1 : 1) * real_hypot(away[0], away[1]) - piece->lean;
 }

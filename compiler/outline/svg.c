@@ -9,6 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/embedded.h"
 #include "compiler/base/text.h"
 #include "compiler/outline/svg_stroke.h"
@@ -98,7 +99,7 @@ static double length_of(Reader *reader, const SvgElement *element, const char *n
                         double otherwise)
 {
     double whole = axis < 2 ? view_size(reader, axis)
-                            : hypot(view_size(reader, 0), view_size(reader, 1)) / sqrt(2);
+                            : real_hypot(view_size(reader, 0), view_size(reader, 1)) / sqrt(2);
     return length_in(reader, svg_property(&reader->tree, element, name), whole, otherwise);
 }
 

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
+
 /* ---- numbers ---- */
 
 static void skip_blanks(const char **text)
@@ -60,7 +62,7 @@ SvgMap svg_product(const SvgMap *outer, const SvgMap *inner)
 
 static SvgMap rotation(double degrees, double x, double y)
 {
-    double c = cos(degrees * M_PI / 180), s = sin(degrees * M_PI / 180);
+    double c = real_cos(degrees * M_PI / 180), s = real_sin(degrees * M_PI / 180);
     return (SvgMap){{c, s, -s, c, x - c * x + s * y, y - s * x - c * y}};
 }
 
@@ -76,9 +78,9 @@ static bool named_map(const char *name, size_t length, const double *n, int coun
     else if (NAMED("rotate") && count >= 1)
         *map = rotation(n[0], count > 2 ? n[1] : 0, count > 2 ? n[2] : 0);
     else if (NAMED("skewX") && count == 1)
-        *map = (SvgMap){{1, 0, tan(n[0] * M_PI / 180), 1, 0, 0}};
+        *map = (SvgMap){{1, 0, real_tan(n[0] * M_PI / 180), 1, 0, 0}};
     else if (NAMED("skewY") && count == 1)
-        *map = (SvgMap){{1, tan(n[0] * M_PI / 180), 0, 1, 0, 0}};
+        *map = (SvgMap){{1, real_tan(n[0] * M_PI / 180), 0, 1, 0, 0}};
     else
         return false;
     return true;
@@ -198,7 +200,7 @@ typedef struct Arc {
 
 static void arc_place(const Arc *arc, double x, double y, double p[2])
 {
-    double c = cos(arc->rotation_angle), s = sin(arc->rotation_angle);
+    double c = real_cos(arc->rotation_angle), s = real_sin(arc->rotation_angle);
     p[0] = arc->center[0] + c * arc->radii[0] * x - s * arc->radii[1] * y;
     p[1] = arc->center[1] + s * arc->radii[0] * x + c * arc->radii[1] * y;
 }
@@ -207,12 +209,12 @@ static void arc_place(const Arc *arc, double x, double y, double p[2])
 static void draw_arc(SvgPen *pen, const Arc *arc, const double *end)
 {
     int    count = (int)fmax(ceil(fabs(arc->by) / (M_PI / 8) - 1e-9), 1);
-    double step = arc->by / count, pull = 4.0 / 3 * tan(step / 4);
+    double step = arc->by / count, pull = 4.0 / 3 * real_tan(step / 4);
     for (int i = 0; i < count; i++) {
         double a = arc->from + i * step, b = a + step, first[2], second[2], to[2];
-        arc_place(arc, cos(a) - pull * sin(a), sin(a) + pull * cos(a), first);
-        arc_place(arc, cos(b) + pull * sin(b), sin(b) - pull * cos(b), second);
-        arc_place(arc, cos(b), sin(b), to);
+        arc_place(arc, real_cos(a) - pull * real_sin(a), real_sin(a) + pull * real_cos(a), first);
+        arc_place(arc, real_cos(b) + pull * real_sin(b), real_sin(b) - pull * real_cos(b), second);
+        arc_place(arc, real_cos(b), real_sin(b), to);
         pen_cubic(pen, first, second, end && i + 1 == count ? end : to);
     }
 }
@@ -221,7 +223,7 @@ static void draw_arc(SvgPen *pen, const Arc *arc, const double *end)
 static void draw_arc_between(SvgPen *pen, const double from[2], const double n[7])
 {
     double rx = fabs(n[0]), ry = fabs(n[1]), rotation_angle = n[2] * M_PI / 180,
-           c = cos(rotation_angle), s = sin(rotation_angle);
+           c = real_cos(rotation_angle), s = real_sin(rotation_angle);
     double dx = 0.5 * (from[0] - n[5]), dy = 0.5 * (from[1] - n[6]);
     double x = c * dx + s * dy, y = c * dy - s * dx;
     if (!(rx > 0 && ry > 0)) {
@@ -237,8 +239,8 @@ static void draw_arc_between(SvgPen *pen, const double from[2], const double n[7
     Arc    arc    = {.radii = {rx, ry}, .rotation_angle = rotation_angle};
     arc.center[0] = c * u - s * v + 0.5 * (from[0] + n[5]);
     arc.center[1] = s * u + c * v + 0.5 * (from[1] + n[6]);
-    arc.from      = atan2((y - v) / ry, (x - u) / rx);
-    arc.by        = atan2((-y - v) / ry, (-x - u) / rx) - arc.from;
+    arc.from      = real_atan2((y - v) / ry, (x - u) / rx);
+    arc.by        = real_atan2((-y - v) / ry, (-x - u) / rx) - arc.from;
     if (n[4] != 0 && arc.by < 0)
         arc.by += 2 * M_PI;
     if (n[4] == 0 && arc.by > 0)
@@ -392,7 +394,7 @@ void svg_rectangle(SvgPen *pen, const double corner[2], const double size[2], co
         bool   left = i == 1 || i == 2, top = i >= 2;
         Arc    arc = {{x[!left], y[!top]}, {rx, ry}, 0, i * M_PI_2, M_PI_2};
         double begin[2];
-        arc_place(&arc, cos(arc.from), sin(arc.from), begin);
+        arc_place(&arc, real_cos(arc.from), real_sin(arc.from), begin);
         if (i == 0)
             pen_move(pen, begin);
         else

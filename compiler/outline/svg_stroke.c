@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/outline/edges.h"
 
 enum { MAX_CORNERS = 64, MAX_DASHES = 100000 };
@@ -100,7 +101,7 @@ static void beside(const Tangent *tangent, double distance, double point[2])
 
 static bool unit2(double v[2])
 {
-    double length = hypot(v[0], v[1]);
+    double length = real_hypot(v[0], v[1]);
     if (!(length > 0))
         return false;
     v[0] /= length;
@@ -124,7 +125,7 @@ static Tangent tangent_at(const Curve *curve, double t)
 /* The angle from one direction to another, in (-pi, pi]. */
 static double angle_between(const double a[2], const double b[2])
 {
-    return atan2(cross2(a, b), dot2(a, b));
+    return real_atan2(cross2(a, b), dot2(a, b));
 }
 
 /* Finds where the tangents of what is parallel to a piece meet. */
@@ -246,13 +247,13 @@ static void add_arc(const Stroker *stroker, Contour *contour, const double at[2]
                     const double radius[2], double by)
 {
     int    count = (int)fmin(fmax(ceil(fabs(by) / stroker->angle), 1), MAX_CORNERS - 8);
-    double step = by / count, stretch = 1 / cos(0.5 * step);
+    double step = by / count, stretch = 1 / real_cos(0.5 * step);
     for (int i = 0; i < count; i++) {
         double middle = (i + 0.5) * step, end = (i + 1) * step, via[2], to[2];
-        via[0] = at[0] + stretch * (cos(middle) * radius[0] - sin(middle) * radius[1]);
-        via[1] = at[1] + stretch * (sin(middle) * radius[0] + cos(middle) * radius[1]);
-        to[0]  = at[0] + cos(end) * radius[0] - sin(end) * radius[1];
-        to[1]  = at[1] + sin(end) * radius[0] + cos(end) * radius[1];
+        via[0] = at[0] + stretch * (real_cos(middle) * radius[0] - real_sin(middle) * radius[1]);
+        via[1] = at[1] + stretch * (real_sin(middle) * radius[0] + real_cos(middle) * radius[1]);
+        to[0]  = at[0] + real_cos(end) * radius[0] - real_sin(end) * radius[1];
+        to[1]  = at[1] + real_sin(end) * radius[0] + real_cos(end) * radius[1];
         bend(contour, via, to);
     }
 }
@@ -345,7 +346,7 @@ static double length_up_to(const Curve *curve, double end)
     for (int i = 0; i < PARTS; i++)
         for (int k = 0; k < 3; k++) {
             curve_tangent(curve, end * (i + places[k]) / PARTS, tangent);
-            sum += shares[k] * 2 * hypot(tangent[0], tangent[1]);
+            sum += shares[k] * 2 * real_hypot(tangent[0], tangent[1]);
         }
     return sum * end / PARTS;
 }
@@ -442,7 +443,7 @@ void svg_stroke(SvgPen *pen, const SvgTrail *trail, const SvgStroke *stroke)
     Stroker stroker = {pen, stroke, radius, M_PI / 6};
     for (size_t i = 0; i < trail->count; i++) {
         const SvgSubpath *sub   = &trail->items[i];
-        double            angle = pow(128 * sub->path.tolerance / radius, 0.25);
+        double            angle = real_pow(128 * sub->path.tolerance / radius, 0.25);
         stroker.angle           = fmin(fmax(angle, M_PI / 48), M_PI / 6);
         if (sub->path.curves.count == 0 && sub->drawn)
             draw_dot(&stroker, sub->path.start);

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/passes/compilation.h"
 
@@ -62,7 +63,7 @@ static Pyramid pyramid_of(const KrsCamera *camera, double aspect)
     }
     cross3(right, forward, up);
     bool   flat = camera->projection == KRS_ORTHOGRAPHIC;
-    double half = flat ? 0.5 * camera->height : tan(0.5 * camera->fov);
+    double half = flat ? 0.5 * camera->height : real_tan(0.5 * camera->fov);
     for (int k = 0; k < 3; k++)
         backward[k] = -forward[k];
     add_plane(&pyramid, backward, camera->eye);
@@ -180,7 +181,7 @@ static const double DIM = 0.02;
 static double brightest_value(const KrsView *view, const KrsLight *light, double distance)
 {
     double color = fmax(light->color[0], fmax(light->color[1], light->color[2]));
-    return color * exp2(view->image.exposure) / (distance * distance * acos(-1));
+    return color * real_exp2(view->image.exposure) / (distance * distance * M_PI);
 }
 
 /* A bound on the distance makes a light brighter than it is, so it is not blamed without cause. */
@@ -226,7 +227,7 @@ static const Component *plane_before(const Compilation *c, const double directio
 /* The solid around a light, all of which is in it; what lets light through is none. */
 static const Component *solid_around(const Compilation *c, KrsState *state, const KrsLight *light)
 {
-    const double reach = light->softness + 0.5 * hypot(light->size[0], light->size[1]);
+    const double reach = light->softness + 0.5 * real_hypot(light->size[0], light->size[1]);
     double       distance;
     KrsHit       hit;
     if (krs_distance(state, &light->vector, 1, &distance) != KRS_OK || !(distance < -reach) ||

@@ -246,7 +246,9 @@ static KrsStatus load_and_compile(const char *text, size_t length, const char *n
     Loader      loader = {.supplier      = options->load,
                           .user          = options->load_user,
                           .observer      = options->opened,
-                          .observer_user = options->opened_user};
+                          .observer_user = options->opened_user,
+                          .fonts         = options->font,
+                          .fonts_user    = options->font_user};
     KrsStatus   status = KRS_OUT_OF_MEMORY;
     Compilation c      = {.request = request,
                           .options = options,

@@ -70,8 +70,10 @@ static void add_component(Compilation *c, Parts *parts, size_t number)
 
 static int compare_places(const void *a, const void *b)
 {
-    const double x = ((const EmissivePart *)a)->place, y = ((const EmissivePart *)b)->place;
-    return (x > y) - (x < y);
+    const EmissivePart *x = a, *y = b;
+    if (x->place != y->place)
+        return x->place < y->place ? -1 : 1;
+    return (x->number > y->number) - (x->number < y->number);
 }
 
 static double find_middle(Range side)
@@ -102,8 +104,10 @@ static void sort_by_places(EmissivePart *parts, size_t count)
     if (count < 2)
         return;
     const int axis = find_axis(parts, count);
-    for (size_t i = 0; i < count; i++)
-        parts[i].place = find_middle(parts[i].box.axis[axis]);
+    for (size_t i = 0; i < count; i++) {
+        parts[i].place  = find_middle(parts[i].box.axis[axis]);
+        parts[i].number = i;
+    }
     qsort(parts, count, sizeof *parts, compare_places);
     sort_by_places(parts, count / 2);
     sort_by_places(parts + count / 2, count - count / 2);

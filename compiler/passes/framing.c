@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/lanes/lanes.h"
@@ -85,7 +86,7 @@ static void make_ray(const Ball *ball, int i, int count, const double to[3], Ray
 {
     int    place = spread(i, count);
     double y = 1 - (2 * place + 1.0) / count, ring = sqrt(1 - y * y), angle = GOLDEN_ANGLE * place;
-    double from[3] = {ring * cos(angle), rays->apart ? fabs(y) : y, ring * sin(angle)};
+    double from[3] = {ring * real_cos(angle), rays->apart ? fabs(y) : y, ring * real_sin(angle)};
     for (int k = 0; k < 3; k++) {
         rays->origins[i][k]    = ball->centre[k] + 1.01 * ball->radius * from[k];
         rays->directions[i][k] = to[k] - 1.01 * from[k];
@@ -97,11 +98,13 @@ static void make_rays(const Ball *ball, int count, Rays *rays)
 {
     for (int i = 0; i < count; i++) {
         int    place = spread(i, count);
-        double depth = 0.9 * cbrt((place * 89 % count + 0.5) / count);
+        double depth = 0.9 * real_cbrt((place * 89 % count + 0.5) / count);
         double turn  = GOLDEN_ANGLE * (place * 37 % count);
         double up = 1 - (2 * (place * 53 % count) + 1.0) / count, side = sqrt(1 - up * up);
-        make_ray(ball, i, count,
-                 (double[]){depth * side * cos(turn), depth * up, depth * side * sin(turn)}, rays);
+        make_ray(
+            ball, i, count,
+            (double[]){depth * side * real_cos(turn), depth * up, depth * side * real_sin(turn)},
+            rays);
     }
 }
 
@@ -390,7 +393,8 @@ static void fill_picture(const Rays *rays, DefaultCamera *camera)
    seen. */
 static DefaultCamera place_camera(const Rays *rays, const Ball *ball, double fov)
 {
-    DefaultCamera camera = {.away = ball->radius / sin(0.5 * fov), .slope = tan(0.5 * fov)};
+    DefaultCamera camera = {.away  = ball->radius / real_sin(0.5 * fov),
+                            .slope = real_tan(0.5 * fov)};
     set_axes(&camera);
     memcpy(camera.target, ball->centre, sizeof camera.target);
     if (rays->seen_count >= FEWEST_SEEN)

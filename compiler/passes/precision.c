@@ -15,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/evaluate.h"
@@ -142,7 +143,7 @@ static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *ca
                                  ? view->values[camera->nodes.height].v[0] / lines
                              : camera->projection == KRS_PANORAMA
                                  ? M_PI * nearest / lines
-                                 : 2 * tan(view->values[camera->nodes.fov].v[0] / 2) * nearest / lines;
+                                 : 2 * real_tan(view->values[camera->nodes.fov].v[0] / 2) * nearest / lines;
     const double  farthest = largest3(eye);
     return krs_needs_rebase(farthest, pixel) ||
            krs_may_blur_normals(farthest, nearest, pixel, lines);

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/lower/research/research.h"
 #include "compiler/refute/search.h"
 
@@ -15,7 +16,7 @@ static const char *point_text(Refuter *r, const double p[3])
 
 static double distance3(const double a[3], const double b[3])
 {
-    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+    return real_hypot(real_hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
 static const char *fault_text(Refuter *r, const Witness *w)

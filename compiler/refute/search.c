@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/splitmix.h"
 #include "compiler/base/vec.h"
 #include "compiler/graph/instance_table.h"
@@ -37,7 +38,7 @@ static PointPair changed(Search *s, const PointPair *pair)
         break;
     case 1: add_scaled3(next.q, next.q, length * splitmix_unit(&s->random), shift); break;
     default: {
-        double factor = exp2(search_between(s, -2, 1));
+        double factor = real_exp2(search_between(s, -2, 1));
         for (int i = 0; i < 3; i++)
             next.q[i] = next.p[i] + factor * (next.q[i] - next.p[i]);
     }

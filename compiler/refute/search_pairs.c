@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/splitmix.h"
 #include "compiler/base/vec.h"
 
@@ -26,15 +27,15 @@ size_t search_index(Search *s, size_t count) { return splitmix_next(&s->random) 
 
 double any_scale(Search *s, double least)
 {
-    return s->size * pow(least, splitmix_unit(&s->random));
+    return s->size * real_pow(least, splitmix_unit(&s->random));
 }
 
 void random_direction(Search *s, double direction[3])
 {
     double angle = search_between(s, 0, 2 * M_PI), z = s->figure ? 0 : search_between(s, -1, 1);
     double radius = sqrt(fmax(0, 1 - z * z));
-    direction[0]  = radius * cos(angle);
-    direction[1]  = radius * sin(angle);
+    direction[0]  = radius * real_cos(angle);
+    direction[1]  = radius * real_sin(angle);
     direction[2]  = z;
 }
 

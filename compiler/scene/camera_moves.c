@@ -1,6 +1,7 @@
 /*
  * camera_moves.c: moves a camera as a mouse and keys do.
  */
+#include "compiler/base/elementary.h"
 #include "krs/camera.h"
 
 #include <math.h>
@@ -42,10 +43,10 @@ static void add(double v[3], double factor, const double w[3])
 static void turn(double v[3], const double axis[3], double angle)
 {
     double       side[3];
-    const double along = dot(axis, v) * (1 - cos(angle));
+    const double along = dot(axis, v) * (1 - real_cos(angle));
     cross(axis, v, side);
     for (int i = 0; i < 3; i++)
-        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + axis[i] * along;
+        v[i] = v[i] * real_cos(angle) + side[i] * real_sin(angle) + axis[i] * along;
 }
 
 static double distance(const KrsCamera *camera)
@@ -59,8 +60,9 @@ static double distance(const KrsCamera *camera)
 /* Height of the picture at the target, in world units. */
 static double height_at_target(const KrsCamera *camera)
 {
-    return camera->projection == KRS_ORTHOGRAPHIC ? camera->height
-                                                  : 2 * distance(camera) * tan(camera->fov / 2);
+    return camera->projection == KRS_ORTHOGRAPHIC
+               ? camera->height
+               : 2 * distance(camera) * real_tan(camera->fov / 2);
 }
 
 void krs_camera_axes(const KrsCamera *camera, double forward[3], double right[3], double up[3])
@@ -76,8 +78,9 @@ void krs_camera_axes(const KrsCamera *camera, double forward[3], double right[3]
 /* The angle upwards that leaves the line of sight off the upright direction. */
 static double limit_up(const double forward[3], const double upright[3], double angle)
 {
-    const double most  = acos(MAX_UPRIGHT);
-    const double above = acos(fmin(fmax(dot(forward, upright), -1), 1)); /* angle from the top */
+    const double most  = real_acos(MAX_UPRIGHT);
+    const double above = real_acos(
+        fmin(fmax(dot(forward, upright), -1), 1)); /* angle from the top */
     return fmin(fmax(angle, above - (M_PI - most)), above - most);
 }
 
@@ -162,7 +165,7 @@ void krs_camera_roll(KrsCamera *camera, double angle)
 static double distance_for(const KrsCamera *camera, const double half[3], double aspect)
 {
     double       forward[3], side[3], top[3], farthest = 0;
-    const double tall = tan(camera->fov / 2), wide = tall * aspect;
+    const double tall = real_tan(camera->fov / 2), wide = tall * aspect;
     krs_camera_axes(camera, forward, side, top);
     for (int corner = 0; corner < 8; corner++) {
         const double at[3] = {corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1],
@@ -221,7 +224,7 @@ void krs_camera_toggle_perspective(KrsCamera *camera)
     if (!(camera->fov > 0))
         camera->fov = 40 * M_PI / 180;
     const double away = camera->projection == KRS_ORTHOGRAPHIC
-                            ? camera->height / (2 * tan(camera->fov / 2))
+                            ? camera->height / (2 * real_tan(camera->fov / 2))
                             : distance(camera);
     for (int i = 0; i < 3; i++)
         camera->eye[i] = camera->target[i] - away * forward[i];

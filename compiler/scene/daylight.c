@@ -15,6 +15,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "compiler/base/elementary.h"
+
 #define GROUND     6360.0 /* radius of the earth, */
 #define TOP        6460.0 /* and of the air around it */
 #define EYE        0.002  /* height */
@@ -53,8 +55,9 @@ typedef struct Medium {
 static Medium medium_at(const Air *a, double radius)
 {
     const double height = fmax(radius - GROUND, 0);
-    const double thin = exp(-height / AIR_FALL), hazy = a->haze_density * exp(-height / HAZE_FALL);
-    const double high = fmax(1 - fabs(height - OZONE_MID) / OZONE_HALF, 0);
+    const double thin   = real_exp(-height / AIR_FALL),
+                 hazy   = a->haze_density * real_exp(-height / HAZE_FALL);
+    const double high   = fmax(1 - fabs(height - OZONE_MID) / OZONE_HALF, 0);
     Medium       m;
     for (int k = 0; k < 3; k++) {
         m.by_air[k]  = air[k] * thin;
@@ -121,7 +124,7 @@ static void lose_light(const Air *a, double radius, double cosine, double ahead,
             lost[k] += (m.lost[k] - ahead * m.by_haze[k]) * s.length;
     }
     for (int k = 0; k < 3; k++)
-        part[k] = exp(-lost[k]);
+        part[k] = real_exp(-lost[k]);
 }
 
 /* Rows and columns are even in the lengths along the ground's tangent, and along the ray. */
@@ -219,7 +222,7 @@ static void add_step(const Air *a, const View *v, Place at, double step, Gathere
     for (int k = 0; k < 3; k++) {
         const double all  = m.by_air[k] + (1 - FORWARD) * m.by_haze[k];
         const double lost = m.lost[k] - (v->alike ? FORWARD : AHEAD) * m.by_haze[k];
-        const double left = exp(-lost * step), along = lost > 1e-12 ? (1 - left) / lost : step;
+        const double left = real_exp(-lost * step), along = lost > 1e-12 ? (1 - left) / lost : step;
         const double once  = v->alike ? all : m.by_air[k] * by_air + m.by_haze[k] * by_haze;
         const double sends = once * (v->alike ? 1 / (4 * M_PI) : 1) * sun[k] + all * around[k];
         g->light[k] += g->part[k] * sends * along;
@@ -259,7 +262,7 @@ static void sum_series(const Air *a, double radius, double sun_cosine, double li
         const double cosine = 1 - (2 * i + 1.0) / RAYS_AROUND, angle = 2.399963229728653 * i;
         const double level     = sqrt(1 - cosine * cosine),
                      sun_level = sqrt(1 - sun_cosine * sun_cosine);
-        const double between   = cosine * sun_cosine + level * sun_level * cos(angle);
+        const double between   = cosine * sun_cosine + level * sun_level * real_cos(angle);
         const View   view      = {radius, cosine, sun_cosine, between, STEPS_AROUND, true};
         Gathered     g         = gather(a, &view);
         for (int k = 0; k < 3; k++) {
@@ -303,10 +306,10 @@ static void find_row(const Air *a, int row, float (*texels)[3])
     const double height = M_PI * (0.5 - (row + 0.5) / DAYLIGHT_HEIGHT), rise = a->light->rise;
     const double level = sqrt(fmax(1 - rise * rise, 0));
     for (int i = 0; i < DAYLIGHT_WIDTH / 2; i++) {
-        const double   angle   = 2 * M_PI * (i + 0.5) / DAYLIGHT_WIDTH;
-        const double   between = sin(height) * rise + cos(height) * level * cos(angle);
-        const View     view    = {GROUND + EYE, sin(height), rise, between, STEPS_OF_VIEW, false};
-        const Gathered g       = gather(a, &view);
+        const double angle   = 2 * M_PI * (i + 0.5) / DAYLIGHT_WIDTH;
+        const double between = real_sin(height) * rise + real_cos(height) * level * real_cos(angle);
+        const View   view = {GROUND + EYE, real_sin(height), rise, between, STEPS_OF_VIEW, false};
+        const Gathered g  = gather(a, &view);
         for (int k = 0; k < 3; k++)
             texels[DAYLIGHT_WIDTH / 2 + i][k] = texels[DAYLIGHT_WIDTH / 2 - 1 - i][k] =
                 (float)g.light[k];
@@ -323,7 +326,9 @@ static void fill_ground(const Air *a, float (*texels)[3])
         lit[k] = sun[k] * fmax(a->light->rise, 0);
     for (int row = 0; row < horizon; row++) {
         const double from = M_PI * row / DAYLIGHT_HEIGHT, to = M_PI * (row + 1) / DAYLIGHT_HEIGHT;
-        const double share = M_PI * (cos(from) * cos(from) - cos(to) * cos(to)) / DAYLIGHT_WIDTH;
+        const double share = M_PI *
+                             (real_cos(from) * real_cos(from) - real_cos(to) * real_cos(to)) /
+                             DAYLIGHT_WIDTH;
         for (int i = 0; i < DAYLIGHT_WIDTH; i++)
             for (int k = 0; k < 3; k++)
                 lit[k] += share * (double)texels[row * DAYLIGHT_WIDTH + i][k];

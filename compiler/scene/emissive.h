@@ -13,6 +13,7 @@ typedef struct EmissivePart {
     Node        distance, emission; /* of the component */
     const Tape *tape;               /* of both */
     double      place;              /* that parts are sorted by */
+    size_t      number;             /* where that is equal */
 } EmissivePart;
 
 typedef struct Compilation Compilation;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/scene/points.h"
 #include "compiler/scene/program.h"
@@ -411,7 +412,7 @@ static KrsStatus view_daylight(KrsState *state, KrsView *view)
     if (!make_sky(state, &light))
         return KRS_OUT_OF_MEMORY;
     view->sky.map      = &state->sky_map;
-    view->sky.rotation = -atan2(day->vector[0], -day->vector[2]);
+    view->sky.rotation = -real_atan2(day->vector[0], -day->vector[2]);
     view->sky.intensity *= day->intensity;
     return KRS_OK;
 }

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/scene/program.h"
 
@@ -235,15 +236,16 @@ static void shrink(const Cells *cells, Cell *cell)
     double       least = HUGE_VAL;
     for (int i = 0; i < RIM_POINTS; i++) {
         const double y = 1 - (2 * i + 1.0) / RIM_POINTS, ring = sqrt(1 - y * y), turn = golden * i;
-        const double way[3] = {ring * cos(turn), y, ring * sin(turn)};
+        const double way[3] = {ring * real_cos(turn), y, ring * real_sin(turn)};
         double       point[3];
         for (int k = 0; k < 3; k++)
             point[k] = cell->middle[k] + cell->radius * way[k];
         least = fmin(least, find_distance(cells, part_of(cells, cell->first), point));
     }
-    const double across = cell->radius * sin(angle), chord = 2 * cell->radius * sin(0.5 * angle);
+    const double across = cell->radius * real_sin(angle),
+                 chord  = 2 * cell->radius * real_sin(0.5 * angle);
     if (least > chord)
-        cell->radius = fmax(cell->radius * cos(angle) - sqrt(least * least - across * across),
+        cell->radius = fmax(cell->radius * real_cos(angle) - sqrt(least * least - across * across),
                             0.01 * cell->radius);
 }
 

@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/shape/shape.h"
 
 const BlendInfo blend_info[BLEND_COUNT] = {
@@ -13,7 +14,7 @@ const BlendInfo blend_info[BLEND_COUNT] = {
 double blend_bulge(BlendKind kind, uint32_t count)
 {
     const BlendInfo *info = &blend_info[kind];
-    return fmin(info->bulge * log2(count), info->most);
+    return fmin(info->bulge * real_log2(count), info->most);
 }
 
 BlendMany blend_many(BlendKind kind)

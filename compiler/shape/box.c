@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
+
 const Box box_empty    = {{{INFINITY, -INFINITY}, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
 const Box box_infinite = {{{-INFINITY, INFINITY}, {-INFINITY, INFINITY}, {-INFINITY, INFINITY}}};
 
@@ -164,7 +166,7 @@ Ball ball_fold(Ball ball, const Range u[3], Range w)
     for (int i = 0; i < 3; i++) {
         Range shift    = range_mul(e, u[i]);
         fold.centre[i] = ball.centre[i] - 0.5 * (shift.low + shift.high);
-        leave          = hypot(leave, 0.5 * (shift.high - shift.low));
+        leave          = real_hypot(leave, 0.5 * (shift.high - shift.low));
     }
     fold.radius = (fold.radius + leave) * (1 + 1e-14);
     return fold;

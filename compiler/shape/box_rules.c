@@ -6,6 +6,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "compiler/base/elementary.h"
+
 uint32_t box_part_count(const Shape *shape) { return shape->within ? 1 : shape->child_count; }
 
 const Shape *box_part(const Shape *shape, uint32_t index)
@@ -237,7 +239,7 @@ static Box box_repeat_polar(const BoxInput *in)
     Box    box  = part(in, 0);
     double most = 0;
     for (int i = 0; i < 3; i += 2)
-        most = hypot(most, fmax(fabs(box.axis[i].low), fabs(box.axis[i].high)));
+        most = real_hypot(most, fmax(fabs(box.axis[i].low), fabs(box.axis[i].high)));
     if (!box_is_empty(box))
         box.axis[0] = box.axis[2] = (Range){-most, most};
     return box;

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
 /* Cells that one box is cut into, about; cells of a cover, beyond which neighbours are merged. */
@@ -26,8 +27,8 @@ static double middle_of(const Range range[3], double centre[3])
     double leave = 0, size = 0;
     for (int i = 0; i < 3; i++) {
         centre[i] = middle(range[i]);
-        leave     = hypot(leave, 0.5 * (range[i].high - range[i].low));
-        size      = hypot(size, centre[i]);
+        leave     = real_hypot(leave, 0.5 * (range[i].high - range[i].low));
+        size      = real_hypot(size, centre[i]);
     }
     return leave * (1 + ROUNDING) + ROUNDING * size;
 }
@@ -55,7 +56,7 @@ void cover_add(Arena *arena, Cover *cover, Box box)
     }
     for (int i = 0; i < 3; i++)
         volume *= fmax(sides[i], most / BOX_CELLS);
-    double step = most > 0 ? cbrt(volume / BOX_CELLS) : 1;
+    double step = most > 0 ? real_cbrt(volume / BOX_CELLS) : 1;
     for (int i = 0; i < 3; i++)
         counts[i] = (size_t)fmax(1, fmin(round(sides[i] / step), BOX_CELLS));
     for (size_t k = 0; k < counts[0] * counts[1] * counts[2]; k++) {

@@ -40,9 +40,7 @@ static Loaded read_included(const Import *import, const char *name)
             break;
         Text standard = {.arena = import->arena};
         text_format(&standard, "%s%s", folders[i], name);
-        Loaded found = {0};
-        found.owned  = source_read(standard.bytes, &found.length, &found.reason);
-        found.text   = found.owned;
+        const Loaded found = disk_read(standard.bytes);
         if (found.text)
             loaded = found;
     }

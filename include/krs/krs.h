@@ -122,6 +122,11 @@ typedef struct KrsAllocator {
    text must stay valid until the next call, or until compiling has ended. */
 typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length);
 
+/* Supplies a font that a scene names by its name, not by a file: "DejaVu Serif".  NULL is a usual one without serifs.
+   Of several in the file, *face is the number of the one that is meant, 0 before the call.  NULL: there is none of this
+   name.  The bytes must stay valid until the next call, or until compiling has ended. */
+typedef const char *KrsFontCallback(void *user, const char *name, size_t *length, int *face);
+
 /* Told of each file that a scene is read from: its own, what it uses or reads as data, pictures and
    fonts.  Also of files that do not exist, and perhaps of one more than once.  `path` is the one
    that diagnostics show; it lives until the callback returns. */
@@ -186,6 +191,8 @@ typedef struct KrsOptions {
     /* Shapes that the expression at this place of the author's texts makes are empty, in their boxes: the scene without
        a part, to see what that costs.  Line and column do not count.  NULL: all are as they are written. */
     const KrsLocation *without;
+    KrsFontCallback   *font;      /* supplies fonts; NULL: they are those of the system */
+    void              *font_user; /* handed to `font` */
 } KrsOptions;
 
 /* Compiles a text in memory, or a file.  `name` is the text's name in diagnostics, and paths of

@@ -3,6 +3,7 @@
  */
 #include "mesh/flat/flat_circles.h"
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
 /* The polygon that approximates a circle, and those of its sides that a rectangle sees. */
@@ -16,7 +17,7 @@ typedef struct Sides {
 static void find_sides(Range a, Range b, uint32_t count, double wide, Sides *sides)
 {
     static const double SLACK  = 1e-9;
-    const double        around = 2 * acos(-1);
+    const double        around = 2 * M_PI;
     sides->count               = count;
     sides->angle               = around / count;
     sides->wide                = wide;
@@ -24,9 +25,9 @@ static void find_sides(Range a, Range b, uint32_t count, double wide, Sides *sid
     sides->used                = count;
     if (a.low <= 0 && a.high >= 0 && b.low <= 0 && b.high >= 0)
         return;
-    double middle = atan2(b.low + b.high, a.low + a.high), low = 0, high = 0;
+    double middle = real_atan2(b.low + b.high, a.low + a.high), low = 0, high = 0;
     for (int i = 0; i < 4; i++) {
-        double offset = atan2(i / 2 ? b.high : b.low, i % 2 ? a.high : a.low) - middle;
+        double offset = real_atan2(i / 2 ? b.high : b.low, i % 2 ? a.high : a.low) - middle;
         offset -= around * round(offset / around);
         low  = min2(low, offset);
         high = max2(high, offset);
@@ -40,8 +41,8 @@ static void find_corner(const Sides *sides, int64_t number, double corner[2])
 {
     double angle  = (double)number * sides->angle;
     double radius = 4 * number % sides->count == 0 ? 1 : sides->wide;
-    corner[0]     = radius * cos(angle);
-    corner[1]     = radius * sin(angle);
+    corner[0]     = radius * real_cos(angle);
+    corner[1]     = radius * real_sin(angle);
 }
 
 /* Finds the factors of the linear form of two numbers that is 1 on a side. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/minmax.h"
 #include "compiler/base/vec.h"
 #include "mesh/flat/flat_separate.h"
@@ -356,7 +357,7 @@ static double turn_to_left(const double direction[3], const double next[3], cons
     double              product[3];
     cross3(direction, next, product);
     double left = dot3(product, normal), on = dot3(direction, next);
-    return on < 0 && fabs(left) < NONE ? acos(-1) : atan2(left, on);
+    return on < 0 && fabs(left) < NONE ? M_PI : real_atan2(left, on);
 }
 
 /* Returns the edge that follows: at a corner that parts of a face share, the one most to the

@@ -6,6 +6,7 @@
  */
 #include "mesh/flat/flat_outlines.h"
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_outlines.h"
@@ -44,7 +45,7 @@ static Form line_of(const Window *window, const Chord *chord)
 {
     double along[2];
     vector_of(chord, along);
-    double length = hypot(along[0], along[1]);
+    double length = real_hypot(along[0], along[1]);
     Form   line   = form_constant((chord->from[1] * along[0] - chord->from[0] * along[1]) / length);
     line          = form_sum(line, along[1] / length, &window->at[0]);
     return form_sum(line, -along[0] / length, &window->at[1]);
@@ -52,7 +53,7 @@ static Form line_of(const Window *window, const Chord *chord)
 
 /* ---- chords ---- */
 
-static double bend_of(const InstanceArc *arc) { return hypot(arc->bend[0], arc->bend[1]); }
+static double bend_of(const InstanceArc *arc) { return real_hypot(arc->bend[0], arc->bend[1]); }
 
 /* Returns how many chords an arc needs: with even steps of the parameter they are at most bend / (4
    count^2) off. */
@@ -101,7 +102,8 @@ static void take_nearest(Window *window, const Chord *chord)
         from[k] = 0.5 * (window->range[k].low + window->range[k].high) - chord->from[k];
     double square = along[0] * along[0] + along[1] * along[1];
     double t      = min2(max2((from[0] * along[0] + from[1] * along[1]) / square, 0), 1);
-    double off = hypot(from[0] - t * along[0], from[1] - t * along[1]), least = window->distance;
+    double off    = real_hypot(from[0] - t * along[0], from[1] - t * along[1]),
+           least  = window->distance;
     double across = fabs(cross2(along, from)) / sqrt(square);
     if (off < least * (1 - SAME) || (off <= least * (1 + SAME) && across > window->across)) {
         window->nearest  = *chord;
@@ -158,7 +160,7 @@ static void add_arc(Finding *f, Window *window, const InstanceArc *arc, double o
 
 static bool meet(const Window *window, const Chord *before, const Chord *behind)
 {
-    return hypot(before->to[0] - behind->from[0], before->to[1] - behind->from[1]) <=
+    return real_hypot(before->to[0] - behind->from[0], before->to[1] - behind->from[1]) <=
            window->margin;
 }
 
@@ -216,10 +218,11 @@ static size_t find_hull_corner(const Chord *chords, size_t count)
     size_t corner = 1;
     vector_of(&chords[0], vectors[0]);
     vector_of(&chords[count - 1], vectors[1]);
-    double lengths[2] = {hypot(vectors[0][0], vectors[0][1]), hypot(vectors[1][0], vectors[1][1])};
+    double lengths[2] = {real_hypot(vectors[0][0], vectors[0][1]),
+                         real_hypot(vectors[1][0], vectors[1][1])};
     for (int k = 0; k < 2; k++)
         out[k] = vectors[0][k] / lengths[0] - vectors[1][k] / lengths[1];
-    if (hypot(out[0], out[1]) < 1e-9) {
+    if (real_hypot(out[0], out[1]) < 1e-9) {
         out[0] = -vectors[0][1];
         out[1] = vectors[0][0];
     }

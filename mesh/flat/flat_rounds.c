@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/minmax.h"
 
 /* A multiple of four. */
@@ -29,8 +30,9 @@ double flat_corner_radius(uint32_t sides)
    sin angle), and to that through two corners of radius `wide`. */
 double flat_side_distance(uint32_t sides, double wide)
 {
-    double angle = 2 * PI / sides, across = wide * sin(angle), along = wide * cos(angle) - 1;
-    return min2(across / hypot(across, along), wide * cos(0.5 * angle));
+    double angle = 2 * PI / sides, across = wide * real_sin(angle),
+           along = wide * real_cos(angle) - 1;
+    return min2(across / real_hypot(across, along), wide * real_cos(0.5 * angle));
 }
 
 static double off_of(uint32_t sides)

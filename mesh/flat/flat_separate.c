@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "mesh/common/numbering.h"
 
@@ -62,8 +63,8 @@ static double angle_through(const Edges *e, uint32_t edge, uint32_t other)
     frame_of(e, edge, along, into);
     frame_of(e, other, other_along, other_into);
     cross3(along, into, outwards);
-    double angle = atan2(-dot3(other_into, outwards), dot3(other_into, into));
-    return angle > NONE ? angle : angle + 2 * acos(-1);
+    double angle = real_atan2(-dot3(other_into, outwards), dot3(other_into, into));
+    return angle > NONE ? angle : angle + 2 * M_PI;
 }
 
 static bool find_back(Edges *e, uint32_t edge)

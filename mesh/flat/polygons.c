@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
 typedef struct Corner {
@@ -74,8 +75,8 @@ static void read_rings(Cutting *c, const double (*at)[3], const double normal[3]
             ring->area += area2(ring->items[0].at, ring->items[i].at, ring->items[i + 1].at);
         c->tiny += 1e-13 * fabs(ring->area);
         for (size_t i = 0, j = ring->count - 1; i < ring->count; j = i++)
-            ring->thin += c->narrow * hypot(ring->items[i].at[0] - ring->items[j].at[0],
-                                            ring->items[i].at[1] - ring->items[j].at[1]);
+            ring->thin += c->narrow * real_hypot(ring->items[i].at[0] - ring->items[j].at[0],
+                                                 ring->items[i].at[1] - ring->items[j].at[1]);
         if (fabs(ring->area) < ring->thin)
             ring->area = fabs(ring->area); /* it is no hole, whatever its orientation */
     }
@@ -179,7 +180,7 @@ static bool find_bridge(const Cutting *c, const Ring *hole, size_t *from, size_t
         least = HUGE_VAL;
         for (size_t i = 0; i < outer->count; i++) {
             const double *b        = outer->items[i].at;
-            double        distance = hypot(a[0] - b[0], a[1] - b[1]);
+            double        distance = real_hypot(a[0] - b[0], a[1] - b[1]);
             if (tried[i] || distance >= least || !goes_inside(outer, i, a) ||
                 !goes_inside(hole, right, b))
                 continue;

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
 /* Returns how high above the disc the surface may be, if a ball around a point above it has no
@@ -115,7 +116,7 @@ static bool fits_lens(void *user, uint32_t triangle, const double corners[3][3])
 
 double lens_reach(const Verifier *verifier, const Lens *lens)
 {
-    return hypot(lens->radius, 2 * verifier->error);
+    return real_hypot(lens->radius, 2 * verifier->error);
 }
 
 /* Finds the box around the disc of the lens and twice the error to both sides of it.  It is a

@@ -1,6 +1,7 @@
 /* corners.c: the corners of plane figures that are convex polygons. */
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/eval/builtins/builtins.h"
 #include "compiler/eval/declared/declare.h"
 #include "compiler/lower/outline.h"
@@ -84,9 +85,9 @@ static bool turns_left_once(const Elaboration *e, const Corners *corners)
         double       parallel = way[0] * on[0] + way[1] * on[1];
         if (product < -1e-12 * size * size || (parallel < 0 && product <= 0))
             return false;
-        around += atan2(product, parallel);
+        around += real_atan2(product, parallel);
     }
-    return around < 3 * acos(-1);
+    return around < 3 * M_PI;
 }
 
 static void reverse_corners(Corners *corners)

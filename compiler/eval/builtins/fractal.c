@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/fractal.h"
 
 /* The iterations as a whole number of frame time, and the most there can be; false: reported. */
@@ -34,7 +35,7 @@ static bool want_iterations(Elaboration *e, const Call *call, uint32_t index, do
 }
 
 /* Returns as many iterations as give details of about a thousandth of the whole. */
-static double usual_iterations(uint32_t power) { return ceil(10 / log2(power)); }
+static double usual_iterations(uint32_t power) { return ceil(10 / real_log2(power)); }
 
 /* A list of four numbers of frame time; NODE_NONE: reported. */
 static Node want_quaternion(Elaboration *e, const Call *call, uint32_t index)

@@ -1,4 +1,5 @@
 /* grown.c: figures of known outlines that are grown, as outlines of their own. */
+#include "compiler/base/elementary.h"
 #include "compiler/eval/builtins/builtins.h"
 #include "compiler/family/family.h"
 #include "compiler/lower/boundary.h"
@@ -10,20 +11,20 @@ static const double MAX_TURN = 0.8;
 
 static void point_of_arc(const Curve *arc, double angle, double away, double point[2])
 {
-    point[0] = arc->centre[0] + away * cos(angle);
-    point[1] = arc->centre[1] + away * sin(angle);
+    point[0] = arc->centre[0] + away * real_cos(angle);
+    point[1] = arc->centre[1] + away * real_sin(angle);
 }
 
 /* Adds an arc as parabolas with its tangents at their ends, which are radius turn^4 / 128 off in
    the middle. */
 static void add_arc(Arena *arena, Curves *curves, const Curve *arc, double off)
 {
-    double begin = atan2(arc->from[1] - arc->centre[1], arc->from[0] - arc->centre[0]);
-    double end   = atan2(arc->to[1] - arc->centre[1], arc->to[0] - arc->centre[0]);
-    double turn  = remainder(end - begin, 2 * acos(-1));
-    double most  = fmin(pow(128 * off / arc->radius, 0.25), MAX_TURN);
+    double begin = real_atan2(arc->from[1] - arc->centre[1], arc->from[0] - arc->centre[0]);
+    double end   = real_atan2(arc->to[1] - arc->centre[1], arc->to[0] - arc->centre[0]);
+    double turn  = remainder(end - begin, 2 * M_PI);
+    double most  = fmin(real_pow(128 * off / arc->radius, 0.25), MAX_TURN);
     int    count = (int)fmax(ceil(fabs(turn) / most), 1);
-    double part = turn / count, far = arc->radius / cos(0.5 * part);
+    double part = turn / count, far = arc->radius / real_cos(0.5 * part);
     Curve  curve = {.to = {arc->from[0], arc->from[1]}};
     for (int i = 1; i <= count; i++) {
         for (int k = 0; k < 2; k++)

@@ -25,7 +25,8 @@ static Node id_of_cell(Graph *g, Node cell, uint32_t stream)
     for (uint32_t i = 0; i < g->items[cell].type; i++) {
         Node whole   = graph_op1(g, OP_round, graph_component(g, cell, i));
         Node shifted = graph_op2(g, OP_add, whole, graph_number(g, MIDDLE));
-        Node limited = graph_op3(g, OP_clamp, shifted, graph_number(g, 0), graph_number(g, LAST));
+        Node last = graph_number(g, LAST), first = graph_number(g, 0);
+        Node limited = graph_op3(g, OP_clamp, shifted, first, last);
         Node number  = graph_op1(g, OP_to_uint, limited);
         id           = graph_op2(g, OP_join_id, id, number);
     }

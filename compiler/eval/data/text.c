@@ -63,22 +63,15 @@ static void report_no_font(Elaboration *e, const Call *call, FontSearch search, 
                          "its ending: `font: \"letters.ttf\"`";
 }
 
-static bool find_system_font(Elaboration *e, const Call *call, const char *name, Font *font)
+static bool find_font(Elaboration *e, const Call *call, const char *name, Font *font)
 {
-    FoundFont  found;
-    FileBytes  bytes  = {0};
-    FontSearch search = font_find(name, &found);
-    if (search == FONT_NO_MEMORY)
-        longjmp(*e->arena->memory->exhausted, 1); /* as any other want of memory */
-    if (search == FONT_FOUND && !read_system_file(e, found.path, &bytes))
-        search = FONT_NONE;
-    free(found.path);
+    FileBytes  bytes;
+    FontSearch search = read_font(e, name, &bytes);
     if (search != FONT_FOUND) {
         report_no_font(e, call, search, name);
         return false;
     }
-    sources_note_file(e->sources, "face", &found.face, sizeof found.face);
-    *font = (Font){bytes.bytes, bytes.length, found.face};
+    *font = (Font){bytes.bytes, bytes.length, bytes.face};
     return true;
 }
 
@@ -87,13 +80,13 @@ static bool want_font(Elaboration *e, const Call *call, Font *font)
 {
     const Argument *argument = &call->arguments[FONT];
     if (!argument->syntax)
-        return find_system_font(e, call, NULL, font);
+        return find_font(e, call, NULL, font);
     if (argument->value.type != VALUE_STRING) {
         type_error(e, argument->syntax, argument->value, "the name of a font or of its file");
         return false;
     }
     if (!is_file_name(argument->value.string))
-        return find_system_font(e, call, argument->value.string, font);
+        return find_font(e, call, argument->value.string, font);
     FileBytes bytes;
     if (!read_beside(e, argument, argument->value.string, &bytes))
         return false;

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/eval/declared/claim_pairs.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/shape/slope.h"
@@ -152,7 +153,7 @@ static bool gradient_at(const Sampling *s, Node number, const double point[3], d
         gradient[i] = s->values[number].v[0];
         sample_at(s, before);
         gradient[i] -= s->values[number].v[0];
-        length = hypot(length, gradient[i]);
+        length = real_hypot(length, gradient[i]);
     }
     for (int i = 0; i < 3; i++)
         gradient[i] /= length > 0 ? length : 1;
@@ -297,7 +298,7 @@ static double distance_to(const Surfaces *surfaces, const double p[3])
     double least = HUGE_VAL;
     for (uint32_t i = 0; i < surfaces->count; i++) {
         const double *at = surfaces->points[i];
-        least            = fmin(least, hypot(hypot(at[0] - p[0], at[1] - p[1]), at[2] - p[2]));
+        least = fmin(least, real_hypot(real_hypot(at[0] - p[0], at[1] - p[1]), at[2] - p[2]));
     }
     return least;
 }

@@ -477,7 +477,7 @@ Node extents_along(Elaboration *e, const Extents *extents, Node along)
         if (part->rim != NODE_NONE) {
             Node size = graph_op2(g, OP_dot, part->rim, part->rim);
             Node lost = graph_op1(g, OP_square, graph_op2(g, OP_dot, part->rim, along));
-            Node left = graph_op2(g, OP_max, sub(g, size, lost), graph_number(g, 0));
+            Node left = at_least(g, sub(g, size, lost), 0);
             reach     = plus(g, reach, graph_op1(g, OP_sqrt, left));
         }
         most = greater(g, most, reach);

@@ -28,6 +28,7 @@ typedef struct FilletPart {
     uint32_t     owner;
     bool         paired;
     Extents      extents;
+    size_t       number; /* in the order of the text */
 } FilletPart;
 
 typedef struct FilletParts {
@@ -166,9 +167,11 @@ static bool refuse_endless(Filleting *f, const FilletPart *part)
 
 static int compare_parts(const void *first, const void *second)
 {
-    const double a = ((const FilletPart *)first)->shape->box.axis[0].low;
-    const double b = ((const FilletPart *)second)->shape->box.axis[0].low;
-    return a < b ? -1 : a > b;
+    const FilletPart *a = first, *b = second;
+    const double      from = a->shape->box.axis[0].low, of = b->shape->box.axis[0].low;
+    if (from != of)
+        return from < of ? -1 : 1;
+    return (a->number > b->number) - (a->number < b->number);
 }
 
 static bool add_pair(Filleting *f, FilletPart *a, FilletPart *b)
@@ -188,6 +191,8 @@ static bool add_pair(Filleting *f, FilletPart *a, FilletPart *b)
 static bool add_pairs(Filleting *f)
 {
     FilletPart *parts = f->parts.items;
+    for (size_t i = 0; i < f->parts.count; i++)
+        parts[i].number = i;
     qsort(parts, f->parts.count, sizeof *parts, compare_parts);
     for (size_t i = 0; i < f->parts.count; i++)
         for (size_t k = i + 1; k < f->parts.count; k++) {

@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/lower/context.h"
@@ -66,7 +67,7 @@ static bool adds_in(const Distances *distances, double width, const ZoneCell *ce
         if (there + slack < 0 || away[k] < 0)
             return false;
     }
-    return !(hypot(away[0], away[1]) < width); /* of the least distances in it */
+    return !(real_hypot(away[0], away[1]) < width); /* of the least distances in it */
 }
 
 static ZoneCell ball_of_box(Box box)

@@ -9,6 +9,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/eval/declared/claims.h"
 #include "compiler/shape/map.h"
@@ -253,7 +254,7 @@ static bool turned_hull(const Hulling *h, const Axis *axis, double slack, Value 
         const HullPart *part = &h->parts.items[i / 2];
         double          place[3], rim = length3(part->rim);
         axis_place(axis, part, place);
-        if (hypot(place[0], place[1]) > slack)
+        if (real_hypot(place[0], place[1]) > slack)
             return false;
         discs[i] = (HullBall){{i % 2 ? rim : -rim, place[2], 0}, part->ball.radius};
     }
@@ -279,7 +280,7 @@ static bool ends_match(const HullParts *parts, double (*places)[3], double middl
         bool found = false;
         for (size_t k = 0; k < parts->count && !found; k++)
             found = (places[i][2] < middle) != (places[k][2] < middle) &&
-                    hypot(places[i][0] - places[k][0], places[i][1] - places[k][1]) <= slack &&
+                    real_hypot(places[i][0] - places[k][0], places[i][1] - places[k][1]) <= slack &&
                     fabs(length3(parts->items[i].rim) - length3(parts->items[k].rim)) <= slack;
         if (!found)
             return false;

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/eval/hulls/hull.h"
 #include "compiler/eval/hulls/hull_normals.h"
@@ -72,7 +73,7 @@ static void add_ball(Elaboration *e, Points *points, const double centre[3], dou
     for (int i = 0; i < corners; i++) {
         const double height = (2 * i + 1.0) / corners - 1, turn = 2.399963229728653 * i;
         const double across       = sqrt(1 - height * height);
-        const double direction[3] = {across * cos(turn), height, across * sin(turn)};
+        const double direction[3] = {across * real_cos(turn), height, across * real_sin(turn)};
         add_point(e, points, centre, radius, direction);
     }
 }
@@ -90,7 +91,7 @@ static void add_rim(Elaboration *e, Points *points, const HullPart *part, int co
         const double turn = 2 * 3.14159265358979323846 * i / corners;
         double       direction[3], on[3];
         for (int k = 0; k < 3; k++)
-            direction[k] = cos(turn) * first[k] + sin(turn) * second[k];
+            direction[k] = real_cos(turn) * first[k] + real_sin(turn) * second[k];
         add_point(e, points, part->ball.centre, rim + part->ball.radius, direction);
         if (part->ball.radius > 0) {
             add_scaled3(on, part->ball.centre, rim, direction);

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
 static const double PI = 3.14159265358979323846;
@@ -75,8 +76,8 @@ static bool pair_make(const Work *w, size_t first, size_t second, bool plane, Pa
 static void pair_direction(const Pair *pair, double angle, double direction[3])
 {
     for (int i = 0; i < 3; i++)
-        direction[i] = pair->sine * pair->axis[i] +
-                       pair->cosine * (cos(angle) * pair->e1[i] + sin(angle) * pair->e2[i]);
+        direction[i] = pair->sine * pair->axis[i] + pair->cosine * (real_cos(angle) * pair->e1[i] +
+                                                                    real_sin(angle) * pair->e2[i]);
 }
 
 static void add_face(Work *w, const Pair *pair, double angle)
@@ -106,10 +107,10 @@ static void add_edge(Work *w, const Pair *pair, double from, double to)
     bool     whole = half > PI - 1e-9;
     for (int i = 0; i < 3; i++) {
         edge.axis[i]   = pair->axis[i];
-        edge.middle[i] = cos(angle) * pair->e1[i] + sin(angle) * pair->e2[i];
+        edge.middle[i] = real_cos(angle) * pair->e1[i] + real_sin(angle) * pair->e2[i];
     }
     if (!whole) {
-        edge.least = cos(half);
+        edge.least = real_cos(half);
         add_face(w, pair, from);
         add_face(w, pair, to);
     }
@@ -126,12 +127,12 @@ static bool hide_behind(Work *w, const Pair *pair, size_t other, size_t *end_cou
     add_scaled3(towards, c->centre, -1, a->centre);
     double x = pair->cosine * dot3(towards, pair->e1), y = pair->cosine * dot3(towards, pair->e2);
     double room  = a->radius - c->radius - pair->sine * dot3(towards, pair->axis),
-           reach = hypot(x, y);
+           reach = real_hypot(x, y);
     if (room >= reach - w->slack)
         return true;
     if (room <= -reach)
         return false;
-    double middle = atan2(y, x), half = acos(room / reach);
+    double middle = real_atan2(y, x), half = real_acos(room / reach);
     double from = middle - half, to = middle + half;
     for (int lap = -1; lap <= 1; lap++) {
         double low = fmax(from + 2 * PI * lap, -PI), high = fmin(to + 2 * PI * lap, PI);

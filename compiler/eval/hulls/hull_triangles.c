@@ -74,7 +74,8 @@ static bool  run_qhull(coordT *points, size_t count, const char *options, EachFa
                        void *user)
 {
     qhT   state, *qh = &state;
-    FILE *silent = fopen("/dev/null", "w"); /* what it says of mistakes */
+    FILE *silent = fopencookie(NULL, "w",
+                               (cookie_io_functions_t){0}); /* what it says of mistakes */
     FILE *said   = silent ? silent : stderr;
     char  command[32];
     snprintf(command, sizeof command, "%s", options);

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
+
 /* ---- fog, image, zones ---- */
 
 static const double ORIGIN[3] = {0, 0, 0};
@@ -191,7 +193,7 @@ static void default_camera(Elaboration *e)
         radius = fmax(0.5 * box_diagonal(box), 1e-6);
     }
     for (int i = 0; i < 3; i++)
-        eye[i] = target[i] + towards[i] * radius / sin(0.5 * fov);
+        eye[i] = target[i] + towards[i] * radius / real_sin(0.5 * fov);
     SceneCamera camera  = read_camera(e, NULL, &silent);
     camera.standing_in  = true;
     camera.nodes.eye    = graph_constant(e->graph, TYPE_VEC3, eye);

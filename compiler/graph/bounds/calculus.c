@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/bounds/rules.h"
 
 /* ---- one component with its gradient ---- */
@@ -100,7 +101,7 @@ Range length_range(const Range *sides, uint32_t size)
 {
     double least = 0, largest = 0;
     for (uint32_t i = 0; i < size; i++) {
-        least   = hypot(least, range_least(sides[i]));
+        least   = real_hypot(least, range_least(sides[i]));
         largest = hypot_upward(largest, range_largest(sides[i]));
     }
     return (Range){size > 1 && isfinite(least) ? least - least * 0x1p-50 : least, largest};
@@ -140,7 +141,7 @@ static double largest_singular_value(double m[4][3], uint32_t size)
                          a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
     double cubed  = 2 * deviation * deviation * deviation;
     double cosine = cubed > 0 ? fmin(fmax(determinant / cubed, -1), 1) : 1;
-    return sqrt(mean + 2 * deviation * cos(acos(cosine) / 3)) * (1 + 1e-7);
+    return sqrt(mean + 2 * deviation * real_cos(real_acos(cosine) / 3)) * (1 + 1e-7);
 }
 
 /* A matrix of intervals is a centre and a rest: sigma(centre + rest) <= sigma(centre) + |rest|. */

@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/fractal.h"
 #include "compiler/graph/texture.h"
@@ -79,10 +80,10 @@ static void sector_bounds(const Fact *p, Range count, Fact *fact)
 {
     Fact   plane   = {.value = {p->value[0], p->value[2]}};
     Range  radius  = length_range(plane.value, 2);
-    double half    = acos(-1) / count.low;
+    double half    = M_PI / count.low;
     bool   narrow  = count.low >= 2;
-    Range  x       = {narrow ? radius.low * cos(half) : -radius.high, radius.high};
-    double z       = narrow ? radius.high * sin(half) : radius.high;
+    Range  x       = {narrow ? radius.low * real_cos(half) : -radius.high, radius.high};
+    double z       = narrow ? radius.high * real_sin(half) : radius.high;
     fact->value[0] = loosened(x, radius.high);
     fact->value[2] = loosened((Range){-z, z}, radius.high);
     for (int j = 0; j < 3; j++) {
@@ -101,7 +102,7 @@ Fact fact_cell_polar(const RuleInput *input)
         return count.high < 1 ? *p : fact_unknown(3);
     Fact fact = *p;
     sector_bounds(p, range_above(count, 1), &fact);
-    Range sector  = range_div(range_of(2 * acos(-1)), count);
+    Range sector  = range_div(range_of(2 * M_PI), count);
     Range sectors = range_round(range_div(range_atan2(p->value[2], p->value[0]), sector));
     if (range_is_single(count) && range_is_single(sectors)) {
         Range angle = range_mul(sectors, sector), c = range_cos(angle), s = range_sin(angle);

@@ -15,6 +15,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/far.h"
 #include "compiler/base/parallel.h"
 #include "compiler/graph/instances/squares.h"
@@ -371,7 +372,7 @@ static void visit_flat_cells(const Builder *b, uint32_t instance, Slab slab)
             double center[2] = {grid->low[0] + (x + 0.5) * grid->size,
                                 grid->low[1] + (y + 0.5) * grid->size};
             visit_flat_cell(b, instance, (size_t)y * grid->cells[0] + x, center,
-                            hypot(gap_along(b, box, 0, x), gap_y));
+                            real_hypot(gap_along(b, box, 0, x), gap_y));
         }
     }
 }

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/far.h"
 #include "compiler/graph/blend_shares.h"
 #include "compiler/graph/instances/grid_build.h"
@@ -106,11 +107,11 @@ static void sum_powers(const GridBlend *blend, const HalvingDesk *desk, uint32_t
         for (int part = 0; part < GRID_PARTS; part++) {
             double above = (desk->distances[i][part] - results[part]) / blend->width;
             if (above < WIDTHS_OF_DOUBLES)
-                sums[part] += exp(-above);
+                sums[part] += real_exp(-above);
         }
     for (int part = 0; part < GRID_PARTS; part++)
         if (sums[part] > 0)
-            results[part] -= blend->width * log(sums[part]);
+            results[part] -= blend->width * real_log(sums[part]);
 }
 
 /* Joins all instances.  Those that never act are not needed. */
@@ -177,7 +178,7 @@ static void leave_out(const Halver *halver, const HalvingDesk *desk, uint8_t *ne
             counts[above < STEPS ? (int)above : STEPS - 1]++;
     }
     while (step > 0) {
-        sum += counts[step - 1] * exp(-(step - 1) / (double)PER_WIDTH);
+        sum += counts[step - 1] * real_exp(-(step - 1) / (double)PER_WIDTH);
         if (sum > MAX_LEFT_OUT * h->share)
             break;
         step--;

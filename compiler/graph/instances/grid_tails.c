@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/parallel.h"
 
 enum { STEPS_OF_WIDTH = 8, STEPS = 256 };
@@ -66,12 +67,12 @@ static void find_tails(const Tails *t, const Sorting *sorting, size_t cell)
     sort_list(t, sorting, t->grid->instances + first, tails, count, least);
     memcpy(t->grid->instances + first, sorting->instances, count * sizeof *sorting->instances);
     for (uint32_t i = count; i-- > 0;) {
-        sum += exp((least - (double)sorting->distances[i]) / t->width);
+        sum += real_exp((least - (double)sorting->distances[i]) / t->width);
         tails[i] = (float)sum;
     }
     for (uint32_t i = 0; i < count; i++)
         tails[i] = (float)((double)tails[i] * t->factor / sum);
-    t->grid->middles[cell] = (float)(least - t->width * log(sum));
+    t->grid->middles[cell] = (float)(least - t->width * real_log(sum));
 }
 
 /* Slabs of cells are dealt out to the processors. */
@@ -89,7 +90,7 @@ void grid_find_tails(Grid *refined, const GridBlend *blend, double pad, Arena *a
 {
     Tails  t         = {.grid   = refined,
                         .width  = blend->width,
-                        .factor = ROUNDED_UP * exp(2 * blend->slope * pad / blend->width)};
+                        .factor = ROUNDED_UP * real_exp(2 * blend->slope * pad / blend->width)};
     size_t most      = refined->max_listed + (size_t)1;
     refined->middles = arena_new_array(arena, float, grid_cell_count(refined));
     for (size_t i = 0; i < parallel_parts(); i++)

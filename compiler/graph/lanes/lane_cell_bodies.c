@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/graph/instance_walk.h"
 #include "compiler/graph/lanes/lane_cell_work.h"
@@ -235,8 +236,8 @@ static void visit_nearest(const CellCall *call, NodeValue *values, const CellVie
     const InstanceTable *table     = call->body->table;
     const double         middle[2] = {0.5 * (view->at[0].low + view->at[0].high),
                                       0.5 * (view->at[1].low + view->at[1].high)};
-    const double         radius    = hypot(0.5 * (view->at[0].high - view->at[0].low),
-                                           0.5 * (view->at[1].high - view->at[1].low));
+    const double         radius    = real_hypot(0.5 * (view->at[0].high - view->at[0].low),
+                                                0.5 * (view->at[1].high - view->at[1].low));
     const double         size      = fabs(middle[0]) + fabs(middle[1]) + radius;
     double               least[MAX_LISTED];
     uint32_t             first = 0;
@@ -307,7 +308,7 @@ void cell_join(const CellCall *call, const Graph *graph, CellStates states, floa
 double cell_call_moves(const CellCall *call, const double by[3], double point)
 {
     const bool   plane = call->body && call->body->table->arcs;
-    const double moves = plane ? hypot(by[0], by[1])
+    const double moves = plane ? real_hypot(by[0], by[1])
                                : sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
     return call->call->steepest > 0 && !(moves < call->call->steepest * point)
                ? call->call->steepest * point

@@ -237,7 +237,8 @@ static void LOCAL(cell_mandelbulb)(const REAL *const *x, REAL *to)
     const REAL       *settings = x[5], *radius = x[6], *cx = x[0], *cy = x[1], *cz = x[2];
     const int  power = LOCAL(same_whole)(x[3], MOST_POWER), most = LOCAL(same_whole)(x[4], MOST);
     const REAL degree = (REAL)power, core = (REAL)mandelbulb_core(power);
-    const REAL least = powf(4 * degree, -1 / (degree - 1)), far = fminf(16, exp2f(32 / degree));
+    const REAL least = (REAL)real_pow(4 * degree, -1 / (degree - 1)),
+               far   = fminf(16, (REAL)real_exp2(32 / degree));
     for (int k = 0; k < 3; k++)
         memcpy(w[k], x[k], sizeof w[k]);
     ALL_LANES

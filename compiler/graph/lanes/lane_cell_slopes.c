@@ -6,6 +6,7 @@
  */
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/lanes/lane_cell_work.h"
 #include "compiler/graph/op_values.h"
@@ -74,7 +75,7 @@ static void put_in_fact(Fact *fact, uint32_t component, Range range, double stee
     fact->value[component] = range;
     for (int j = 0; j < 3; j++)
         fact->gradient[component][j] = (Range){-steepest, steepest};
-    fact->slope = component == 0 ? steepest : hypot(fact->slope, steepest);
+    fact->slope = component == 0 ? steepest : real_hypot(fact->slope, steepest);
 }
 
 /* Of a step in the ball: how fast it changes, and else its range. */
@@ -146,7 +147,7 @@ static Found find_of_step(const Ball *ball, const CellStep *step)
 /* Within one sector a point is turned. */
 static bool is_in_one_sector(const Fact *point, const Fact *count)
 {
-    const Range sector = range_div(range_of(2 * acos(-1)), count->value[0]);
+    const Range sector = range_div(range_of(2 * M_PI), count->value[0]);
     return count->slope == 0 && count->value[0].low >= 1 &&
            range_is_single(
                range_round(range_div(range_atan2(point->value[2], point->value[0]), sector)));

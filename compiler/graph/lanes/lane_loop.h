@@ -33,37 +33,22 @@ LESSER(float, float)
 #include "compiler/graph/lanes/lane_math.h"
 
 /* In single precision functions that the C library would be called for are loops, too. */
-#undef sin
-#undef cos
-#undef tan
-#undef asin
-#undef acos
-#undef atan
-#undef sinh
-#undef cosh
-#undef tanh
-#undef exp
-#undef exp2
-#undef log
-#undef log2
-#undef log1p
-#undef hypot
 #define OF_SINGLE(a, single, other) _Generic((a), float : single, default : other)
-#define sin(a)                      OF_SINGLE(a, lane_sin, sin)(a)
-#define cos(a)                      OF_SINGLE(a, lane_cos, cos)(a)
-#define tan(a)                      OF_SINGLE(a, lane_tan, tan)(a)
-#define asin(a)                     OF_SINGLE(a, lane_asin, asin)(a)
-#define acos(a)                     OF_SINGLE(a, lane_acos, acos)(a)
-#define atan(a)                     OF_SINGLE(a, lane_atan, atan)(a)
-#define sinh(a)                     OF_SINGLE(a, lane_sinh, sinh)(a)
-#define cosh(a)                     OF_SINGLE(a, lane_cosh, cosh)(a)
-#define tanh(a)                     OF_SINGLE(a, lane_tanh, tanh)(a)
-#define exp(a)                      OF_SINGLE(a, lane_exp, exp)(a)
-#define exp2(a)                     OF_SINGLE(a, lane_exp2, exp2)(a)
-#define log(a)                      OF_SINGLE(a, lane_log, log)(a)
-#define log2(a)                     OF_SINGLE(a, lane_log2, log2)(a)
-#define log1p(a)                    OF_SINGLE(a, lane_log1p, log1p)(a)
-#define hypot(a, b)                 OF_SINGLE((a) + (b), lane_hypot, hypot)(a, b)
+#define real_sin(a)                 OF_SINGLE(a, lane_sin, real_sin)(a)
+#define real_cos(a)                 OF_SINGLE(a, lane_cos, real_cos)(a)
+#define real_tan(a)                 OF_SINGLE(a, lane_tan, real_tan)(a)
+#define real_asin(a)                OF_SINGLE(a, lane_asin, real_asin)(a)
+#define real_acos(a)                OF_SINGLE(a, lane_acos, real_acos)(a)
+#define real_atan(a)                OF_SINGLE(a, lane_atan, real_atan)(a)
+#define real_sinh(a)                OF_SINGLE(a, lane_sinh, real_sinh)(a)
+#define real_cosh(a)                OF_SINGLE(a, lane_cosh, real_cosh)(a)
+#define real_tanh(a)                OF_SINGLE(a, lane_tanh, real_tanh)(a)
+#define real_exp(a)                 OF_SINGLE(a, lane_exp, real_exp)(a)
+#define real_exp2(a)                OF_SINGLE(a, lane_exp2, real_exp2)(a)
+#define real_log(a)                 OF_SINGLE(a, lane_log, real_log)(a)
+#define real_log2(a)                OF_SINGLE(a, lane_log2, real_log2)(a)
+#define real_log1p(a)               OF_SINGLE(a, lane_log1p, real_log1p)(a)
+#define real_hypot(a, b)            OF_SINGLE((a) + (b), lane_hypot, real_hypot)(a, b)
 #define value_sign(a)               OF_SINGLE(a, lane_sign, value_sign)(a)
 #define value_unit(a)               OF_SINGLE(a, lane_unit, value_unit)(a)
 #define value_mod(a, b)             OF_SINGLE((a) + (b), lane_mod, value_mod)(a, b)

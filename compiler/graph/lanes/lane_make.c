@@ -108,7 +108,8 @@ static uint32_t emit_dot(Builder *b, const uint32_t *x, const uint32_t *y, uint3
 
 static uint32_t emit_minor(Builder *b, const uint32_t *x, const uint32_t *y, int i, int k)
 {
-    return emit2(b, OP_sub, emit2(b, OP_mul, x[i], y[k]), emit2(b, OP_mul, x[k], y[i]));
+    const uint32_t less = emit2(b, OP_mul, x[k], y[i]);
+    return emit2(b, OP_sub, emit2(b, OP_mul, x[i], y[k]), less);
 }
 
 /* A step of a body that has no operands, but a number. */

@@ -9,6 +9,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 #include "compiler/graph/instance_walk.h"
 #include "compiler/graph/instance_table.h"
@@ -53,7 +54,7 @@ static bool look(const LaneTape *tape, const LaneRanges *ranges, size_t step, Vi
 
 static double distance_to_point(const double a[2], const double b[2])
 {
-    return hypot(a[0] - b[0], a[1] - b[1]);
+    return real_hypot(a[0] - b[0], a[1] - b[1]);
 }
 
 static bool may_be_nearest(const View *view, uint32_t instance)
@@ -96,7 +97,7 @@ static void point_at(const InstanceArc *arc, double t, double point[2])
 /* The distance to the line of a straight curve, below 0 on its left. */
 static bool find_line(const InstanceArc *arc, double line[3])
 {
-    double length = hypot(arc->tangent[0], arc->tangent[1]);
+    double length = real_hypot(arc->tangent[0], arc->tangent[1]);
     line[0]       = arc->tangent[1] / length;
     line[1]       = -arc->tangent[0] / length;
     line[2]       = -(line[0] * arc->start[0] + line[1] * arc->start[1]);
@@ -171,7 +172,7 @@ static bool nearest_tangent(const View *view, const InstanceArc *arc, double tan
     }
     for (int k = 0; k < 2; k++)
         tangent[k] = arc->tangent[k] + t * arc->bend[k];
-    double length = hypot(tangent[0], tangent[1]);
+    double length = real_hypot(tangent[0], tangent[1]);
     tangent[0] /= length;
     tangent[1] /= length;
     return fabs(change) <= 1e-12 && length > 0;
@@ -191,8 +192,8 @@ static bool is_within_ends(const View *view, const InstanceArc *arc)
 static double largest_curvature(const InstanceArc *arc)
 {
     double cross = arc->tangent[0] * arc->bend[1] - arc->tangent[1] * arc->bend[0];
-    double speed = min2(hypot(arc->tangent[0], arc->tangent[1]),
-                        hypot(arc->tangent[0] + arc->bend[0], arc->tangent[1] + arc->bend[1]));
+    double speed = min2(real_hypot(arc->tangent[0], arc->tangent[1]),
+                        real_hypot(arc->tangent[0] + arc->bend[0], arc->tangent[1] + arc->bend[1]));
     return cross == 0 ? 0 : fabs(cross) / (2 * speed * speed * speed);
 }
 

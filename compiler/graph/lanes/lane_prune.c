@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/blend_shares.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_outlines.h"
@@ -100,11 +101,11 @@ static bool is_rotation(const Pruning *p, const LaneCall *call, double *cosine, 
     if (!(count >= 1) || isinf(count) || !number_at(p, call->operands[0][0], &x) ||
         !number_at(p, call->operands[0][2], &z))
         return false;
-    double sector  = 2 * acos(-1) / count;
+    double sector  = 2 * M_PI / count;
     Range  sectors = range_round(range_div(range_atan2(z, x), range_of(sector)));
     double angle   = sector * (sectors.low + 0.0);
-    *cosine        = cos(angle);
-    *sine          = sin(angle);
+    *cosine        = real_cos(angle);
+    *sine          = real_sin(angle);
     return range_is_single(sectors) && isfinite(angle);
 }
 

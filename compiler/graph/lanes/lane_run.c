@@ -13,33 +13,6 @@
 
 /* ---- instruction sets ---- */
 
-static const LaneSet all_sets[] = {
-#if defined(__x86_64__)
-    {"avx512", {lane_double_avx512, lane_single_avx512}, lane_cells_avx512, lane_wide_avx512},
-    {"avx2", {lane_double_avx2, lane_single_avx2}, lane_cells_avx2, lane_wide_avx2},
-#endif
-    {"plain", {lane_double_plain, lane_single_plain}, lane_cells_plain, lane_wide_plain},
-};
-enum { SETS = sizeof all_sets / sizeof *all_sets };
-
-static size_t first_set(void)
-{
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl"))
-        return 0;
-    return __builtin_cpu_supports("avx2") ? 1 : 2;
-#else
-    return 0;
-#endif
-}
-
-size_t lane_sets(const LaneSet **sets)
-{
-    *sets = &all_sets[first_set()];
-    return SETS - first_set();
-}
-
 static _Atomic(const LaneSet *) used_set;
 
 void lane_use_set(const LaneSet *set) { atomic_store(&used_set, set); }
@@ -48,7 +21,7 @@ const LaneSet *lane_used_set(void)
 {
     const LaneSet *set = atomic_load_explicit(&used_set, memory_order_relaxed);
     if (!set) {
-        set = &all_sets[first_set()];
+        lane_sets(&set);
         atomic_store(&used_set, set);
     }
     return set;

@@ -3,6 +3,7 @@
  */
 #include "compiler/graph/rewrite/csg_nodes.h"
 
+#include "compiler/base/elementary.h"
 #include "compiler/base/far.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/rewrite/csg_needs.h"

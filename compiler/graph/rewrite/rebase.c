@@ -138,8 +138,10 @@ static SplitValue limit_value(Graph *g, const Expr *e, SplitValue a)
 static Node compare_values(Graph *g, const Expr *e, SplitValue a, SplitValue b)
 {
     SplitValue difference = add_values(g, OP_sub, a, b);
-    if (difference.base == NODE_NONE)
-        return graph_op2(g, e->op, sum_of(g, a), sum_of(g, b));
+    if (difference.base == NODE_NONE) {
+        Node second = sum_of(g, b);
+        return graph_op2(g, e->op, sum_of(g, a), second);
+    }
     Node limit = graph_op1(g, OP_neg, difference.base);
     return graph_op2(g, e->op, difference.relative, precise(g, limit));
 }

@@ -27,6 +27,14 @@ static Node is_less(Derivation *d, Node a, Node b)
     return between_jumps(d, sub(g, one, not_less));
 }
 
+/* Keeps an operand that is made, until the one before it is made, too. */
+static void keep(Derivation *d, Node operand) { d->kept[d->kept_count++] = operand; }
+
+static Node join(Derivation *d, Op op, Node operand)
+{
+    return graph_op2(d->graph, op, operand, d->kept[--d->kept_count]);
+}
+
 /* -1/2 a^(-3/2), with r = a^(-1/2). */
 static Node inversesqrt_slope(Derivation *d, Node r)
 {
@@ -68,7 +76,8 @@ static Node pow_slope(Derivation *d, Node a, Node b)
 static Node atan2_slope(Derivation *d, Node a, Node b, Node numerator)
 {
     Graph *g       = d->graph;
-    Node   squares = add(g, graph_op1(g, OP_square, a), graph_op1(g, OP_square, b));
+    Node   along   = graph_op1(g, OP_square, b);
+    Node   squares = add(g, graph_op1(g, OP_square, a), along);
     return over(g, numerator, squares);
 }
 
@@ -82,7 +91,8 @@ static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
     Node   fraction = over(g, sub(g, c, a), width);
     Node   h        = graph_op3(g, OP_clamp, fraction, zero, one);
     Node   rest     = sub(g, one, h);
-    Node   slope    = over(g, mul(g, mul(g, h, rest), graph_number(g, 6)), width);
+    Node   six      = graph_number(g, 6);
+    Node   slope    = over(g, mul(g, mul(g, h, rest), six), width);
     if (operand == 0)
         slope = neg(g, mul(g, slope, rest));
     else if (operand == 1)
@@ -90,20 +100,22 @@ static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
     return between_jumps(d, slope);
 }
 
-#define ZERO                                     graph_number(d->graph, 0)
-#define ONE                                      graph_number(d->graph, 1)
-#define TWO                                      graph_number(d->graph, 2)
-#define HALF                                     graph_number(d->graph, 0.5)
-#define LN2                                      graph_number(d->graph, M_LN2)
-#define MINUS_ONE                                graph_number(d->graph, -1)
-#define ANYTHING                                 between_jumps(d, ZERO)
-#define jumps(steps)                             between_jumps(d, ZERO)
-#define unless_jumps(steps, derivative)          between_jumps(d, derivative)
-#define range_sign(a)                            between_jumps(d, graph_op1(d->graph, OP_sign, a))
-#define range_mul(a, b)                          mul(d->graph, a, b)
-#define range_div(a, b)                          over(d->graph, a, b)
-#define range_add(a, b)                          add(d->graph, a, b)
-#define range_sub(a, b)                          sub(d->graph, a, b)
+#define ZERO                            graph_number(d->graph, 0)
+#define ONE                             graph_number(d->graph, 1)
+#define TWO                             graph_number(d->graph, 2)
+#define HALF                            graph_number(d->graph, 0.5)
+#define LN2                             graph_number(d->graph, M_LN2)
+#define MINUS_ONE                       graph_number(d->graph, -1)
+#define ANYTHING                        between_jumps(d, ZERO)
+#define jumps(steps)                    between_jumps(d, ZERO)
+#define unless_jumps(steps, derivative) between_jumps(d, derivative)
+#define range_sign(a)                   between_jumps(d, graph_op1(d->graph, OP_sign, a))
+/* C does not say which operand is made first, and the text of a scene shows it: the last one is. */
+#define LAST_FIRST(op, a, b)                     (keep(d, b), join(d, op, a))
+#define range_mul(a, b)                          LAST_FIRST(OP_mul, a, b)
+#define range_div(a, b)                          LAST_FIRST(OP_div, a, b)
+#define range_add(a, b)                          LAST_FIRST(OP_add, a, b)
+#define range_sub(a, b)                          LAST_FIRST(OP_sub, a, b)
 #define range_neg(a)                             neg(d->graph, a)
 #define range_square(a)                          graph_op1(d->graph, OP_square, a)
 #define range_sin(a)                             graph_op1(d->graph, OP_sin, a)
@@ -120,8 +132,8 @@ static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 #define range_tan(a)                             graph_op1(d->graph, OP_tan, a)
 #define range_atan(a)                            graph_op1(d->graph, OP_atan, a)
 #define range_tanh(a)                            graph_op1(d->graph, OP_tanh, a)
-#define range_min(a, b)                          graph_op2(d->graph, OP_min, a, b)
-#define range_max(a, b)                          graph_op2(d->graph, OP_max, a, b)
+#define range_min(a, b)                          LAST_FIRST(OP_min, a, b)
+#define range_max(a, b)                          LAST_FIRST(OP_max, a, b)
 #define range_above(a, least)                    (a)
 #define range_inversesqrt_slope(a, r)            inversesqrt_slope(d, r)
 #define range_tan_slope(r)                       one_and_square(d, r, OP_add)

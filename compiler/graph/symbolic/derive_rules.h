@@ -6,12 +6,17 @@
 
 #include "compiler/graph/graph.h"
 
+/* Columns of ops.def are no deeper. */
+enum { MAX_KEPT_OPERANDS = 8 };
+
 typedef struct Derivation {
     Graph      *graph;
     bool        breaks;   /* what was derived so far is true only between kinks and jumps */
     const bool *held;     /* nodes that are taken for constants, by number; or NULL */
     size_t      held_end; /* none from this number on */
     bool partly; /* what has no rule counts as constant; instance groups have points of their own */
+    Node kept[MAX_KEPT_OPERANDS]; /* of columns of ops.def, whose last operands are made first */
+    uint32_t kept_count;
 } Derivation;
 
 /* The derivative of a node from those of its operands, `inner`; NODE_NONE: there is none. */

@@ -38,7 +38,8 @@ static Node over_kink(const BallContext *x, Node w, Node steep)
     Node   zero = graph_number(g, 0);
     if (!has_radius(x))
         return zero;
-    Node margin = over(g, graph_op1(g, OP_abs, w), at_least(g, x->radius, TINY));
+    Node radius = at_least(g, x->radius, TINY);
+    Node margin = over(g, graph_op1(g, OP_abs, w), radius);
     return graph_op2(g, OP_max, sub(g, steep, margin), zero);
 }
 
@@ -66,8 +67,8 @@ static BallTerm smoothstep_term(BallContext *x, Node value, Node low, Node high,
     Node  whole = graph_number(g, 1 / (b->number[0] - a->number[0])), half = graph_number(g, 0.5);
     Node  across = times(g, sub(g, u.value, low), whole), zero = graph_number(g, 0);
     Node  t         = graph_op3(g, OP_clamp, across, zero, graph_number(g, 1));
-    Curve curve     = {times(g, times(g, t, sub(g, graph_number(g, 1), t)), graph_number(g, 6)),
-                       NODE_NONE};
+    Node  six       = graph_number(g, 6);
+    Curve curve     = {times(g, times(g, t, sub(g, graph_number(g, 1), t)), six), NODE_NONE};
     BallTerm scaled = scale_term(x, across, u, whole);
     if (has_radius(x)) {
         Node reach  = times(g, steepness(x, &scaled), x->radius);
@@ -183,7 +184,8 @@ static BallTerm divide_terms(BallContext *x, Node value, BallTerm a, BallTerm b)
 static BallTerm mix_terms(BallContext *x, Node value, BallTerm a, BallTerm b, BallTerm t)
 {
     Graph   *g          = x->graph;
-    BallTerm difference = add_terms(x, sub(g, b.value, a.value), b, negate_term(x, a.value, a));
+    BallTerm less       = negate_term(x, a.value, a);
+    BallTerm difference = add_terms(x, sub(g, b.value, a.value), b, less);
     BallTerm change     = multiply_terms(x, value, difference, t);
     return add_terms(x, value, a, change);
 }
@@ -368,7 +370,8 @@ bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBoun
     BallTerm    here = find(&x, root);
     if (!x.bounded)
         return false;
-    Node slope    = graph_op2(graph, OP_max, slope_here(&x, &here), graph_number(graph, least));
+    Node lowest   = graph_number(graph, least);
+    Node slope    = graph_op2(graph, OP_max, slope_here(&x, &here), lowest);
     x.radius      = over(graph, graph_op1(graph, OP_abs, root), slope);
     BallTerm ball = find(&x, root);
     bound->radius = x.limit == NODE_NONE ? x.radius : graph_op2(graph, OP_min, x.radius, x.limit);
@@ -381,7 +384,8 @@ bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBoun
 Node local_radius(Graph *graph, Node root, const LocalBound *bound)
 {
     Node size    = graph_op1(graph, OP_abs, root);
-    Node margin  = times(graph, times(graph, size, bound->second), graph_number(graph, 4));
+    Node four    = graph_number(graph, 4);
+    Node margin  = times(graph, times(graph, size, bound->second), four);
     Node squared = plus(graph, graph_op1(graph, OP_square, bound->first), margin);
     Node sum     = plus(graph, bound->first, graph_op1(graph, OP_sqrt, squared));
     Node twice   = times(graph, size, graph_number(graph, 2));

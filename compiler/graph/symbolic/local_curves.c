@@ -13,8 +13,8 @@ static Node clear_of_zero(BallContext *x, BallTerm u, Node *reach)
     Graph *g    = x->graph;
     Node   size = at_least(g, graph_op1(g, OP_abs, u.value), SMALL),
          half   = times(g, size, graph_number(g, 0.5));
-    Node margin = over(g, times(g, graph_op1(g, OP_abs, u.value), graph_number(g, 0.5)),
-                       at_least(g, steepness(x, &u), TINY));
+    Node steep  = at_least(g, steepness(x, &u), TINY);
+    Node margin = over(g, times(g, graph_op1(g, OP_abs, u.value), graph_number(g, 0.5)), steep);
     x->limit    = x->limit == NODE_NONE ? margin : graph_op2(g, OP_min, x->limit, margin);
     *reach      = graph_op2(g, OP_min, *reach, half);
     return sub(g, size, *reach);
@@ -80,14 +80,16 @@ Curve curve_exp(BallContext *x, BallTerm u, Node value, Node reach)
 
 Curve curve_exp2(BallContext *x, BallTerm u, Node value, Node reach)
 {
-    Graph *g   = x->graph;
-    Node   one = graph_number(g, 1);
-    u          = scale_term(x, u.value, u, graph_number(g, M_LN2));
-    reach      = has_radius(x) ? times(g, reach, graph_number(g, M_LN2)) : reach;
-    return (Curve){times(g, value, graph_number(g, M_LN2)),
-                   has_radius(x) ? times(g, times(g, value, growth(x, u, reach)),
-                                         graph_number(g, M_LN2 * M_LN2))
-                                 : one};
+    Graph *g    = x->graph;
+    Node   one  = graph_number(g, 1);
+    u           = scale_term(x, u.value, u, graph_number(g, M_LN2));
+    reach       = has_radius(x) ? times(g, reach, graph_number(g, M_LN2)) : reach;
+    Curve curve = {times(g, value, graph_number(g, M_LN2)), one};
+    if (has_radius(x)) {
+        Node factor = graph_number(g, M_LN2 * M_LN2);
+        curve.bend  = times(g, times(g, value, growth(x, u, reach)), factor);
+    }
+    return curve;
 }
 
 /* The bend of both is that of the steeper. */
@@ -117,9 +119,10 @@ Curve curve_log(BallContext *x, BallTerm u, Node value, Node reach)
     Graph *g = x->graph;
     (void)value;
     Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    Curve curve = {.slope = over(g, graph_number(g, 1), at_least(g, u.value, TINY))};
+    Node  least = at_least(g, u.value, TINY), one = graph_number(g, 1);
+    Curve curve = {.slope = over(g, one, least)};
     if (has_radius(x))
-        curve.bend = over(g, graph_number(g, 1), times(g, near, near));
+        curve.bend = over(g, one, times(g, near, near));
     return curve;
 }
 
@@ -127,10 +130,11 @@ Curve curve_sqrt(BallContext *x, BallTerm u, Node value, Node reach)
 {
     Graph *g     = x->graph;
     Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    Curve  curve = {.slope = over(g, graph_number(g, 0.5), at_least(g, value, TINY))};
+    Node   least = at_least(g, value, TINY);
+    Curve  curve = {.slope = over(g, graph_number(g, 0.5), least)};
     if (has_radius(x)) {
-        Node root  = graph_op1(g, OP_sqrt, near);
-        curve.bend = over(g, graph_number(g, 0.25), times(g, near, root));
+        Node power = times(g, near, graph_op1(g, OP_sqrt, near));
+        curve.bend = over(g, graph_number(g, 0.25), power);
     }
     return curve;
 }
@@ -139,8 +143,8 @@ Curve curve_inversesqrt(BallContext *x, BallTerm u, Node value, Node reach)
 {
     Graph *g     = x->graph;
     Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    Curve  curve = {
-         .slope = times(g, times(g, times(g, value, value), value), graph_number(g, -0.5))};
+    Node   half  = graph_number(g, -0.5);
+    Curve  curve = {.slope = times(g, times(g, times(g, value, value), value), half)};
     if (has_radius(x)) {
         Node root  = graph_op1(g, OP_inversesqrt, near);
         Node fifth = times(g, graph_op1(g, OP_square, times(g, root, root)), root);
@@ -154,8 +158,10 @@ Curve curve_inverse(BallContext *x, BallTerm u, Node value, Node reach)
     Graph *g     = x->graph;
     Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
     Curve  curve = {.slope = neg(g, times(g, value, value))};
-    if (has_radius(x))
-        curve.bend = over(g, graph_number(g, 2), times(g, times(g, near, near), near));
+    if (has_radius(x)) {
+        Node cube  = times(g, times(g, near, near), near);
+        curve.bend = over(g, graph_number(g, 2), cube);
+    }
     return curve;
 }
 
@@ -216,9 +222,9 @@ BallTerm power_term(BallContext *x, Node value, BallTerm u, double n)
     Node clear = graph_op2(g, OP_less, times(g, reach, graph_number(g, 2)), u.value);
     Node least = graph_op3(g, OP_select, clear, sub(g, u.value, reach), reach);
     Node power = graph_power(g, at_least(g, least, TINY), exponent), zero = graph_number(g, 0);
-    curve.bend    = graph_op3(g, OP_select, clear, times(g, factor, power), zero);
-    BallTerm term = bend_term(x, value, u, curve);
-    Node     rise = times(g, times(g, reach, power), steepness(x, &u));
-    term.first    = plus(g, term.first, graph_op3(g, OP_select, clear, zero, rise));
+    curve.bend     = graph_op3(g, OP_select, clear, times(g, factor, power), zero);
+    BallTerm term  = bend_term(x, value, u, curve);
+    Node     steep = steepness(x, &u), rise = times(g, times(g, reach, power), steep);
+    term.first = plus(g, term.first, graph_op3(g, OP_select, clear, zero, rise));
     return term;
 }

@@ -72,7 +72,8 @@ BallTerm multiply_terms(const BallContext *x, Node value, BallTerm a, BallTerm b
     BallTerm second  = scale_term(x, value, b, a.value);
     BallTerm product = add_terms(x, value, first, second);
     if (has_radius(x)) {
-        Node both      = times(g, steepness(x, &a), steepness(x, &b));
+        Node steep     = steepness(x, &b);
+        Node both      = times(g, steepness(x, &a), steep);
         product.second = plus(g, product.second, both);
     }
     return product;

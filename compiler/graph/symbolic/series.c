@@ -11,6 +11,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
 
@@ -67,9 +68,9 @@ static double largest_bend(double a[3][3])
                          m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
     double cubed  = 2 * deviation * deviation * deviation;
-    double angle  = acos(cubed > 0 ? fmin(fmax(determinant / cubed, -1), 1) : 1) / 3;
-    double top    = mean + 2 * deviation * cos(angle);
-    double bottom = mean + 2 * deviation * cos(angle + 2 * M_PI / 3);
+    double angle  = real_acos(cubed > 0 ? fmin(fmax(determinant / cubed, -1), 1) : 1) / 3;
+    double top    = mean + 2 * deviation * real_cos(angle);
+    double bottom = mean + 2 * deviation * real_cos(angle + 2 * M_PI / 3);
     return fmax(fabs(top), fabs(bottom)) * (1 + 1e-7);
 }
 
@@ -176,8 +177,9 @@ static SeriesElement multiply_elements(const Expansion *x, SeriesElement a, Seri
         for (uint32_t i = 0; i <= k; i++) {
             if (i > a.series.degree || k - i > b.series.degree)
                 continue;
-            Node term = times(g, order(x, &a.series, i), order(x, &b.series, k - i));
-            sum       = plus(g, sum, term);
+            Node other = order(x, &b.series, k - i);
+            Node term  = times(g, order(x, &a.series, i), other);
+            sum        = plus(g, sum, term);
         }
         product.series.c[k] = sum;
     }

@@ -14,6 +14,7 @@
 
 #include <math.h>
 
+#include "compiler/base/elementary.h"
 #include "compiler/graph/symbolic/series.h"
 #include "compiler/graph/range.h"
 
@@ -53,12 +54,12 @@ static double outweighed_until(const ZeroSearch *search)
     for (uint32_t k = 0; k < n; k++) {
         Range c  = range_task_value(&search->task, search->forms.c[k]);
         falls[k] = fmax(search->sign > 0 ? -c.low : c.high, 0);
-        high     = fmax(high, 2 * pow(falls[k] / lead, 1.0 / (n - k)));
+        high     = fmax(high, 2 * real_pow(falls[k] / lead, 1.0 / (n - k)));
     }
     for (int i = 0; i < 30 && isfinite(high); i++) {
         double t = 0.5 * (low + high), sum = 0;
         for (uint32_t k = 0; k < n; k++)
-            sum += falls[k] * pow(t, (double)k - n);
+            sum += falls[k] * real_pow(t, (double)k - n);
         *(sum < lead ? &high : &low) = t;
     }
     return high;
@@ -180,7 +181,7 @@ static bool cut_endless_side(ZeroSearch *search, Box *box, int side, int sign)
     double other = side % 2 ? box->axis[side / 2].low : box->axis[side / 2].high;
     bool   any   = false;
     for (double exponent = 40, step = 4; exponent > -20 && step >= 0.0625;) {
-        double at  = side % 2 ? exp2(exponent) : -exp2(exponent);
+        double at  = side % 2 ? real_exp2(exponent) : -real_exp2(exponent);
         bool clear = (side % 2 ? at > other : at < other) && cut_side(search, box, side, at, sign);
         if (!clear && !any)
             return false;
@@ -250,8 +251,8 @@ ZeroBox graph_zero_box(Graph *graph, Node polynomial, Arena *scratch)
     ZeroBox     found   = {endless, 0};
     ZeroSearch  search  = {.root = polynomial};
     SeriesFault fault;
-    if (!graph_line_series(graph, polynomial, graph_vec3(graph, 0, 0, 0),
-                           graph_leaf(graph, OP_POINT), &search.forms, &fault, scratch))
+    Node        point = graph_leaf(graph, OP_POINT), origin = graph_vec3(graph, 0, 0, 0);
+    if (!graph_line_series(graph, polynomial, origin, point, &search.forms, &fault, scratch))
         return found;
     search.task = range_task(graph, search.forms.c, search.forms.degree + 1, scratch);
     search.work = MAX_WORK;

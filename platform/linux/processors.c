@@ -1,4 +1,6 @@
-/* parallel.c: work that is shared by all processors. */
+/*
+ * processors.c: work that is shared by all processors.
+ */
 #include "compiler/base/parallel.h"
 
 #include <pthread.h>
