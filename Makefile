@@ -20,6 +20,7 @@
 # make format     brings that style about
 # make bless      writes the expected text of tests/errors/; read the difference
 # make deps       installs what building and rendering need (Debian packages); test-deps: also what tests need
+# make wasm       the compiler for web pages, in build/wasm/ (web/core/README.md); tools/deps.sh wasm installs what it needs
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
 B       ?= build
@@ -224,6 +225,7 @@ $(B)/embed: compiler/base/embed/embed.c
 	@$(CC) $(STYLE) $(CPPFLAGS) -O1 $(LDFLAGS) -o $@ $<
 
 include tools/fingerprints.mk
+include web/core/core.mk
 include tests/tests.mk
 include bench/bench.mk
 include tools/install.mk

@@ -55,12 +55,12 @@ ALONE       := $(addprefix tests/, cli/view.sh cli/view_limits.sh cli/view_rando
 LONGEST     := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh cli/signals.sh gallery.sh lint.sh cli/resume.sh \
                errors.sh cli/watch.sh cli/untrusted.sh cli/silent.sh cli/cache.sh cli/fingerprints.sh cli/failures.sh)
 BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/second_driver.sh tests/bench.sh tests/cli/common.sh, \
-               $(wildcard tests/*.sh tests/cli/*.sh))
+               $(wildcard tests/*.sh tests/cli/*.sh tests/web/*.sh))
 # What takes more than 11 s of processor, but for what every change should pass: `make test-long` has it, `make test` all
 # else, and `make test-all` both (docs/building.md says what costs what).  The sanitizers, clang and the fuzzers belong
 # to it, as they compile everything once more, the judge of meshes, whose headers take a minute, and what
 # compares switches of `krs help render --all` with each other.
-LONG        := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
+LONG        := $(addprefix tests/, web/many.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
                $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_csg.sh mesh_judges.sh outputs.sh \
                pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
                $(addprefix unit/, arguments compiled instance_grid drivers film light_groups memory mesh_proofs methods noise paths \
@@ -109,6 +109,9 @@ $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/tests/unit/unit.a $(LINKED)
 $(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a $(LINKED)
 	@$(LINK)
 $(B)/tests/%: $(B)/tests/%.o $(LINKED)
+	@$(LINK)
+# What node compares with.
+$(B)/tests/web/texts: $(B)/tests/web/texts.o $(B)/tests/oracle/oracle.a $(LINKED)
 	@$(LINK)
 IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_open_surfaces
 $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o $(B)/tests/oracle/pov_trees.o \
@@ -187,7 +190,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format -i $$(find api bench cli compiler examples grid import include live measure mesh platform rays runtime slice tests -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find api bench cli compiler examples grid import include live measure mesh platform rays runtime slice tests web -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

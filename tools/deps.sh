@@ -1,6 +1,7 @@
 #!/bin/sh
-# deps.sh [test]: installs the Debian packages that are missing, of those that building and rendering need,
-# and with `test` also of those that only tests need, and libopenvdb-dev, which is large and writes .vdb alone.
+# deps.sh [test|wasm]: installs the Debian packages that are missing, of those that building and rendering need,
+# and with `test` also of those that only tests need, and libopenvdb-dev, which is large and writes .vdb alone; with
+# `wasm` what `make wasm` needs.
 # It knows Debian 12 and 13, and Ubuntu 24.04: what only tests need and the system does not offer is left out.
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
 building="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev libopenexr-dev libdeflate-dev libpng-dev libxxhash-dev
@@ -11,7 +12,10 @@ testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang clang-
          shellcheck strace procps openexr patch chromium-common admesh assimp-utils python3-numpy libcgal-dev
          libegl-dev libgles-dev libopenvdb-dev python3-openvdb python3-nibabel"
 
+web="emscripten nodejs dpkg-dev"
+
 case ${1:-} in
+wasm) packages="$building $web" ;;
 test) packages="$building $rendering $testing" ;;
 *) packages="$building $rendering" ;;
 esac

@@ -88,8 +88,4 @@ KrsStatus opened_renderer(KrsStatus status, KrsRenderer **renderer);
 /* info.c: the members that `krs info --json` and `krs compile` have in common. */
 void info_add_json(Text *json, const KrsScene *scene);
 
-/* Numbers in JSON; what is not finite becomes null. */
-void json_number(Text *json, double number);
-void json_vector(Text *json, const double *values, size_t count);
-
 #endif

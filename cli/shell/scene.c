@@ -376,20 +376,3 @@ KrsStatus scene_camera(const Options *options, const KrsScene *scene, size_t *ca
         return KRS_OK;
     return say_unknown_camera(options, names, named);
 }
-
-void json_number(Text *json, double number)
-{
-    if (isfinite(number))
-        text_number(json, number);
-    else
-        text_add(json, "null");
-}
-
-void json_vector(Text *json, const double *values, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        text_add(json, i == 0 ? "[" : ", ");
-        json_number(json, values[i]);
-    }
-    text_add(json, "]");
-}

@@ -202,6 +202,23 @@ void text_json(Text *text, const char *string)
     text_add(text, "\"");
 }
 
+void json_number(Text *json, double number)
+{
+    if (isfinite(number))
+        text_number(json, number);
+    else
+        text_add(json, "null");
+}
+
+void json_vector(Text *json, const double *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        text_add(json, i == 0 ? "[" : ", ");
+        json_number(json, values[i]);
+    }
+    text_add(json, "]");
+}
+
 /* ---- names ---- */
 
 /* FNV-1a. */

@@ -1,0 +1,24 @@
+/*
+ * answers.h: answers to a page, in JSON.
+ */
+#ifndef KRS_ANSWERS_H
+#define KRS_ANSWERS_H
+
+#include "krs/krs.h"
+
+/* The last answer; it lives until the next. */
+const char *answer_text(void);
+
+/* Diagnostics come between, one by one. */
+void answer_begin_compilation(void);
+void answer_diagnostic(void *user, const KrsDiagnostic *diagnostic);
+/* `changes` may be NULL. */
+void answer_end_compilation(KrsStatus status, const KrsChanges *changes);
+
+void answer_scene(const KrsScene *scene);
+void answer_view(const KrsScene *scene, KrsState *state);
+void answer_hits(KrsStatus status, const KrsHit *hits, size_t count);
+/* `mesh` is NULL unless the status is KRS_OK. */
+void answer_mesh(KrsStatus status, const KrsMesh *mesh);
+
+#endif

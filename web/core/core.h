@@ -1,0 +1,50 @@
+/*
+ * core.h: what a page calls of the compiler, beside functions of the library that take numbers and arrays alone.
+ *
+ * What is asked for in structs comes as JSON: each call that has an answer leaves it in core_answer.  There is one thread.
+ */
+#ifndef KRS_CORE_H
+#define KRS_CORE_H
+
+#include "krs/krs.h"
+
+/* Members of KrsOptions, as bits. */
+typedef enum CoreOption {
+    CORE_STUDIO    = 1,
+    CORE_PICTURES  = 2,
+    CORE_GRADIENTS = 4,
+    CORE_ASSEMBLY  = 8,
+    CORE_FIGURES   = 16,
+    CORE_STRUCTURE = 32 /* KRS_SPECIALIZE_STRUCTURE */
+} CoreOption;
+
+/* The answer to the last call that has one, an object in JSON; it lives until the next. */
+const char *core_answer(void);
+
+/* Compile a text, or the edited text of a scene, which stays.  The answer has `status` and `diagnostics`, and of an edit
+   `changes`.  NULL: no scene came of it. */
+KrsScene *core_compile(const char *text, size_t length, const char *name, uint32_t options);
+KrsScene *core_update(const KrsScene *scene, const char *text, size_t length);
+/* The text in the canonical layout, for free(); the answer is that of a compilation. */
+char *core_format(const char *text, size_t length, const char *name);
+
+/* The text in a language of targets.def, for free(); `options` are the members of KrsTextOptions, as bits. */
+char *core_text(const KrsScene *scene, uint32_t target, uint32_t options);
+/* What a scene has: parameters, components, cameras, textures, sizes of what its text reads. */
+void core_describe(const KrsScene *scene);
+
+/* The first state of a scene; NULL: there is no memory. */
+KrsState *core_state(const KrsScene *scene);
+/* What a picture of a state has: cameras, lights, sky and fog. */
+void core_view(const KrsScene *scene, KrsState *state);
+
+/* What is known at points, and where rays end: `status` and `hits`. */
+void core_probe(KrsState *state, const double (*points)[3], size_t count);
+void core_raycast(KrsState *state, const double (*origins)[3], const double (*directions)[3],
+                  size_t count, double farthest, double tolerance);
+
+/* A mesh of a component, or of all where that is 0.  The answer has `status` and the members of KrsMesh; arrays are numbers
+   of bytes in memory. */
+KrsMesh *core_mesh(KrsState *state, double error, size_t component, bool simplify, bool draft);
+
+#endif

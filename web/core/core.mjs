@@ -1,0 +1,235 @@
+// core.mjs: the compiler in a page or in its worker.
+//
+//     const core = await loadCore({ load: path => files.get(path), font: name => ({ bytes, face: 0 }) });
+//     const { scene, diagnostics } = core.compile('show sphere(1);');
+//
+// What it needs from outside comes by `load` and `font`, at once: whoever has to fetch a file first compiles again when
+// it is there.  Objects of the core have memory of their own, which `free` gives back.
+import Krs from './krs.mjs';
+
+const options = { studio: 1, pictures: 2, gradients: 4, assembly: 8, figures: 16, structure: 32 };
+const textOptions = { stateValues: 1, noEarlyOuts: 2 };
+export const targets = ['glsl', 'essl'];
+
+const bitsOf = (names, wanted) =>
+    Object.entries(names).reduce((bits, [name, bit]) => (wanted[name] ? bits | bit : bits), 0);
+
+// The bytes of the module: those that are given, or what is at a place, beside this file by default.
+async function instantiate(wasm, imports) {
+    if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm))
+        return WebAssembly.instantiate(wasm, imports);
+    const response = await fetch(wasm ?? new URL('krs.wasm', import.meta.url));
+    if (response.headers.get('Content-Type') === 'application/wasm')
+        return WebAssembly.instantiateStreaming(response, imports);
+    return WebAssembly.instantiate(await response.arrayBuffer(), imports);
+}
+
+export async function loadCore({ wasm, load = () => null, font = () => null, progress = () => true } = {}) {
+    let core;
+    // Bytes that the core frees, and how many they are.
+    const give = (bytes, length) => {
+        if (bytes == null)
+            return 0;
+        const given = typeof bytes === 'string' ? new TextEncoder().encode(bytes) : bytes;
+        const at = core.put(given);
+        core.words()[length >> 2] = given.length;
+        return at;
+    };
+    const module = await new Promise((resolve, reject) => Krs({
+        instantiateWasm: (imports, done) => {
+            instantiate(wasm, imports).then(made => done(made.instance), reject);
+            return {};
+        },
+        load: (path, length) => give(load(core.string(path)), length),
+        font: (name, length, face) => {
+            const found = font(name ? core.string(name) : null);
+            core.words()[face >> 2] = found?.face ?? 0;
+            return give(found?.bytes, length);
+        },
+        progress: done => progress(done),
+    }).then(resolve, reject));
+    core = new Core(module);
+    return core;
+}
+
+// Calls into memory of the module, and what goes there and comes from there.
+class Core {
+    constructor(module) {
+        this.m = module;
+    }
+
+    bytes() { return this.m.HEAPU8; }
+    words() { return new Uint32Array(this.bytes().buffer); }
+
+    // A copy of numbers in memory.
+    copy(Type, at, count) { return new Type(this.bytes().buffer, at, count).slice(); }
+
+    string(at) {
+        const bytes = this.bytes();
+        return new TextDecoder().decode(bytes.subarray(at, bytes.indexOf(0, at)));
+    }
+
+    // Puts bytes into memory, with a 0 behind them.
+    put(bytes) {
+        const at = this.m._malloc(bytes.length + 1);
+        if (!at)
+            throw new RangeError('the compiler has no memory left');
+        this.bytes().set(bytes, at);
+        this.bytes()[at + bytes.length] = 0;
+        return at;
+    }
+
+    putText(text) {
+        const bytes = new TextEncoder().encode(text);
+        return [this.put(bytes), bytes.length];
+    }
+
+    putNumbers(numbers) {
+        const from = Float64Array.from(numbers);
+        return this.put(new Uint8Array(from.buffer));
+    }
+
+    // Calls with pieces of memory that are freed behind it.
+    using(pieces, call) {
+        try {
+            return call(...pieces);
+        } finally {
+            for (const at of pieces)
+                this.m._free(at);
+        }
+    }
+
+    answer() { return JSON.parse(this.string(this.m._core_answer())); }
+
+    // A text that the caller frees.
+    take(at) {
+        if (!at)
+            return null;
+        return this.using([at], () => this.string(at));
+    }
+
+    compile(text, { name = 'scene.krs', ...wanted } = {}) {
+        const [at, length] = this.putText(text);
+        const [called] = this.putText(name);
+        const scene = this.using([at, called], () => this.m._core_compile(at, length, called, bitsOf(options, wanted)));
+        return { scene: scene ? new Scene(this, scene) : null, ...this.answer() };
+    }
+
+    format(text, { name = 'scene.krs' } = {}) {
+        const [at, length] = this.putText(text);
+        const [called] = this.putText(name);
+        const formatted = this.using([at, called], () => this.take(this.m._core_format(at, length, called)));
+        return { text: formatted, ...this.answer() };
+    }
+}
+
+class Scene {
+    constructor(core, at) {
+        Object.assign(this, { core, at });
+    }
+
+    free() { this.core.m._krs_scene_free(this.at); }
+
+    // The scene of an edited text; this one stays.
+    update(text) {
+        const [at, length] = this.core.putText(text);
+        const scene = this.core.using([at], () => this.core.m._core_update(this.at, at, length));
+        return { scene: scene ? new Scene(this.core, scene) : null, ...this.core.answer() };
+    }
+
+    // Its text in a shading language; null: it is too large for one.
+    text(target = 'glsl', wanted = {}) {
+        return this.core.take(this.core.m._core_text(this.at, targets.indexOf(target), bitsOf(textOptions, wanted)));
+    }
+
+    describe() {
+        this.core.m._core_describe(this.at);
+        return this.core.answer();
+    }
+
+    state() {
+        const state = this.core.m._core_state(this.at);
+        return state ? new State(this.core, this, state) : null;
+    }
+}
+
+class State {
+    constructor(core, scene, at) {
+        Object.assign(this, { core, scene, at });
+    }
+
+    free() { this.core.m._krs_state_free(this.at); }
+
+    // False: there is no such parameter, or the value is not permitted.
+    set(name, values) {
+        const numbers = [].concat(values);
+        const [called] = this.core.putText(name);
+        return this.core.using([called, this.core.putNumbers(numbers)],
+            (word, at) => this.core.m._krs_state_set(this.at, word, at, numbers.length) === 0);
+    }
+
+    setTime(seconds) { return this.core.m._krs_state_set_time(this.at, seconds) === 0; }
+
+    view() {
+        this.core.m._core_view(this.scene.at, this.at);
+        return this.core.answer();
+    }
+
+    // Floats that a function of the core writes, `width` for each of `count`.
+    #written(Type, count, width, write) {
+        const at = this.core.m._malloc(4 * width * count + 4);
+        return this.core.using([at], () => (write(at), this.core.copy(Type, at, width * count)));
+    }
+
+    // What its text reads: slots of four numbers, texels of tables.
+    parameters() {
+        const { m } = this.core;
+        return this.#written(Float32Array, m._krs_parameter_slots(this.scene.at), 4, at => m._krs_state_parameters(this.at, at));
+    }
+
+    values() {
+        const { m } = this.core;
+        return this.#written(Float32Array, m._krs_value_slots(this.scene.at), 4, at => m._krs_state_values(this.at, at));
+    }
+
+    tables() {
+        const { m } = this.core;
+        const rows = m._krs_table_rows(this.scene.at), cells = m._krs_table_cells(this.scene.at);
+        const at = m._malloc(16 * rows + 8 * cells + 8);
+        return this.core.using([at], () => {
+            m._krs_state_tables(this.at, at, at + 16 * rows);
+            return { rows: this.core.copy(Float32Array, at, 4 * rows), cells: this.core.copy(Uint32Array, at + 16 * rows, 2 * cells) };
+        });
+    }
+
+    #asked(points, width, ask) {
+        const count = points.length / 3, { m } = this.core;
+        return this.core.using([this.core.putNumbers(points), m._malloc(8 * width * count + 8)], (from, to) =>
+            ask(from, count, to) === 0 ? this.core.copy(Float64Array, to, width * count) : null);
+    }
+
+    // Points are numbers one behind the other, x, y, z, x, y, z.
+    distance(points) { return this.#asked(points, 1, (...call) => this.core.m._krs_distance(this.at, ...call)); }
+    normal(points) { return this.#asked(points, 3, (...call) => this.core.m._krs_normal(this.at, ...call)); }
+
+    probe(points) {
+        this.core.using([this.core.putNumbers(points)], at => this.core.m._core_probe(this.at, at, points.length / 3));
+        return this.core.answer();
+    }
+
+    raycast(origins, directions, { farthest = Infinity, tolerance = 0 } = {}) {
+        this.core.using([this.core.putNumbers(origins), this.core.putNumbers(directions)], (from, along) =>
+            this.core.m._core_raycast(this.at, from, along, origins.length / 3, farthest, tolerance));
+        return this.core.answer();
+    }
+
+    mesh({ error = 0, component = 0, simplify = false, draft = false } = {}) {
+        const { core } = this, mesh = core.m._core_mesh(this.at, error, component, simplify, draft), answer = core.answer();
+        if (mesh) {
+            answer.vertices = core.copy(Float64Array, answer.vertices, 3 * answer.vertex_count);
+            answer.triangles = core.copy(Uint32Array, answer.triangles, 3 * answer.triangle_count);
+            core.m._krs_mesh_free(mesh);
+        }
+        return answer;
+    }
+}

@@ -1,0 +1,92 @@
+# core.mk: `make wasm`, the core of web pages (web/core/README.md): the compiler, what answers questions, and the mesher as
+# WebAssembly, by Debian's emscripten, with libraries of Debian's source packages.
+#
+# emcc says which options objects need, and links.  clang compiles them by itself: emcc's start takes longer than most files.
+
+W         := $(B)/wasm
+EMCC      ?= emcc
+emcc_root  = $(shell em-config LLVM_ROOT)
+emcc_flags = $(shell $(EMCC) --cflags)
+EMCC_ROOT  = $(call once,EMCC_ROOT,emcc_root)
+EMCC_FLAGS = $(call once,EMCC_FLAGS,emcc_flags)
+WASM_CC    = $(shell command -v ccache) $(EMCC_ROOT)/clang $(EMCC_FLAGS)
+# A page waits for bytes first: only what takes most of the time is compiled for speed.
+WASM_FLAGS = $(if $(filter compiler/graph/% compiler/base/elementary.c mesh/contour/% mesh/proof/%,$<),-O2,-Os) \
+             -ffunction-sections -fdata-sections -ffp-contract=off
+
+# ---- sources ----
+
+# Left out: what makes SPIR-V, and what reads OpenEXR.
+WASM_SOURCES := $(filter-out $(TARGET) %/exr.c %/exr_chunks.c %_avx2.c %_avx512.c %/sets_x86.c,$(COMPILER)) \
+                compiler/graph/lanes/sets_plain.c $(call sources,platform/web) \
+                $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh,$(call sources,$(room))) \
+                $(call sources,web/core)
+WASM_OBJECTS := $(WASM_SOURCES:%.c=$(W)/%.o) $(W)/library_files.o $(W)/helper_files.o $(W)/essl_files.o
+
+# ---- libraries ----
+
+WASM_PACKAGES := qhull expat freetype harfbuzz libpng1.6 zlib meshoptimizer
+SOURCES_OF    := $(W)/sources
+QHULL    := $(addprefix qhull/src/libqhull_r/,geom2_r geom_r global_r io_r libqhull_r mem_r merge_r poly2_r poly_r qset_r \
+            random_r rboxlib_r stat_r user_r usermem_r userprintf_r userprintf_rbox_r)
+EXPAT    := $(addprefix expat/expat/lib/,xmlparse xmlrole xmltok)
+FREETYPE := $(addprefix freetype/src/,base/ftbase base/ftinit base/ftsystem base/ftdebug base/ftglyph base/ftbbox base/ftbitmap \
+            gzip/ftgzip sfnt/sfnt truetype/truetype cff/cff psaux/psaux psnames/psnames)
+ZLIB     := $(addprefix zlib/,adler32 crc32 inffast inflate inftrees zutil)
+PNG      := $(addprefix libpng1.6/,png pngerror pngget pngmem pngread pngrio pngrtran pngrutil pngset pngtrans)
+WASM_LIBRARIES := $(QHULL) $(EXPAT) $(FREETYPE) $(ZLIB) $(PNG) harfbuzz/src/harfbuzz meshoptimizer/src/simplifier
+WASM_HEADERS   := $(addprefix -isystem $(SOURCES_OF)/,qhull/src expat/expat/lib freetype/include harfbuzz/src libpng1.6 zlib \
+                  meshoptimizer/src) -Iweb/core/libraries
+LIBRARY_FLAGS   = $(WASM_CC) -w -Os -ffunction-sections -fdata-sections $(WASM_HEADERS)
+$(QHULL:%=$(SOURCES_OF)/%.o): LIBRARY_FLAGS += -Dqh_NOtrace -Dqh_KEEPstatistics=0
+$(FREETYPE:%=$(SOURCES_OF)/%.o): LIBRARY_FLAGS += -DFT2_BUILD_LIBRARY "-DFT_CONFIG_OPTIONS_H=<freetype_options.h>" \
+                                                  "-DFT_CONFIG_MODULES_H=<freetype_modules.h>"
+# Shaping alone, but for tables of Apple's fonts.
+%/harfbuzz.o: LIBRARY_FLAGS += -DHB_LEAN -DHB_NO_MT -DHB_NO_AAT -DHB_NO_BORING_EXPANSION -DHAVE_CONFIG_OVERRIDE_H
+%/harfbuzz.o %/simplifier.o: LIBRARY_FLAGS += -x c++ -std=c++17 -fno-exceptions -fno-rtti -fno-threadsafe-statics \
+                              -isystem $(patsubst --sysroot=%,%,$(filter --sysroot=%,$(EMCC_FLAGS)))/include/c++/v1
+
+$(W)/libraries: web/core/sources.sh
+	@echo "sources $(SOURCES_OF)"
+	@web/core/sources.sh $(SOURCES_OF) $(WASM_PACKAGES)
+	@cp $(SOURCES_OF)/libpng1.6/scripts/pnglibconf.h.prebuilt $(SOURCES_OF)/libpng1.6/pnglibconf.h
+	@touch $@
+$(WASM_LIBRARIES:%=$(SOURCES_OF)/%.o): $(W)/libraries web/core/core.mk $(wildcard web/core/libraries/*.h)
+	@echo "compile $(@:$(W)/%.o=%)"
+	@$(LIBRARY_FLAGS) -c -o $@ $(firstword $(wildcard $(@:.o=.c) $(@:.o=.cc) $(@:.o=.cpp)))
+
+# ---- objects ----
+
+$(W)/%.o: %.c web/core/core.mk | $(W)/libraries
+	@mkdir -p $(@D)
+	@echo "compile $< for pages"
+	@$(WASM_CC) -std=c17 -D_GNU_SOURCE $(WARNINGS) -I. -Iinclude -DKRS_LIBRARY $(WASM_HEADERS) -MMD -MP $(WASM_FLAGS) -c -o $@ $<
+$(W)/%_files.o: $(B)/%_files.c | $(W)/libraries
+	@$(WASM_CC) -std=c17 -I. -O1 -c -o $@ $<
+# There are no vectors.
+$(LANES:%.c=$(W)/%.o): WASM_FLAGS += -Os -fno-unroll-loops -Wno-pass-failed
+
+# ---- the module ----
+
+# What a page calls: core.h, and functions of the library that take numbers and arrays.
+open      := (
+core_names = $(shell grep -o 'core_[a-z]*$(open)' web/core/core.h | tr -d '$(open)')
+ASKED     := scene_free state_free state_set state_set_time state_fit_camera state_set_zones parameter_slots state_parameters \
+             value_slots state_values table_rows table_cells state_tables distance normal mesh_free
+comma     := ,
+empty     :=
+exported   = $(subst $(empty) $(empty),$(comma),$(patsubst %,_%,malloc free $(call core_names) $(ASKED:%=krs_%)))
+MODULE    := -sMODULARIZE=1 -sEXPORT_NAME=Krs -sFILESYSTEM=0 -sENVIRONMENT=web,worker -sALLOW_MEMORY_GROWTH=1 \
+             -sINITIAL_MEMORY=16MB -sMAXIMUM_MEMORY=2GB -sTOTAL_STACK=4MB -sINCOMING_MODULE_JS_API=instantiateWasm,load,font,progress \
+             -sEXPORTED_RUNTIME_METHODS=HEAPU8
+
+wasm: $(W)/krs.wasm $(W)/core.mjs
+$(W)/krs.wasm: $(WASM_OBJECTS) $(WASM_LIBRARIES:%=$(SOURCES_OF)/%.o) web/core/page.js web/core/core.h web/core/core.mk
+	@echo "link   $@"
+	@NODE_PATH=/usr/share/nodejs $(EMCC) -Oz --js-library web/core/page.js -sEXPORTED_FUNCTIONS=$(call exported) $(MODULE) \
+	    -o $(W)/krs.js $(filter %.o,$^)
+	@{ cat $(W)/krs.js; echo 'export default Krs;'; } >$(W)/krs.mjs
+	@rm $(W)/krs.js
+$(W)/core.mjs: web/core/core.mjs
+	@cp $< $@
+.PHONY: wasm

@@ -1,0 +1,16 @@
+/*
+ * page.h: what the core asks of its page (page.js).  What comes in memory is for free().
+ */
+#ifndef KRS_PAGE_H
+#define KRS_PAGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* The bytes of a file, or of a font (KrsLoadCallback, KrsFontCallback); NULL: there is none. */
+char *page_load(const char *path, size_t *length);
+char *page_font(const char *name, size_t *length, int *face);
+/* Told which part of a mesh is done; false: it is not wanted any more. */
+bool page_progress(double done);
+
+#endif
