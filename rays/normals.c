@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/elementary.h"
+
 /* These numbers are those of the two files. */
 static const float NOISE = 1e-4f, MAX_WIDTH = 1.0f / 64, ROUNDING = 2.4e-7f, NEARER = 0.02f,
                    NOISE_NEARER = 4e-5f, OUTWARD_REACHES = 3, FLAT_ENOUGH = 0.0175f,
@@ -226,7 +228,7 @@ static void take_taps(const RayCell *cell, Hit *const *hits, int count, int taps
 
 static float find_evenness(const Hit *hit)
 {
-    const float size = length(hit->sum), uneven = hypotf(size, length(hit->level));
+    const float size = length(hit->sum), uneven = (float)real_hypot(size, length(hit->level));
     return hit->set == ONE_SIDE ? 1 : uneven > 0 && uneven < 1e38f ? size / uneven : 1;
 }
 
