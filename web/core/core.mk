@@ -11,7 +11,7 @@ EMCC_ROOT  = $(call once,EMCC_ROOT,emcc_root)
 EMCC_FLAGS = $(call once,EMCC_FLAGS,emcc_flags)
 WASM_CC    = $(shell command -v ccache) $(EMCC_ROOT)/clang $(EMCC_FLAGS)
 # A page waits for bytes first: only what takes most of the time is compiled for speed.
-WASM_FLAGS = $(if $(filter compiler/graph/% compiler/base/elementary.c mesh/contour/% mesh/proof/%,$<),-O2,-Os) \
+WASM_FLAGS = $(if $(filter compiler/graph/% compiler/base/elementary.c compiler/shape/box.c compiler/shape/cover.c mesh/contour/% mesh/proof/%,$<),-O2,-Os) \
              -ffunction-sections -fdata-sections -ffp-contract=off
 
 # ---- sources ----
@@ -83,7 +83,7 @@ MODULE    := -sMODULARIZE=1 -sEXPORT_NAME=Krs -sFILESYSTEM=0 -sENVIRONMENT=web,w
 wasm: $(W)/krs.wasm $(W)/core.mjs
 $(W)/krs.wasm: $(WASM_OBJECTS) $(WASM_LIBRARIES:%=$(SOURCES_OF)/%.o) web/core/page.js web/core/core.h web/core/core.mk
 	@echo "link   $@"
-	@NODE_PATH=/usr/share/nodejs $(EMCC) -Oz --js-library web/core/page.js -sEXPORTED_FUNCTIONS=$(call exported) $(MODULE) \
+	@NODE_PATH=/usr/share/nodejs $(EMCC) -Os --js-library web/core/page.js -sEXPORTED_FUNCTIONS=$(call exported) $(MODULE) \
 	    -o $(W)/krs.js $(filter %.o,$^)
 	@{ cat $(W)/krs.js; echo 'export default Krs;'; } >$(W)/krs.mjs
 	@rm $(W)/krs.js
