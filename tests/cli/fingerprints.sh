@@ -4,11 +4,11 @@
 # folder or git.  What a program of other sources has kept is not used.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 18
+plan 19
 
 # ---- sources ----
 mkdir tree tree/tests tree/bench
-(cd "$root" && cp -r Makefile tools api cli compiler import include mesh slice grid measure runtime live "$work/tree" && cp tests/*.mk "$work/tree/tests" &&
+(cd "$root" && cp -r Makefile tools api cli compiler import include mesh platform slice grid measure runtime live web "$work/tree" && cp tests/*.mk "$work/tree/tests" &&
     cp bench/*.mk "$work/tree/bench")
 fingerprints() { make --no-print-directory -s -C tree "$@" fingerprints 2>>err; }
 fingerprints >before
@@ -42,6 +42,7 @@ decides compiler/graph/ops.def "checkpoint film"
 decides compiler/library/std/trees.krs "checkpoint film"
 decides runtime/shaders/bsdf.glsl "checkpoint film"
 decides runtime/film/saved.c "checkpoint film"
+decides platform/linux/fonts.c "checkpoint film"
 decides cli/picture/checkpoint.c "checkpoint"
 for file in cli/mesh.c mesh/contour/contour.c compiler/base/diag.def live/viewer.c runtime/writer/png.c; do
     [ ! -e "tree/$file" ] || [ -z "$(changed_by "$file")" ] || echo "$file"
