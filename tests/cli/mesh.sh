@@ -157,7 +157,7 @@ run mesh --quiet egg.krs --error 0.02 --even -o even.stl
 run mesh --quiet egg.krs --error 0.02 -o egg.obj
 [ "$status" -eq 0 ] && [ $((4 * $(grep -c '^f' egg.obj))) -lt $((($(wc -c <even.stl) - 84) / 50)) ]
 result $? "one material has a quarter of the triangles or fewer"
-run mesh --quiet egg.krs --error 0.004 --limit memory=64M -o kept.obj
+run mesh --quiet egg.krs --error 0.004 --limit memory=76M -o kept.obj
 [ "$status" -eq 0 ] && [ "$(grep -c '^f' kept.obj)" -gt $((10 * $(grep -c '^f' egg.obj))) ]
 result $? "where memory does not suffice for half of the error, all triangles are left"
 # Lathes of few corners, on the axis and beside it, convex or not.
