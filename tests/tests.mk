@@ -172,7 +172,7 @@ FUZZED      := $(filter-out $(TARGET), $(COMPILER))
 fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
                                     $(FUZZED:%.c=$(B)/%.o) $(PLATFORM:%.c=$(B)/%.o) $(B)/library_files.o \
-                                    $(B)/helper_files.o
+                                    $(B)/helper_files.o $(B)/essl_files.o
 	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ $(FRONT_LIBS) -lstdc++ -lm
 fuzzers:
 	@$(MAKE) --no-print-directory fuzz-programs B=$(B)/fuzz CC=$(CLANG) \
