@@ -72,7 +72,8 @@ LONG        := $(addprefix tests/, web/many.sh examples.sh extend/extend.sh erro
 # What a set has of scripts, of programs, and of programs under the sanitizers.
 scripts_short    = $(filter-out $(LONG), $(1))
 scripts_long     = $(filter $(LONG), $(1))
-scripts_all      = $(1)
+# many.sh is core.sh with more scenes.
+scripts_all      = $(filter-out tests/web/core.sh, $(1))
 programs_short  := $(filter-out $(LONG), $(PROGRAMS))
 programs_long   := $(filter $(LONG), $(PLAIN))
 programs_all    := $(PLAIN)
@@ -200,6 +201,8 @@ SECOND_RUN   = tests/second_driver.sh $(if $(shell . tests/support/drivers.sh &&
 test:      SET := short
 test-long: SET := long
 test-all:  SET := all
+# What scripts of tests/web use, which run side by side, where test-deps could install what builds it.  They tell what is missing.
+web        = $(if $(and $(shell command -v emcc),$(shell command -v node)),wasm $(B)/tests/web/texts)
 scripts    = $(call scripts_$(SET), $(1))
 programs   = $(patsubst %,$(B)/%,$(programs_$(SET)))
 sanitized  = $(patsubst %,$(B)/asan/%,$(sanitized_$(SET)))
@@ -207,6 +210,7 @@ test test-long test-all: export WERROR = 1
 test test-long test-all: test-deps
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(B)/bench/bench $(programs) $(if $(DEVICE),$(DRIVERS:%=$(B)/%)) \
 	    $(if $(filter short, $(SET)),,$(JUDGE) $(SECOND:%=$(B)/%) sanitize clang-check fuzzers)
+	@$(if $(web),$(MAKE) --no-print-directory -j$(JOBS) $(web) || echo "$(web): not built")
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=900 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
 	    JOBS=$(TEST_JOBS) $(call scripts, $(BESIDE)) $(programs) $(sanitized) \

@@ -11,12 +11,12 @@ rendering="mesa-vulkan-drivers libgl1-mesa-dri fonts-dejavu-core"
 testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang clang-format libclang-rt-dev lld
          shellcheck strace procps openexr patch chromium-common admesh assimp-utils python3-numpy libcgal-dev
          libegl-dev libgles-dev libopenvdb-dev python3-openvdb python3-nibabel"
-
 web="emscripten nodejs dpkg-dev"
+browsing="chromium esbuild"
 
 case ${1:-} in
 wasm) packages="$building $web" ;;
-test) packages="$building $rendering $testing" ;;
+test) packages="$building $rendering $testing $web $browsing" ;;
 *) packages="$building $rendering" ;;
 esac
 missing=""
@@ -40,7 +40,7 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 $root apt-get update -qq >/dev/null || exit 1
 is_for_tests() { # package
-    for other in $testing; do
+    for other in $testing $web $browsing; do
         [ "$other" = "$1" ] && return 0
     done
     return 1
