@@ -21,6 +21,7 @@
 # make bless      writes the expected text of tests/errors/; read the difference
 # make deps       installs what building and rendering need (Debian packages); test-deps: also what tests need
 # make wasm       the compiler for web pages, in build/wasm/ (web/core/README.md); tools/deps.sh wasm installs what it needs
+# make web        the package `krs` for pages, in build/web/ (web/package/README.md); web-pack: its archive
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
 B       ?= build
@@ -226,6 +227,7 @@ $(B)/embed: compiler/base/embed/embed.c
 
 include tools/fingerprints.mk
 include web/core/core.mk
+include web/package/package.mk
 include tests/tests.mk
 include bench/bench.mk
 include tools/install.mk

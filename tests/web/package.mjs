@@ -1,0 +1,91 @@
+// package.mjs: the package for pages, in Chromium: scenes, parameters, mistakes, questions, meshes.
+//
+//     node package.mjs build/web
+//
+// Prints TAP.
+import { launch, serve } from './browser.mjs';
+
+let number = 0, failed = 0;
+const report = (good, what) => {
+    console.log(`${good ? 'ok' : 'not ok'} ${++number} - ${what}`);
+    failed += !good;
+};
+
+const server = await serve({ '/': 'tests/web/pages', '/krs/': process.argv[2], '/examples/': 'examples' });
+const browser = await launch();
+const page = await browser.open(`${server.url}/package.html`);
+await page.until('window.krs');
+
+const told = await page.evaluate(async () => {
+    const scene = await krs.compile('/// Of the ball.\nparam radius = 1 in [0.5, 2];\nparam turn = 30deg in [0deg, 90deg];\n' +
+        'param shown = 1 in 0..2;\nparam tint = #c8553d;\nshow (if shown > 0.5 then sphere(radius) else box([1, 1, 1])).paint(tint).rotate([0, 1, 0], turn);');
+    window.scene = scene;
+    return { ok: scene.ok, kinds: scene.parameters.map(p => p.kind), doc: scene.parameters[0].doc, high: scene.parameters[0].high[0],
+        open: scene.parameters[3].high[0] === Infinity, cameras: scene.cameras.length, names: scene.components.map(c => c.name),
+        messages: scene.diagnostics.map(d => d.message) };
+});
+report(told.ok && told.kinds.join() === 'number,angle,switch,color', `kinds of parameters are told (${told.kinds} ${told.messages})`);
+report(told.doc === 'Of the ball.' && told.high === 2 && told.cameras === 1 && told.names.includes('floor'), 'so are ranges, comments, cameras and components');
+
+report(await page.evaluate(async () => {
+    let changes = 0;
+    scene.addEventListener('change', () => changes++);
+    const good = await scene.set('radius', 2), bad = await scene.set('radius', 3), none = await scene.set('width', 1);
+    const [distance] = await scene.distance([0, 5, 0]);
+    return good && !bad && !none && changes === 1 && Math.abs(distance - 3) < 1e-9 && scene.parameters[0].value[0] === 2;
+}), 'parameters are set in their range');
+
+report(await page.evaluate(async () => {
+    const text = scene.text, same = await scene.update(text.replace('1 in [0.5', '1.5 in [0.5'));
+    const kept = (await scene.distance([0, 5, 0]))[0], refused = await scene.update('show spere(1);');
+    const still = (await scene.distance([0, 5, 0]))[0];
+    await scene.reset();
+    const now = (await scene.distance([0, 5, 0]))[0];
+    return same.change === 'values' && kept === 3 && !refused.ok && refused.diagnostics[0].data.replacement === 'sphere' &&
+        still === 3 && now === 3.5 && scene.text !== 'show spere(1);';
+}), 'an edit keeps values that were set, and a mistake keeps the scene');
+
+report(await page.evaluate(async () => {
+    const [first, second, third] = await Promise.all(['show sphere(1);', 'show sphere(2);', 'show sphere(3);'].map(text => scene.update(text)));
+    return first.ok && second.ok && third.ok && (await scene.distance([0, 5, 0]))[0] === 2;
+}), 'of edits that come at once the last counts');
+
+report(await page.evaluate(async () => {
+    const [hit] = await scene.query([[0, 4, 0]]), [ray] = await scene.raycast([[0, 9, 0]], [[0, -1, 0]]);
+    return Math.abs(hit.normal[1] - 1) < 1e-9 && Math.abs(ray.t - 6) < 1e-6 && ray.component === 1;
+}), 'points and rays are answered');
+
+report(await page.evaluate(async () => {
+    const told = [], mesh = await scene.mesh({ error: 0.05, progress: done => told.push(done) });
+    return mesh.triangles.length / 3 === 2 * (mesh.vertices.length / 3) - 4 &&
+        mesh.vertices.every((_, i) => i % 3 || Math.abs(Math.hypot(...mesh.vertices.slice(i, i + 3)) - 3) < 0.05);
+}), 'a mesh of a ball is a sphere, within its error');
+
+report(await page.evaluate(async () => {
+    const many = await krs.compile('show union([sphere(0.3).move(random_direction(i) * 4) for i in 0..60], blend: 0.1);');
+    const ending = new AbortController(), begun = performance.now();
+    setTimeout(() => ending.abort(new Error('enough')), 300);
+    const error = await many.mesh({ error: 0.0005, signal: ending.signal }).catch(e => e.message);
+    return error === 'enough' && performance.now() - begun < 1000;
+}), 'a mesh can be ended');
+
+report(await page.evaluate(async () => {
+    const parts = await krs.compile('use "part.krs"; show part();', { files: { 'part.krs': 'def part() = sphere(2);' } });
+    const none = await krs.compile('use "none.krs"; show sphere(1);');
+    const fetched = await krs.compile(await (await fetch('/examples/15-town.krs')).text(), { name: '15-town.krs', base: '/examples/' });
+    const letters = await krs.compile('show text("krs").extrude(0.2);');
+    return parts.ok && !none.ok && fetched.ok && letters.ok;
+}), 'files are given or fetched, and fonts are there');
+
+report(await page.evaluate(async () => {
+    const moving = await krs.compile('show sphere(1 + 0.2 * sin(time));'), still = await krs.compile('show sphere(1);');
+    const formatted = await krs.format('show   sphere( 1 );'), wrong = await krs.format('show (');
+    return moving.animated && !still.animated && formatted.text === 'show sphere(1);\n' && wrong.text === null &&
+        wrong.diagnostics.length > 0 && (await krs.check('show spere(1);'))[0].code === 'E0201' && /^\d+\.\d+\.\d+$/.test(await krs.version());
+}), 'texts are laid out and checked; what moves is told');
+
+report(page.errors.filter(error => !/404|none\.krs/.test(error)).length === 0, `the console has no errors ${page.errors.join('; ')}`);
+await browser.close();
+server.close();
+console.log(`1..${number}`);
+process.exitCode = failed ? 1 : 0;

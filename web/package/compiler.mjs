@@ -1,0 +1,214 @@
+// compiler.mjs: scenes, as a page has them: the compiler is in a worker (worker.mjs).
+
+let folder = new URL('./', import.meta.url);
+
+export function locate(place) {
+    folder = new URL(place, globalThis.document?.baseURI ?? import.meta.url);
+    if (!folder.pathname.endsWith('/'))
+        folder.pathname += '/';
+}
+
+// A file of this package.
+export const placeOf = name => new URL(name, folder);
+
+// ---- the worker ----
+
+// A worker from another host is not started: a small one of this host imports it.
+export function startWorker(name) {
+    const place = placeOf(name).href;
+    if (new URL(place).origin === globalThis.location?.origin)
+        return new Worker(place, { type: 'module' });
+    const starter = URL.createObjectURL(new Blob([`import ${JSON.stringify(place)};`], { type: 'text/javascript' }));
+    return new Worker(starter, { type: 'module' });
+}
+
+class Calls {
+    constructor() {
+        this.worker = startWorker('worker.mjs');
+        this.waiting = new Map();
+        this.next = 1;
+        this.worker.onmessage = ({ data }) => this.#take(data);
+        this.worker.onerror = event => this.#fail(new Error(event.message ?? 'the compiler cannot be loaded'));
+    }
+
+    call(call, args, told) {
+        const id = this.next++;
+        return new Promise((resolve, reject) => {
+            this.waiting.set(id, { resolve, reject, told });
+            this.worker.postMessage({ id, call, args });
+        });
+    }
+
+    end(reason) {
+        this.worker.terminate();
+        this.#fail(reason);
+    }
+
+    #take({ id, value, error, done }) {
+        const waiting = this.waiting.get(id);
+        if (!waiting)
+            return;
+        if (done !== undefined) {
+            waiting.told?.(done);
+            return;
+        }
+        this.waiting.delete(id);
+        if (error === undefined)
+            waiting.resolve(value);
+        else
+            waiting.reject(new Error(error));
+    }
+
+    #fail(error) {
+        for (const { reject } of this.waiting.values())
+            reject(error);
+        this.waiting.clear();
+    }
+}
+
+let shared;
+const ask = (call, args) => (shared ??= new Calls()).call(call, args);
+
+// ---- scenes ----
+
+const flat = points => (Array.isArray(points[0]) ? points.flat() : Array.from(points));
+const absolute = place => (place === undefined ? undefined : new URL(place, globalThis.document?.baseURI ?? import.meta.url).href);
+const optionsOf = ({ name = 'scene.krs', files, base, fonts, studio } = {}) => ({
+    name, files, base: absolute(base), studio,
+    fonts: fonts && Object.fromEntries(Object.entries(fonts).map(([key, font]) => [key, ArrayBuffer.isView(font) ? font : absolute(font)])),
+});
+
+const infinite = (box, otherwise) => box.map(number => number ?? otherwise);
+const shownComponent = ({ low, high, ...rest }) => ({ ...rest, low: infinite(low, -Infinity), high: infinite(high, Infinity) });
+const nothing = { parameters: [], components: [], cameras: [], image: { width: 0, height: 0, samples: 0, integrator: null }, animated: false, too_large: null };
+
+export class Scene extends EventTarget {
+    #options;
+    #number;
+    #about = nothing;
+    #values = new Map();
+    #compiling = null; // what is compiled now
+    #next = null;      // what follows it: a text and its promise
+
+    constructor(options) {
+        super();
+        this.#options = options;
+        Object.assign(this, { ok: false, diagnostics: [], text: '' });
+    }
+
+    get parameters() { return this.#about.parameters; }
+    get components() { return this.#about.components; }
+    get cameras() { return this.#about.cameras; }
+    get image() { return this.#about.image; }
+    get animated() { return this.#about.animated; }
+    get tooLarge() { return this.#about.too_large; }
+
+    // Of texts that come while one is compiled only the last is compiled.
+    update(text) {
+        if (!this.#compiling) {
+            this.#compiling = this.#compile(text).finally(() => {
+                const next = this.#next;
+                this.#compiling = this.#next = null;
+                if (next)
+                    this.update(next.text).then(next.resolve, next.reject);
+            });
+            return this.#compiling;
+        }
+        this.#next ??= Object.assign({}, newPromise());
+        this.#next.text = text;
+        return this.#next.promise;
+    }
+
+    async #compile(text) {
+        const made = this.#number === undefined ? await ask('compile', { text, options: this.#options })
+                                                : await ask('update', { scene: this.#number, text });
+        this.#number ??= made.number;
+        this.diagnostics = made.diagnostics;
+        if (made.ok) {
+            Object.assign(this, { ok: true, text });
+            this.#about = { ...made.about, components: made.about.components.map(shownComponent) };
+        }
+        const { ok, diagnostics, change } = made;
+        if (ok && change !== 'nothing')
+            this.#changed(change);
+        return { ok, diagnostics, change };
+    }
+
+    #changed(change) { this.dispatchEvent(new CustomEvent('change', { detail: change })); }
+
+    async set(name, value) {
+        const numbers = [].concat(Array.from(value[Symbol.iterator] ? value : [value]));
+        const good = await this.#ask('set', { name, value: numbers });
+        const parameter = this.parameters.find(p => p.name === name);
+        if (good && parameter) {
+            parameter.value = numbers;
+            this.#values.set(name, numbers);
+            this.#changed('values');
+        }
+        return good;
+    }
+
+    async reset() {
+        await this.#ask('reset');
+        this.#values.clear();
+        for (const parameter of this.parameters)
+            parameter.value = parameter.default.slice();
+        this.#changed('values');
+    }
+
+    query(points, time = 0) { return this.#ask('query', { points: flat(points), time }); }
+    distance(points, time = 0) { return this.#ask('distance', { points: flat(points), time }); }
+
+    raycast(origins, directions, { farthest = Infinity, tolerance = 0, time = 0 } = {}) {
+        return this.#ask('raycast', { origins: flat(origins), directions: flat(directions), farthest, tolerance, time });
+    }
+
+    shader(target = 'glsl', { stateValues = false, earlyOuts = true } = {}) {
+        return this.#ask('shader', { target, stateValues, earlyOuts });
+    }
+
+    // What a picture reads at a time; of tables, what it has not seen.
+    state(time, tables) { return this.#ask('state', { time, tables }); }
+
+    camerasAt(time) { return this.#ask('cameras', { time }); }
+
+    // A worker of its own can be ended at any time.
+    async mesh({ signal, progress, time = 0, ...how } = {}) {
+        signal?.throwIfAborted();
+        const calls = new Calls(), abort = () => calls.end(signal.reason);
+        signal?.addEventListener('abort', abort);
+        try {
+            return await calls.call('mesh', { text: this.text, options: { ...this.#options, studio: false },
+                values: Array.from(this.#values), time, how }, progress);
+        } finally {
+            signal?.removeEventListener('abort', abort);
+            calls.end(new Error('ended'));
+        }
+    }
+
+    free() {
+        if (this.#number !== undefined)
+            ask('free', { scene: this.#number });
+    }
+
+    #ask(call, args) { return ask(call, { scene: this.#number, ...args }); }
+}
+
+function newPromise() {
+    const made = {};
+    made.promise = new Promise((resolve, reject) => Object.assign(made, { resolve, reject }));
+    return made;
+}
+
+export async function compile(text, options) {
+    const scene = new Scene(optionsOf(options));
+    await scene.update(text);
+    return scene;
+}
+
+export const format = async (text, { name } = {}) => {
+    const { text: formatted, diagnostics } = await ask('format', { text, name });
+    return { text: formatted, diagnostics };
+};
+export const check = (text, options) => ask('check', { text, options: optionsOf(options) });
+export const version = () => ask('version');
