@@ -55,7 +55,7 @@ int main(int argc, char **argv)
     if (argc != 3)
         give_up("first", "it takes a scene, and who marches its rays");
     const double begun = trial_now();
-    Trial        trial = trial_open(argv[1], executor_named(argv[2]));
+    Trial        trial = trial_open(argv[1], executor_named(argv[2]), KRS_SPECIALIZE_AUTO);
     trial_take_version(&trial);
     trial_take_camera(&trial);
     const Times started = time_pictures(&trial, begun);

@@ -19,9 +19,9 @@ double trial_now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-Trial trial_open(const char *path, KrsExecutor executor)
+Trial trial_open(const char *path, KrsExecutor executor, KrsSpecialize specialize)
 {
-    const KrsOptions     with    = {.specialize = KRS_SPECIALIZE_STRUCTURE, .studio = true};
+    const KrsOptions     with    = {.specialize = specialize, .studio = true};
     const PainterOptions options = {
         .renderer = {.device = getenv("KRS_DEVICE"), .cache = getenv("KRS_VIEW_CACHE")},
         .budget   = TRIAL_BUDGET,

@@ -23,7 +23,7 @@ double trial_now(void);
 
 /* Begins to read a scene, and to paint by an executor; the device is KRS_DEVICE, the folder of caches KRS_VIEW_CACHE.  All
    functions end the process where they fail. */
-Trial trial_open(const char *path, KrsExecutor executor);
+Trial trial_open(const char *path, KrsExecutor executor, KrsSpecialize specialize);
 void  trial_close(Trial *trial);
 /* Takes the version of the document, with the defaults of its parameters, and the camera that the scene has. */
 void trial_take_version(Trial *trial);

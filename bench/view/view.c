@@ -134,7 +134,7 @@ static void measure(const Sheet *sheet, const char *path)
 {
     const char  *slash  = strrchr(path, '/');
     const double begun  = trial_now();
-    Trial        trial  = trial_open(path, KRS_EXECUTOR_DEFAULT);
+    Trial        trial  = trial_open(path, KRS_EXECUTOR_DEFAULT, KRS_SPECIALIZE_STRUCTURE);
     uint32_t     turned = 0, slid = 0;
     trial_take_version(&trial);
     trial_take_camera(&trial);
