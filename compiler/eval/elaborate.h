@@ -402,6 +402,15 @@ Value builtin_constant(Elaboration *e, const char *name, Span span);
 /* All names that need no definition, for names_check; returns how many, at most `capacity`. */
 size_t builtin_names(const char **names, size_t capacity);
 
+/* builtins/words.c */
+/* What is built in: a row of functions.def, methods.def, constants.def or ops.def each.  The last has no name. */
+typedef struct BuiltinWord {
+    const char *kind, *name; /* "function", "method" or "value" */
+    const char *parameters;  /* as the tables have them; NULL: scenes do not call it */
+    const char *meaning;
+} BuiltinWord;
+extern const BuiltinWord builtin_words[];
+
 /* builtins/methods.c */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
 

@@ -33,6 +33,7 @@ typedef struct Request {
     char   **dump;    /* where the dump goes, unless NULL */
     bool    *format;  /* unless NULL: the dump is the text in canonical layout, and *format is
                              whether it was so before */
+    bool     words;   /* the dump is what the scene may use, in JSON (words.c) */
     Inspect *inspect; /* called with the elaborated scene, unless NULL */
     void    *user;    /* passed to `inspect` */
     uint32_t
@@ -99,6 +100,10 @@ uint32_t min_instances(const Compilation *c);
    points must be camera-relative. */
 bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, bool pictures,
                      Arena *scratch);
+
+/* words.c: a scene that uses all files of the library; words that are built in, and those of these files, as JSON. */
+void words_use_library(Text *scene);
+void words_print(Compilation *c, Text *json);
 
 /* limits.c: refuses the scene, of which a component needs too much to be lowered. */
 void refuse_component(Compilation *c, size_t component);

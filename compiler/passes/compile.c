@@ -159,6 +159,8 @@ static KrsStatus run_guarded(Compilation *c)
         status = inspect(c);
     if (status == KRS_OK && c->request->format)
         status = format(c);
+    if (status == KRS_OK && c->request->words)
+        words_print(c, &c->dump);
     report(c);
     if (status == KRS_OK)
         retain_too_large(c);
@@ -311,22 +313,31 @@ static KrsStatus hand_out(const KrsOptions *options, const char *text, char **co
     return *copy ? (memcpy(*copy, text, length), KRS_OK) : KRS_OUT_OF_MEMORY;
 }
 
-static KrsStatus format_text(const char *text, size_t length, const char *name,
-                             const KrsOptions *options, char **formatted, bool *same)
+/* Hands out the dump of a request. */
+static KrsStatus print_text(const char *text, size_t length, const char *name,
+                            const KrsOptions *options, Request request, char **result)
 {
     KrsScene *scene;
     char     *found  = NULL;
-    Request request  = {.after = PASS_COUNT, .end = PASS_parse + 1, .dump = &found, .format = same};
-    *formatted       = NULL;
-    *same            = false;
+    request.after    = PASS_COUNT;
+    request.dump     = &found;
+    *result          = NULL;
     KrsStatus status = load_and_compile(text, length, name, options, &request, &scene);
     scene_free(scene);
     if (status == KRS_OK && !found)
         status = KRS_OUT_OF_MEMORY;
     if (status == KRS_OK)
-        status = hand_out(options, found, formatted);
+        status = hand_out(options, found, result);
     free(found);
     return status;
+}
+
+static KrsStatus format_text(const char *text, size_t length, const char *name,
+                             const KrsOptions *options, char **formatted, bool *same)
+{
+    *same = false;
+    return print_text(text, length, name, options, (Request){.end = PASS_parse + 1, .format = same},
+                      formatted);
 }
 
 KrsStatus krs_format_text(const char *text, size_t length, const char *name,
@@ -342,6 +353,28 @@ KrsStatus krs_format_text(const char *text, size_t length, const char *name,
 KrsStatus krs_format_file(const char *path, const KrsOptions *options, char **formatted, bool *same)
 {
     return format_text(NULL, 0, path, options, formatted, same);
+}
+
+KrsStatus krs_words(const KrsAllocator *allocator, char **json)
+{
+    const KrsOptions options = {.allocator = allocator ? *allocator : (KrsAllocator){0}};
+    jmp_buf          exhausted;
+    Memory           memory = {.allocate  = options.allocator.allocate,
+                               .release   = options.allocator.release,
+                               .user      = options.allocator.user,
+                               .exhausted = &exhausted};
+    Arena            arena  = {.memory = &memory};
+    Text             scene  = {.arena = &arena};
+    *json                   = NULL;
+    if (setjmp(exhausted) != 0) {
+        arena_free(&arena);
+        return KRS_OUT_OF_MEMORY;
+    }
+    words_use_library(&scene);
+    const KrsStatus status = print_text(scene.bytes, scene.length, "words.krs", &options,
+                                        (Request){.end = PASS_names + 1, .words = true}, json);
+    arena_free(&arena);
+    return status;
 }
 
 KrsStatus inspect_text(const char *text, size_t length, const char *name, const KrsOptions *options,

@@ -226,6 +226,22 @@ KRS_SIZED KrsStatus krs_format_text(const char *text, size_t length, const char 
 KRS_SIZED KrsStatus krs_format_file(const char *path, const KrsOptions *options, char **formatted,
                                     bool *same);
 
+/*
+ * What a scene may use without defining it: what is built in, and what the library declares.  *json is an array with an object
+ * for each:
+ *
+ *     kind        "function", "shape" (one that is declared by its distance), "method" of shapes, or "value"
+ *     name
+ *     parameters  but of values, a list of objects: `name`; `optional`, true where there is a default; `many`, true where it
+ *                 takes all positional arguments; `takes`, a kind of values; `default` and `range` as the library writes them
+ *     about       what it is or does; missing where nobody says
+ *     file        "std/trees.krs", which a scene has to `use`; missing where each scene has it
+ *
+ * On KRS_OK the caller releases *json by the allocator, or by free() where that is NULL or has no function.  KRS_OUT_OF_MEMORY:
+ * it is NULL.
+ */
+KrsStatus krs_words(const KrsAllocator *allocator, char **json);
+
 /* What is different in an edited scene. */
 typedef enum KrsChange {
     KRS_CHANGE_NOTHING,  /* but names, comments and blanks: pictures and distances are the same */

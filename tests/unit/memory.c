@@ -111,6 +111,36 @@ static void results_are_of_the_allocator(void **context)
     assert_int_equal(scarce.held, 0);
 }
 
+/* The list of words is one block, or there is none. */
+static void words_are_listed_or_not(void **context)
+{
+    (void)context;
+    Scarce       plenty    = {0};
+    KrsAllocator allocator = scarce_allocator(&plenty);
+    char        *words, *again;
+    assert_int_equal(krs_words(&allocator, &words), KRS_OK);
+    assert_int_equal(plenty.held, 1);
+    assert_non_null(strstr(words,
+                           "{\"kind\": \"shape\", \"name\": \"sphere\", \"parameters\": "
+                           "[{\"name\": \"radius\", \"optional\": true, \"default\": \"1\"}], "
+                           "\"about\": \"A ball around the origin. Exact in- and outside.\"}"));
+    assert_non_null(strstr(words, "\"name\": \"union\", \"parameters\": [{\"name\": \"shapes\", "
+                                  "\"many\": true}, {\"name\": \"blend\", \"optional\": true}"));
+    assert_int_equal(krs_words(NULL, &again), KRS_OK);
+    assert_string_equal(again, words);
+    free(again);
+    for (int64_t failing = 1; failing <= plenty.made; failing++) {
+        Scarce scarce = {.failing = failing, .lasting = true};
+        allocator     = scarce_allocator(&scarce);
+        assert_int_equal(krs_words(&allocator, &again), KRS_OUT_OF_MEMORY);
+        assert_null(again);
+        assert_int_equal(scarce.held, 0);
+    }
+    allocator = scarce_allocator(&plenty);
+    allocator.release(allocator.user, words);
+    assert_int_equal(plenty.held, 0);
+}
+
 static void the_limit_holds(void **context)
 {
     (void)context;
@@ -178,6 +208,7 @@ int main(void)
         cmocka_unit_test(one_allocation_fails),
         cmocka_unit_test(all_later_allocations_fail),
         cmocka_unit_test(results_are_of_the_allocator),
+        cmocka_unit_test(words_are_listed_or_not),
         cmocka_unit_test(the_limit_holds),
         cmocka_unit_test(memory_grows_with_the_scene),
     };

@@ -201,8 +201,9 @@ static const Builtin *find_row(const char *name)
 }
 
 static const char *const constants[] = {
-    "pi", "tau", "x",      "y",        "z",          "p",          "time",     "level", "instance",
-    "u",  "v",   "normal", "identity", "orbit_trap", "orbit_step", "rounding", "front"};
+#define CONSTANT(name, meaning) #name,
+#include "compiler/eval/builtins/constants.def"
+};
 enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
 
 /* Names are compared by their addresses, which are looked up here before tables are searched. */
