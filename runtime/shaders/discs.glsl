@@ -1,6 +1,9 @@
 /*
  * discs.glsl: the discs of lights, and how much of one is above a surface's horizon.
  */
+#ifndef DISCS // another file may have it already
+#define DISCS
+
 #include "sines.glsl"
 
 // The radius of a light's disc; a directional light is at distance 1.
@@ -40,3 +43,4 @@ float find_fraction_above(Disc disc, float rise)
     return disc.spread > 0.0 ? fraction_above(rise / max(disc.spread * across, 1e-30))
                              : float(rise > 0.0);
 }
+#endif

@@ -88,18 +88,7 @@ uint sparse_pixels_of_quarter(uint number)
     return ((number & 1u) == 0u ? 0x0505u : 0x0a0au) << ((number & 2u) == 0u ? 0u : 4u);
 }
 
-// The point that the ray of a pixel hits.  It is computed again wherever it is needed, which costs
-// no more than to load it.
-struct HitPoint {
-    uint  slot;
-    vec3  position;
-    vec3  direction; // of the ray, unit
-    float width;     // of a pixel there
-    float near;      // the same, but from a camera at most MAX_WIDTH of the ray
-    float rounding;  // error of the coordinates
-    float side;      // as in RayEnd
-    uint  steps;     // as in RayEnd
-};
+#include "hit_point.glsl"
 
 HitPoint hit_point_of_slot(uint slot)
 {
@@ -108,23 +97,11 @@ HitPoint hit_point_of_slot(uint slot)
     vec3  origin, direction;
     float base, slope;
     find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
-    vec3  position = origin + ray.t * direction;
-    float rounding = ROUNDING * (largest(position) + largest(origin));
-    float width = max(width_at(ray.t, base + slope * ray.t), 1e-30); // it is a divisor
-    float near = are_of_paths() ? width : max(min(width, MAX_WIDTH * ray.t), 1e-30);
-    return HitPoint(slot, position, direction, width, near, rounding, ray.side, ray.steps);
+    return hit_point_on(slot, origin, direction, base, slope, ray.t, ray.side, ray.steps);
 }
 
 // The hit of item `number` of the list that is read.
 HitPoint find_hit_point(uint number)
 {
     return hit_point_of_slot(find_listed(control.reading + number));
-}
-
-// The reach of the differences of which normals are made.  Its least, relative to the coordinates:
-// less would be noise.  compiler/passes/precision.c decides where it is too much.
-const float NOISE = 1e-4;
-float find_reach(HitPoint hit)
-{
-    return max(frame.normal_reach * hit.near, NOISE * largest(hit.position) + hit.rounding);
 }

@@ -1,6 +1,7 @@
 /*
  * openness.glsl: how open a hit is to the sky, and what gives light back where it is not.
  */
+#include "optics.glsl"
 
 // The part of the hemisphere, by the cosine, that is open; and the mean albedo of what closes the
 // rest.
@@ -23,4 +24,14 @@ Openness unpack_openness(float number)
 vec3 with_bounces(float open, vec3 albedo)
 {
     return open / max(1.0 - albedo * (1.0 - open), 0.05);
+}
+
+// A guess at the colour of occluders, of which only the mean brightness is known: that of the surface,
+// darkened or whitened.
+vec3 guess_color(vec3 own, float albedo)
+{
+    float lum = luminance(own);
+    vec3  darker = own * (albedo / max(lum, 1e-6));
+    vec3  lighter = mix(own, vec3(1.0), (albedo - lum) / max(1.0 - lum, 1e-6));
+    return albedo < lum ? darker : lighter;
 }

@@ -10,6 +10,13 @@ float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
 
 float luminance(float gray) { return gray; }
 
+// Replaces components that are negative, infinite or NaN by 0.
+vec3 finite_or_black(vec3 radiance)
+{
+    bvec3 finite = bvec3(radiance.x < INFINITE, radiance.y < INFINITE, radiance.z < INFINITE);
+    return mix(vec3(0.0), max(radiance, 0.0), finite);
+}
+
 // The reflectance of a boundary between two media.
 float fresnel(float cosine, float eta)
 {

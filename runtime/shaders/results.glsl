@@ -4,6 +4,8 @@
  * are not wanted are not written.  The first ray of a pixel goes through its centre, and gives all
  * results but the colour.
  */
+#include "optics.glsl"
+
 layout(std430, set = 1, binding = RESULTS_BINDING) writeonly buffer Colors {
     vec3 colors[]; // 16 bytes each
 };
@@ -34,13 +36,6 @@ void add_light_to(uint row, uint index, vec3 color)
 }
 
 void add_light(uint index, vec3 color) { add_light_to(control.color_row, index, color); }
-
-// Replaces components that are negative, infinite or NaN by 0.
-vec3 finite_or_black(vec3 radiance)
-{
-    bvec3 finite = bvec3(radiance.x < INFINITE, radiance.y < INFINITE, radiance.z < INFINITE);
-    return mix(vec3(0.0), max(radiance, 0.0), finite);
-}
 
 // The factor by which light must be multiplied so that none of its components exceeds the limit of
 // a ray; 1 where none does.

@@ -4,6 +4,7 @@
 #include "web/core/answers.h"
 
 #include "compiler/base/text.h"
+#include "compiler/scene/compiled.h"
 
 /* ---- the answer ---- */
 
@@ -217,6 +218,34 @@ static void write_image(const KrsScene *scene)
     leave("}");
 }
 
+/* What a program that draws the scene chooses its shaders by. */
+static void write_shaders(const KrsScene *scene)
+{
+    const KrsProgram *program = krs_scene_program(scene);
+    open_member("shaders", "{");
+    add_numbers("low", program->low, 3);
+    add_numbers("high", program->high, 3);
+#define ADD_TRUTH(member) add_truth(#member, program->member);
+    ADD_TRUTH(open_surfaces)
+    ADD_TRUTH(gradients)
+    ADD_TRUTH(algebraic)
+    ADD_TRUTH(plain)
+    ADD_TRUTH(sky_map)
+    ADD_TRUTH(mirrors)
+    ADD_TRUTH(media)
+    ADD_TRUTH(layers)
+    ADD_TRUTH(films)
+    ADD_TRUTH(subsurface)
+    ADD_TRUTH(anisotropic)
+    ADD_TRUTH(views)
+    ADD_TRUTH(emits)
+#undef ADD_TRUTH
+    add_truth("panoramas", krs_scene_is_panoramic(scene));
+    add_truth("lenses", krs_scene_has_lens(scene));
+    add_truth("affordable", krs_structure_is_affordable(scene));
+    leave("}");
+}
+
 static void write_scene(const KrsScene *scene)
 {
     const KrsDiagnostic *too_large = krs_scene_too_large(scene);
@@ -235,6 +264,7 @@ static void write_scene(const KrsScene *scene)
         write_texture(scene, i);
     leave("]");
     write_image(scene);
+    write_shaders(scene);
     add_number("parameter_slots", (double)krs_parameter_slots(scene));
     add_number("value_slots", (double)krs_value_slots(scene));
     add_number("table_rows", (double)krs_table_rows(scene));

@@ -101,6 +101,9 @@ export class Scene extends EventTarget {
     get cameras() { return this.#about.cameras; }
     get image() { return this.#about.image; }
     get animated() { return this.#about.animated; }
+    // All that the compiler tells of the scene (answers.c).
+    get about() { return this.#about; }
+    get name() { return this.#options.name; }
     get tooLarge() { return this.#about.too_large; }
 
     // Of texts that come while one is compiled only the last is compiled.

@@ -1,2 +1,8 @@
 // index.mjs: what the package `krs` has (krs.d.ts).
-export { Scene, check, compile, format, locate, version } from './compiler.mjs';
+import { KrsViewElement } from './view.mjs';
+
+export { check, compile, format, locate, version } from './compiler.mjs';
+export { KrsViewElement };
+
+if (!customElements.get('krs-view'))
+    customElements.define('krs-view', KrsViewElement);

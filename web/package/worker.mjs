@@ -70,6 +70,9 @@ function about(held) {
     const { state, scene } = held, described = scene.describe();
     held.parameters = described.parameters.map(p => p.name);
     version = described.version;
+    const { shaders } = described;
+    shaders.low = finite(shaders.low, -Infinity);
+    shaders.high = finite(shaders.high, Infinity);
     return { ...described, parameters: described.parameters.map(shownParameter), cameras: viewOf(state).cameras,
         animated: isAnimated(held) };
 }

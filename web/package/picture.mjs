@@ -1,0 +1,441 @@
+// picture.mjs: a picture of a scene by WebGL2, drawn in tiles that take a few milliseconds each.
+//
+// It runs in a worker (painter.mjs), and nothing in it waits but for its own tiles.  A picture begins with levels of few,
+// large pixels, the first of which is over within a frame; then its pixels get samples.
+import { frameOf, lightRowsOf, projections } from './frame.mjs';
+import { compilePasses, compileResolve, passes } from './programs.mjs';
+
+const tileTime = 20, firstTime = 40;   // milliseconds: of a tile, and of a picture while something moves
+const levels = [1, 2, 4, 8, 16];       // sides of the pixels
+const lightsAt = 5120, inputWidth = 64; // the row of the first light (blocks.h); the width of that texture
+const textureWidth = 4096;
+const toneMaps = ['neutral', 'aces', 'agx', 'none'];
+
+// ---- textures and what is drawn to ----
+
+function textureOf(gl, format, width, height, data = null) {
+    const [kept, layout, type] = {
+        floats: [gl.RGBA32F, gl.RGBA, gl.FLOAT], halves: [gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT], words: [gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT],
+        pairs: [gl.RG32UI, gl.RG_INTEGER, gl.UNSIGNED_INT], bytes: [gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE],
+    }[format];
+    const texture = gl.createTexture(), filter = format === 'bytes' ? gl.LINEAR : gl.NEAREST;
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, kept, width, height, 0, layout, type, data);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+    return texture;
+}
+
+// Textures that are drawn to together.
+class Layer {
+    constructor(gl, formats, width, height) {
+        Object.assign(this, { gl, width, height });
+        this.textures = formats.map(format => textureOf(gl, format, width, height));
+        this.framebuffer = gl.createFramebuffer();
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.framebuffer);
+        this.textures.forEach((texture, i) =>
+            gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, texture, 0));
+        gl.drawBuffers(this.textures.map((_, i) => gl.COLOR_ATTACHMENT0 + i));
+    }
+
+    bind() {
+        const { gl } = this;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.framebuffer);
+        gl.viewport(0, 0, this.width, this.height);
+    }
+
+    clear() {
+        const { gl } = this;
+        this.bind();
+        gl.disable(gl.SCISSOR_TEST);
+        this.textures.forEach((_, i) => gl.clearBufferfv(gl.COLOR, i, [0, 0, 0, 0]));
+    }
+
+    free() {
+        this.textures.forEach(texture => this.gl.deleteTexture(texture));
+        this.gl.deleteFramebuffer(this.framebuffer);
+    }
+}
+
+// The offset of a ray within its pixel (place_ray in runtime/tracer/plan.c).
+const placeRay = ray => [0.75487766624669276, 0.56984029099805327].map(step => (0.5 + step * ray) % 1);
+
+// Sums of samples at one size of pixels, and what the passes of a sample leave.
+class Sums {
+    constructor(gl, width, height, sumFormat) {
+        Object.assign(this, { gl, width, height });
+        const layer = (...formats) => new Layer(gl, formats, width, height);
+        this.ends = layer('floats');
+        this.facings = layer('floats');
+        this.secondaries = layer('words');
+        this.sums = layer(...Array(4).fill(sumFormat));
+        this.shown = layer('bytes');
+        this.targets = { march: this.ends, normal: this.facings, secondary: this.secondaries, shade: this.sums };
+    }
+
+    free() { [this.ends, this.facings, this.secondaries, this.sums, this.shown].forEach(layer => layer.free()); }
+}
+
+// ---- the picture ----
+
+export class Picture {
+    constructor(canvas, tell) {
+        Object.assign(this, { canvas, tell, scene: null, state: null, programs: null, width: 0, height: 0, wanted: 64,
+            cost: 0.002, room: 1024, sums: new Map(), job: null, running: false, shots: [] });
+        canvas.addEventListener('webglcontextlost', event => {
+            event.preventDefault();
+            this.lost = true;
+            this.job = null;
+        });
+        canvas.addEventListener('webglcontextrestored', () => this.#begin().then(() => this.scene && this.setScene(this.scene)));
+        this.begun = this.#begin();
+    }
+
+    async #begin() {
+        const gl = this.gl = this.canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, powerPreference: 'high-performance' });
+        if (!gl || !gl.getExtension('EXT_color_buffer_float'))
+            throw new Error('this browser has no WebGL2 with pixels of floats');
+        this.lost = false;
+        this.losing = gl.getExtension('WEBGL_lose_context');
+        this.sumFormat = gl.getExtension('EXT_float_blend') ? 'floats' : 'halves';
+        gl.getExtension('KHR_parallel_shader_compile');
+        this.sums = new Map();
+        this.programs = this.inputs = this.tables = this.shown = null;
+        this.parameters = gl.createBuffer();
+        this.resolve = await compileResolve(gl);
+    }
+
+    // ---- what comes in ----
+
+    // { key, text, about }: a scene whose text has changed.
+    async setScene(scene) {
+        this.scene = scene;
+        await this.begun;
+        const { gl } = this, previous = this.programs;
+        if (this.compiled !== scene.key || !this.programs) {
+            const programs = await compilePasses(gl, scene.about, scene.text);
+            if (this.scene !== scene) { // another came meanwhile
+                Object.values(programs).forEach(program => program.free());
+                return;
+            }
+            this.compiled = scene.key;
+            this.programs = programs;
+            this.warm = false;
+            if (previous)
+                Object.values(previous).forEach(program => program.free());
+        }
+        if (this.state)
+            this.setState(this.state);
+    }
+
+    // Numbers of a state, its view and the camera; of tables, those that are new.
+    setState(state) {
+        this.state = { ...state, tables: state.tables?.rows ? state.tables : this.state?.tables };
+        if (!this.programs || this.lost)
+            return;
+        const { gl } = this, { parameters, values } = state, numbers = new Float32Array(Math.max(parameters.length + values.length, 4));
+        numbers.set(parameters);
+        numbers.set(values, parameters.length);
+        gl.bindBuffer(gl.UNIFORM_BUFFER, this.parameters);
+        gl.bufferData(gl.UNIFORM_BUFFER, numbers, gl.DYNAMIC_DRAW);
+        if (!this.tables || state.tables?.rows)
+            this.#setTables(this.state.tables);
+        this.#setInputs(state.view.lights);
+        this.#restart();
+    }
+
+    #setTables({ rows, cells }) {
+        const { gl } = this;
+        const padded = (Type, numbers, width) => {
+            const height = Math.max(Math.ceil(numbers.length / width / textureWidth), 1), all = new Type(width * textureWidth * height);
+            all.set(numbers);
+            return [textureWidth, height, all];
+        };
+        this.tables?.forEach(texture => gl.deleteTexture(texture));
+        this.tables = [textureOf(gl, 'floats', ...padded(Float32Array, rows, 4)), textureOf(gl, 'pairs', ...padded(Uint32Array, cells, 2))];
+    }
+
+    #setInputs(lights) {
+        const { gl } = this, rows = lightRowsOf(lights), count = lightsAt + rows.length / 4;
+        const all = new Uint32Array(4 * inputWidth * Math.ceil(count / inputWidth));
+        if (this.scene.albedos)
+            all.set(this.scene.albedos);
+        all.set(rows, 4 * lightsAt);
+        if (this.inputs)
+            gl.deleteTexture(this.inputs);
+        this.inputs = textureOf(gl, 'words', inputWidth, all.length / 4 / inputWidth, all);
+    }
+
+    setSize(width, height) {
+        if (width === this.width && height === this.height)
+            return;
+        Object.assign(this, { width, height });
+        this.#freeSums();
+        this.#restart();
+    }
+
+    // What is shown stays, until there is something of the new size.
+    #freeSums() {
+        for (const [key, sums] of this.sums)
+            if (sums.shown !== this.shown) {
+                sums.free();
+                this.sums.delete(key);
+            }
+    }
+
+    setWanted(samples) {
+        this.wanted = samples;
+        this.#wake();
+    }
+
+    // ---- jobs ----
+
+    // A job is a picture: its state, its size, and how far it is.
+    #jobOf(width, height, wanted, coarse) {
+        return { state: this.state, width, height, wanted, level: coarse, sample: 0, at: null, begun: performance.now(), first: coarse };
+    }
+
+    #restart() {
+        this.next = this.state && this.programs && this.width > 0 ? true : null;
+        this.#wake();
+    }
+
+    // The finest level that is over within a frame.
+    #firstLevel() {
+        const pixels = this.width * this.height;
+        return this.warm ? levels.find(level => pixels / level ** 2 * this.cost < firstTime) ?? levels.at(-1) : 8;
+    }
+
+    // Whether the job goes on although something newer has come: its first, coarse picture is soon over.
+    #mayEnd(job) { return job.level === job.first && job.sample === 0 && performance.now() - job.begun < 150; }
+
+    async #wake() {
+        if (this.running)
+            return;
+        this.running = true;
+        try {
+            while (!this.lost && (this.next || this.job || this.shots.length)) {
+                if (this.next && !(this.job && this.#mayEnd(this.job))) {
+                    this.next = null;
+                    this.job = this.#jobOf(this.width, this.height, this.wanted, this.#firstLevel());
+                }
+                if (this.shots.length && !this.next && !(this.job && this.job.level === this.job.first && this.job.sample === 0))
+                    this.#continueShot();
+                else if (this.job)
+                    this.#continue(this.job);
+                await yieldToMessages();
+            }
+        } catch (error) {
+            if (!this.gl.isContextLost())
+                this.tell({ kind: 'error', message: error.message });
+        }
+        this.running = false;
+    }
+
+    #sumsOf(width, height) {
+        const key = `${width} ${height}`;
+        if (!this.sums.has(key))
+            this.sums.set(key, new Sums(this.gl, width, height, this.sumFormat));
+        return this.sums.get(key);
+    }
+
+    // A level begins with what the last one shows.
+    #beginLevel(job) {
+        const { level } = job, last = this.shown, { gl } = this;
+        job.sums = this.#sumsOf(Math.ceil(job.width / level), Math.ceil(job.height / level));
+        job.sums.sums.clear();
+        job.frame = frameOf(job.state.camera, job.state.view, this.scene.about.shaders, job.width / level, job.height / level, job.wanted);
+        job.at = { x: 0, y: 0, height: 0 };
+        job.last = performance.now();
+        this.shown = job.sums.shown;
+        if (last && last !== this.shown)
+            this.#copy(last, this.shown.framebuffer, this.shown.width, this.shown.height, false);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    }
+
+    #copy(from, framebuffer, width, height, flips) {
+        const { gl } = this;
+        gl.disable(gl.SCISSOR_TEST);
+        gl.bindFramebuffer(gl.READ_FRAMEBUFFER, from.framebuffer);
+        gl.readBuffer(gl.COLOR_ATTACHMENT0);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, framebuffer);
+        gl.blitFramebuffer(0, 0, from.width, from.height, 0, flips ? height : 0, width, flips ? 0 : height, gl.COLOR_BUFFER_BIT, gl.LINEAR);
+    }
+
+    // Draws a tile; true: the job has all its samples.
+    #continue(job) {
+        if (!job.at)
+            this.#beginLevel(job);
+        this.#drawTile(job);
+        const over = job.at.y >= job.sums.height, now = performance.now();
+        if (over) {
+            job.at = { x: 0, y: 0, height: 0 };
+            job.sample++;
+        }
+        const done = job.level === 1 && job.sample >= job.wanted;
+        if (over || now - job.last > (job.level < job.first || job.sample > 0 ? 100 : 500)) {
+            job.last = now;
+            this.#show(job);
+            this.tell({ kind: 'frame', samples: job.level > 1 ? 1 / job.level ** 2 : job.sample, wanted: job.wanted,
+                elapsed: now - job.begun, width: job.width, height: job.height, time: job.state.time, done, number: job.state.number });
+        }
+        if (over && job.level > 1) {
+            job.level = levels[levels.indexOf(job.level) - 1];
+            job.sample = 0;
+            job.at = null;
+        }
+        if (done)
+            this.job = null;
+        return done;
+    }
+
+    // ---- drawing ----
+
+    #drawTile(job) {
+        const { at, sums } = job;
+        if (!this.warm) { // drivers compile at the first draw, which tells nothing; the second tells what draws cost by themselves
+            this.#timeTile(job, 0, 0, 1, 1);
+            this.overhead = this.#timeTile(job, 0, 0, 1, 1);
+            sums.sums.clear();
+            Object.assign(this, { warm: true, room: 1024 });
+        }
+        if (at.x === 0)
+            at.height = Math.min(Math.max(Math.floor(Math.sqrt(this.room)), Math.floor(this.room / sums.width), 1), sums.height - at.y);
+        const width = Math.min(Math.max(Math.floor(this.room / at.height), 1), sums.width - at.x), pixels = width * at.height;
+        const took = this.#timeTile(job, at.x, at.y, width, at.height), own = Math.max(took - this.overhead, 0.2 * took);
+        // Tiles that are cut off at the edge tell too little.
+        if (2 * pixels > this.room || own > tileTime) {
+            this.cost = own / pixels;
+            this.room = Math.max(pixels * Math.min(Math.max(tileTime / own, 0.125), 2), 64);
+        }
+        at.x += width;
+        if (at.x >= sums.width) {
+            at.x = 0;
+            at.y += at.height;
+        }
+    }
+
+    // Draws a tile, and waits until it is there.
+    #timeTile(job, x, y, width, height) {
+        const { gl } = this, { shown } = job.sums, began = performance.now();
+        this.#drawPasses(job, x, y, width, height);
+        shown.bind();
+        this.#drawResolved(job);
+        gl.readBuffer(gl.COLOR_ATTACHMENT0);
+        gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        return performance.now() - began;
+    }
+
+    #drawPasses(job, x, y, width, height) {
+        const { gl } = this, { sums, state, level, sample, frame } = job;
+        const common = { ray_number: sample, light_count: state.view.lights.length, projection: projections.indexOf(state.camera.projection),
+            from_middles: level > 1 ? 1 : 0, input_rows: 0, krs_rows: 1, krs_cells: 2, ends: 3, facings: 4, secondaries: 5 };
+        gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.parameters);
+        [this.inputs, ...this.tables].forEach((texture, unit) => this.#bindTexture(unit, texture));
+        gl.enable(gl.SCISSOR_TEST);
+        gl.scissor(x, y, width, height);
+        const found = [sums.ends, sums.facings, sums.secondaries];
+        passes.forEach((pass, number) => {
+            const program = this.programs[pass];
+            gl.useProgram(program.program);
+            if (program.frame !== frame || program.sample !== sample) { // else it has them
+                Object.assign(program, { frame, sample });
+                program.set(common);
+                program.set(frame, 'frame.');
+                program.set({ corner: [0, 0], extent: [sums.width, sums.height], offset: placeRay(sample) }, 'work.');
+            }
+            found.forEach((layer, unit) => this.#bindTexture(3 + unit, unit < number ? layer.textures[0] : null));
+            sums.targets[pass].bind();
+            if (pass === 'shade') {
+                gl.enable(gl.BLEND);
+                gl.blendFunc(gl.ONE, gl.ONE);
+            }
+            gl.drawArrays(gl.TRIANGLES, 0, 3);
+        });
+        gl.disable(gl.BLEND);
+    }
+
+    #bindTexture(unit, texture) {
+        const { gl } = this;
+        gl.activeTexture(gl.TEXTURE0 + unit);
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+    }
+
+    // Where the scissors let it.
+    #drawResolved(job) {
+        const { gl, resolve } = this, { sums, sample } = job, { image } = this.scene.about;
+        gl.useProgram(resolve.program);
+        [...sums.sums.textures, sums.ends.textures[0]].forEach((texture, unit) => this.#bindTexture(unit, texture));
+        const reach = sample < 4 ? 2 : sample < 16 ? 1 : 0;
+        resolve.set({ direct_sums: 0, scattered_sums: 1, mirrored_sums: 2, own_sums: 3, ends: 4, sums_size: [sums.width, sums.height],
+            exposure: 2 ** image.exposure, tone_map: Math.max(toneMaps.indexOf(image.tone_map), 0), reach });
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    #show(job) {
+        const { canvas } = this;
+        if (canvas.width !== job.width || canvas.height !== job.height)
+            Object.assign(canvas, { width: job.width, height: job.height });
+        this.#copy(job.sums.shown, null, canvas.width, canvas.height, true);
+    }
+
+    // ---- pictures that are kept ----
+
+    // A picture of this size: its bytes, rows from the top, and depths along the view with components if `answers`.
+    shoot({ width, height, samples }) {
+        return new Promise((resolve, reject) => {
+            this.shots.push({ width, height, samples, resolve, reject });
+            this.#wake();
+        });
+    }
+
+    #continueShot() {
+        const [shot] = this.shots, { gl } = this, { width, height, samples } = shot;
+        if (!shot.job) {
+            const sums = new Sums(gl, width, height, this.sumFormat), { state, scene } = this;
+            shot.job = { ...this.#jobOf(width, height, samples, 1), sums, at: { x: 0, y: 0, height: 0 },
+                frame: frameOf(state.camera, state.view, scene.about.shaders, width, height, samples) };
+            sums.sums.clear();
+        }
+        const { job } = shot;
+        this.#drawTile(job);
+        if (job.at.y < height)
+            return;
+        if (job.sample === 0)
+            shot.rays = this.#readRays(job);
+        job.at = { x: 0, y: 0, height: 0 };
+        if (++job.sample < samples)
+            return;
+        this.shots.shift();
+        const bytes = new Uint8ClampedArray(4 * width * height);
+        job.sums.shown.bind();
+        gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+        job.sums.free();
+        shot.resolve({ bytes, rays: shot.rays });
+    }
+
+    // t, side, state and steps of each pixel's first ray.
+    #readRays({ sums }) {
+        const { gl } = this, rays = new Float32Array(4 * sums.width * sums.height);
+        sums.ends.bind();
+        gl.readPixels(0, 0, sums.width, sums.height, gl.RGBA, gl.FLOAT, rays);
+        return rays;
+    }
+
+    // Gives the memory of the card back until it is needed again.
+    release() { if (!this.lost) this.losing?.loseContext(); }
+    restore() { if (this.lost) this.losing?.restoreContext(); }
+}
+
+// A task of its own, after those that wait.
+const { port1, port2 } = new MessageChannel();
+const waiting = [];
+port1.onmessage = () => waiting.shift()();
+function yieldToMessages() {
+    return new Promise(resolve => {
+        waiting.push(resolve);
+        port2.postMessage(null);
+    });
+}

@@ -1,0 +1,93 @@
+/*
+ * shade.frag: the light that a pixel's ray brings, as shade.comp and background.comp find it for previews, added to sums.
+ *
+ * The sky's light at a hit is in proportion to nothing that one ray knows: it is found from means over the rays of a pixel
+ * (resolve.frag).  So the sums have what the open sky would give, and how open it is.
+ */
+#define HITS
+#include "page.glsl"
+#include "light.glsl"
+#include "sky_means.glsl"
+#include "light_types.glsl"
+#include "optics.glsl"
+#include "openness.glsl"
+#include "hemisphere.glsl"
+#ifdef LAYERS
+#include "layers.glsl"
+#endif
+#include "coat.glsl"
+
+// Of rays to lights, and over the hemisphere (secondary.frag).
+uniform highp usampler2D secondaries;
+
+layout(location = 0) out vec4 direct;   // light of lamps, and of the sky where nothing is hit; 1
+layout(location = 1) out vec4 scattered; // light of an open sky, by the body; 1 where the ray finds it open
+layout(location = 2) out vec4 mirrored;  // the same by mirrors; the albedo of what closes it
+layout(location = 3) out vec4 own;       // the body's colour; 1 where something is hit
+
+const float BRIGHTEST = 1e30, FOOTPRINT = 0.05; // as in shade.comp and occluders.comp
+
+vec3 find_sky(vec3 origin, vec3 direction)
+{
+    vec3 radiance = sky_radiance(direction);
+    for (uint i = 0u; i < control.lights; i++) {
+        Light sun = find_light(i);
+        if (!is_positional(sun))
+            radiance += sun_radiance(direction, sun.vector, sun.color, sun.softness);
+    }
+    return finite_or_black(through_fog(radiance, let_through(origin.y, direction.y, FARTHEST), true));
+}
+
+bool is_visible(uvec4 secondary, uint light)
+{
+    uint bits = light < 32u ? secondary.x : light < 64u ? secondary.y : secondary.z;
+    return (bits >> (light & 31u) & 1u) != 0u;
+}
+
+void main()
+{
+    load_frame();
+    krs_prepare();
+    HitPoint hit;
+    bool  hits = find_own_hit(hit);
+    scattered = mirrored = own = vec4(0.0);
+    if (!hits) {
+        vec3  origin, direction;
+        float base, slope;
+        find_ray(own_point(), origin, direction, base, slope);
+        direct = vec4(find_sky(origin, direction), 1.0);
+        return;
+    }
+    vec4  facing = texelFetch(facings, ivec2(gl_FragCoord.xy), 0);
+    uvec4 secondary = texelFetch(secondaries, ivec2(gl_FragCoord.xy), 0);
+    float occluder = uintBitsToFloat(secondary.w);
+    vec2  square = sample_square(own_pixel(), control.ray, 0u, control.seed);
+    vec3  over = find_hemisphere_ray(facing.xyz, disc_of_square(square));
+    // First the material of what closes the sky, then that of the hit: in a loop, so that it is compiled once.
+    KrsSurface surface;
+    float albedo = 0.0;
+    for (uint turn = occluder > 0.0 ? 0u : 1u; turn < 2u; turn++) {
+        bool closes = turn == 0u;
+#ifdef KRS_VIEW
+        krs_view = closes ? over : hit.direction;
+#endif
+        surface = krs_surface(closes ? hit.position + occluder * over : hit.position,
+                              closes ? -over : hit.side * facing.xyz, closes ? FOOTPRINT * occluder : 0.5 * hit.width);
+        if (closes)
+            albedo = luminance(clamp(surface.color, 0.0, 1.0));
+    }
+#ifdef SUBSURFACE
+    surface.color = color_below(surface);
+    surface.subsurface_weight = 0.0;
+#endif
+    Coat coat = find_coat(hit, surface, facing.w);
+    vec3 light = saturate(vec4(surface.emission, 0.0), BRIGHTEST).rgb;
+    for (uint i = 0u; i < control.lights; i++)
+        light += direct_light(find_light(i), hit, coat, facing.xyz, is_visible(secondary, i) ? 1.0 : 0.0);
+    float t = texelFetch(ends, ivec2(gl_FragCoord.xy), 0).x;
+    float left = let_through(hit.position.y - t * hit.direction.y, hit.direction.y, t);
+    direct = vec4(finite_or_black(through_fog(light, left, true)), 1.0);
+    scattered = vec4(finite_or_black(left * ambient_of(coat, vec3(1.0), 0.0)), occluder > 0.0 ? 0.0 : 1.0);
+    mirrored = vec4(finite_or_black(left * ambient_of(coat, vec3(0.0), 1.0)), albedo);
+    own = vec4(coat.color, 1.0);
+}
