@@ -8,7 +8,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/bounds compiler/graph/lanes compiler/graph/rewrite compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/lower/research compiler/family compiler/front
-        compiler/eval compiler/eval/declared compiler/eval/view compiler/eval/data compiler/eval/hulls compiler/eval/builtins compiler/print compiler/print/glsl compiler/print/essl compiler/target compiler/scene compiler/passes compiler/refute compiler/field
+        compiler/eval compiler/eval/declared compiler/eval/view compiler/eval/data compiler/eval/hulls compiler/eval/builtins compiler/print compiler/print/glsl compiler/print/essl compiler/target compiler/scene compiler/passes compiler/refute compiler/field compiler/service
         mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays
         platform/linux platform/web web/core
         runtime/device runtime/shared runtime/tracer/research runtime/tracer runtime/integrators runtime/film runtime/display
@@ -16,7 +16,7 @@ layers="compiler/base compiler/image compiler/outline compiler/graph compiler/gr
 public="include/krs/krs.h include/krs/camera.h include/krs/mesh.h include/krs/slice.h include/krs/grid.h
         include/krs/measure.h include/krs/light.h include/krs/surface.def include/krs/choices.def include/krs/camera.def include/krs/lights.def
         include/krs/light_types.def include/krs/targets.def"
-api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/print/variant.h compiler/target/spirv.h rays/rays.h rays/surfaces.h"
+api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/service/service.h compiler/print/variant.h compiler/target/spirv.h rays/rays.h rays/surfaces.h"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 

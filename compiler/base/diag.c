@@ -133,24 +133,10 @@ void diags_sort(Diags *diags)
 
 /* ---- JSON ---- */
 
-/* UTF-16 code units between two byte offsets; a character above U+FFFF takes two units. */
-static uint32_t utf16_units(const char *text, uint32_t start, uint32_t end)
-{
-    uint32_t units = 0;
-    while (start < end) {
-        uint32_t character;
-        size_t   length = text_character(text + start, end - start, &character);
-        units += character > 0xFFFF ? 2 : 1;
-        start += length ? (uint32_t)length : 1;
-    }
-    return units;
-}
-
 static void json_position(const Source *source, uint32_t offset, Text *out)
 {
-    uint32_t line  = source_position(source, offset).line - 1;
-    uint32_t units = utf16_units(source->text, source->lines[line], offset);
-    text_format(out, "{\"line\":%u,\"character\":%u}", line, units);
+    const Utf16Position at = source_utf16_position(source, offset);
+    text_format(out, "{\"line\":%u,\"character\":%u}", at.line, at.character);
 }
 
 static void json_location(const Diags *diags, Span span, Text *out)

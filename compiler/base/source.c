@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "compiler/base/paths.h"
+#include "compiler/base/text.h"
 
 static const char byte_order_mark[] = "\xEF\xBB\xBF";
 
@@ -97,6 +98,44 @@ Position source_position(const Source *source, uint32_t offset)
     if (offset < source->length && !begins_character(source->text[offset]) && column > 1)
         column--;
     return (Position){line, column};
+}
+
+uint32_t utf16_units(const char *text, uint32_t start, uint32_t end)
+{
+    uint32_t units = 0;
+    while (start < end) {
+        uint32_t character;
+        size_t   length = text_character(text + start, end - start, &character);
+        units += character > 0xFFFF ? 2 : 1;
+        start += length ? (uint32_t)length : 1;
+    }
+    return units;
+}
+
+Utf16Position source_utf16_position(const Source *source, uint32_t offset)
+{
+    uint32_t line = source_line(source, offset) - 1;
+    return (Utf16Position){line, utf16_units(source->text, source->lines[line], offset)};
+}
+
+uint32_t utf16_offset(const char *text, size_t length, Utf16Position position)
+{
+    size_t at = length >= 3 && memcmp(text, byte_order_mark, 3) == 0 ? 3 : 0;
+    for (uint32_t line = 0; line < position.line; line++) {
+        const char *newline = memchr(text + at, '\n', length - at);
+        if (!newline)
+            return (uint32_t)length;
+        at = (size_t)(newline - text) + 1;
+    }
+    for (uint32_t units = 0; at < length && text[at] != '\n' && units < position.character;) {
+        uint32_t character;
+        size_t   bytes = text_character(text + at, length - at, &character);
+        if (text[at] == '\r' && at + 1 < length && text[at + 1] == '\n')
+            break;
+        units += character > 0xFFFF ? 2 : 1;
+        at += units > position.character ? 0 : bytes ? bytes : 1;
+    }
+    return (uint32_t)at;
 }
 
 Span span_join(Span from, Span to)

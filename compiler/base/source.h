@@ -40,6 +40,11 @@ typedef struct Position {
     uint32_t line, column;
 } Position;
 
+/* A position as editors have it: both from 0; characters count UTF-16 units, of which one above U+FFFF has two. */
+typedef struct Utf16Position {
+    uint32_t line, character;
+} Utf16Position;
+
 enum { MAX_SOURCE_BYTES = 16 << 20 };
 
 /* The reason that memory has run out. */
@@ -52,9 +57,14 @@ uint32_t source_add(Sources *sources, const char *name, const char *text, size_t
 void sources_note_file(Sources *sources, const char *path, const void *bytes, size_t length);
 /* A hash of 64 bits, as hexadecimal digits, of all files that were read but the library's: of the path of each from
    the scene's folder, its length and its content. */
-void     sources_hash(const Sources *sources, char hash[17]);
-uint32_t source_line(const Source *source, uint32_t offset);
-Position source_position(const Source *source, uint32_t offset);
+void          sources_hash(const Sources *sources, char hash[17]);
+uint32_t      source_line(const Source *source, uint32_t offset);
+Position      source_position(const Source *source, uint32_t offset);
+Utf16Position source_utf16_position(const Source *source, uint32_t offset);
+/* UTF-16 units between two offsets of a text. */
+uint32_t utf16_units(const char *text, uint32_t start, uint32_t end);
+/* The offset of a position in a text; behind the end of a line, that end; behind the last line, the end of the text. */
+uint32_t utf16_offset(const char *text, size_t length, Utf16Position position);
 
 /* The smallest span that contains both.  Of spans in different sources: `from`, unless that is in
    source 0. */

@@ -15,6 +15,7 @@
 #include "compiler/eval/call.h"
 #include "compiler/eval/texture_keys.h"
 #include "compiler/eval/value.h"
+#include "compiler/eval/vocabulary.h"
 #include "compiler/family/family.h"
 #include "compiler/front/files.h"
 #include "compiler/front/synonyms.h"
@@ -113,7 +114,8 @@ struct Elaboration {
     bool     parameterises; /* numbers of the scene's own text are not those of the shaders' text */
     uint32_t number_count;  /* of such numbers so far */
     struct Derivations          *derivations;  /* which of them were computed from others: fold.c */
-    uint64_t                     steps;        /* of evaluation, so far */
+    uint64_t                     steps;        /* of evaluation, so far, */
+    uint64_t                     most_steps;   /* and at most; 0: as many as a scene may take */
     uint32_t                     printed;      /* notes by `print`, so far */
     uint32_t                     depth, calls; /* how deep expressions and calls are nested now */
     const struct CalledFunction *called;       /* the innermost of these calls, or NULL */
@@ -349,6 +351,8 @@ void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *nam
 /* ---- messages.c: `print`, `assert`, strings ---- */
 /* Prints, or reports a condition that does not hold: then false. */
 bool run_message(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* Adds what a value is, in words; nothing more once the text is longer than `most`. */
+void value_text(Elaboration *e, Value value, Text *text, size_t most);
 /* A string like those that are written. */
 Value           value_string(Elaboration *e, const char *bytes, size_t length);
 BuiltinFunction builtin_str;
@@ -383,6 +387,8 @@ Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax)
 /* ---- statements.c ---- */
 /* What an `if` among statements runs, a block or another `if`; or NULL. */
 const Syntax *branch_taken(const Syntax *syntax, bool condition);
+/* A function, shape or material of the text, with what it sees. */
+Value value_function(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Runs the statements of a file. */
 void run_file(Elaboration *e, Scope *scope);
 /* The shape of a `krs` block. */
@@ -401,15 +407,6 @@ const BuiltinName *builtin_find(Elaboration *e, const char *name);
 Value builtin_constant(Elaboration *e, const char *name, Span span);
 /* All names that need no definition, for names_check; returns how many, at most `capacity`. */
 size_t builtin_names(const char **names, size_t capacity);
-
-/* builtins/words.c */
-/* What is built in: a row of functions.def, methods.def, constants.def or ops.def each.  The last has no name. */
-typedef struct BuiltinWord {
-    const char *kind, *name; /* "function", "method" or "value" */
-    const char *parameters;  /* as the tables have them; NULL: scenes do not call it */
-    const char *meaning;
-} BuiltinWord;
-extern const BuiltinWord builtin_words[];
 
 /* builtins/methods.c */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
@@ -446,6 +443,8 @@ void plan_boxes(Elaboration *e);
 void run_studio(Elaboration *e, const Files *files);
 
 /* declared/declare.c */
+/* Property `index` of shapes (vocabulary.h). */
+const char *property_of_shape(size_t index);
 /* The shape of a declaration whose parameters `env` binds; `span` is the call. */
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
 

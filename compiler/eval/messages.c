@@ -97,6 +97,11 @@ static void add_value(Elaboration *e, Text *text, Value value, bool quoted, size
     }
 }
 
+void value_text(Elaboration *e, Value value, Text *text, size_t most)
+{
+    add_value(e, text, value, true, most);
+}
+
 /* All positional arguments, with a separator between; "" without any. */
 static Text join_arguments(Elaboration *e, const Call *call, const char *separator, size_t most)
 {

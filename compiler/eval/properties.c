@@ -57,6 +57,16 @@ static const struct BlockProperty {
 };
 enum { BLOCK_PROPERTY_COUNT = sizeof block_properties / sizeof *block_properties };
 
+const char *property_of_block(SyntaxKind block, size_t index)
+{
+    if (block == SYNTAX_SHAPE)
+        return property_of_shape(index);
+    for (size_t i = 0; i < BLOCK_PROPERTY_COUNT; i++)
+        if (block_properties[i].block == block && !block_properties[i].later && index-- == 0)
+            return block_properties[i].name;
+    return NULL;
+}
+
 const char *block_name(SyntaxKind kind)
 {
     switch (kind) {

@@ -21,7 +21,7 @@ typedef struct Sequence {
 
 /* ---- definitions ---- */
 
-static Value function_value(Elaboration *e, const Environment *env, const Syntax *syntax)
+Value value_function(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Environment *closure = arena_new(e->values, Environment);
     *closure             = *env;
@@ -57,11 +57,11 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
         break;
     case SYNTAX_PARAM: definition->value = define_param(e, env, syntax); break;
     case SYNTAX_MATERIAL:
-        definition->value = syntax_is_function(syntax) ? function_value(e, env, syntax)
+        definition->value = syntax_is_function(syntax) ? value_function(e, env, syntax)
                                                        : elaborate_material(e, env, syntax);
         break;
     case SYNTAX_DEF:
-    case SYNTAX_SHAPE: definition->value = function_value(e, env, syntax); break;
+    case SYNTAX_SHAPE: definition->value = value_function(e, env, syntax); break;
     default: definition->value = value_number(0); break; /* cameras, lights: names */
     }
     e->graph->here    = caller;
@@ -297,7 +297,7 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
         *env = bind(e, env, syntax->name, evaluate(e, env, syntax->children[0]));
         break;
     case SYNTAX_DEF:
-    case SYNTAX_SHAPE: *env = bind(e, env, syntax->name, function_value(e, env, syntax)); break;
+    case SYNTAX_SHAPE: *env = bind(e, env, syntax->name, value_function(e, env, syntax)); break;
     case SYNTAX_FOR: run_for(e, env, syntax, sequence); break;
     case SYNTAX_IF_STATEMENT: run_if(e, env, syntax, sequence); break;
     case SYNTAX_MESSAGE:

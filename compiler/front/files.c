@@ -170,9 +170,19 @@ static bool may_miss_names(const Files *files, const File *file)
 
 static void load_all_used(Files *files, File *file);
 
+static const char *path_of_use(Files *files, const File *from, const Syntax *use)
+{
+    return names_library(use) ? use->name : resolve_path(files, from->path, use->name);
+}
+
+const File *files_used(Files *files, const File *from, const Syntax *use)
+{
+    return find_file(files, path_of_use(files, from, use));
+}
+
 static void load_one_used(Files *files, File *file, const Syntax *use)
 {
-    const char *path = names_library(use) ? use->name : resolve_path(files, file->path, use->name);
+    const char *path = path_of_use(files, file, use);
     File       *used = find_file(files, path);
     if (used && used->reading) {
         Diag *diag  = diag_add(files->diags, DIAG_CIRCULAR_USE, use->name_span, "`%s` uses itself",
@@ -241,8 +251,8 @@ uint32_t files_load_data(Files *files, uint32_t from, const char *name, Span pla
 /* ---- names ---- */
 
 typedef struct KnownNames {
-    const char **items;
-    size_t       count, capacity;
+    KnownName *items;
+    size_t     count, capacity;
 } KnownNames;
 
 /* Adds the names that a file offers to others: all but private ones (_name). */
@@ -250,24 +260,28 @@ static void add_names(const Files *files, const File *file, KnownNames *known)
 {
     for (uint32_t i = 0; i < file->syntax->count; i++) {
         const Syntax *syntax = file->syntax->children[i];
-        if (syntax_defines(syntax) && syntax->name[0] != '_')
-            array_push(files->scratch, known, syntax->name);
+        if (syntax_defines(syntax) && syntax->name[0] != '_') {
+            KnownName name = {syntax->name, syntax};
+            array_push(files->scratch, known, name);
+        }
     }
 }
 
 static void check_file(Files *files, File *file, const char *const *builtin, size_t count)
 {
     KnownNames known = {0};
-    for (size_t i = 0; i < count; i++)
-        array_push(files->scratch, &known,
-                   name_intern(files->names, builtin[i], strlen(builtin[i])));
+    for (size_t i = 0; i < count; i++) {
+        KnownName name = {name_intern(files->names, builtin[i], strlen(builtin[i])), NULL};
+        array_push(files->scratch, &known, name);
+    }
     for (size_t i = 0; i < files->count; i++)
         if (files->items[i]->library && files->items[i] != file)
             add_names(files, files->items[i], &known);
     for (size_t i = 0; i < file->used.count; i++)
         add_names(files, file->used.items[i], &known);
     NameScope scope = {known.items, known.count, file->incomplete};
-    names_check(file->syntax, &scope, files->diags, files->scratch);
+    names_check(file->syntax, &scope, files->diags, files->scratch,
+                files->tells_uses ? &file->uses : NULL, files->arena);
     file->checked = true;
 }
 

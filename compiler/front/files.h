@@ -8,7 +8,7 @@
 #define KRS_FILES_H
 
 #include "compiler/base/loader.h"
-#include "compiler/front/syntax.h"
+#include "compiler/front/names.h"
 
 typedef struct File {
     const char   *path;   /* as diagnostics show it */
@@ -23,7 +23,8 @@ typedef struct File {
     struct {
         struct File **items;
         size_t        count, capacity;
-    } used; /* in the order of its `use` statements; there are no cycles */
+    } used;        /* in the order of its `use` statements; there are no cycles */
+    NameUses uses; /* what its names mean, where Files.tells_uses */
 } File;
 
 /* A file that is no scene. */
@@ -44,7 +45,8 @@ typedef struct Files {
     Diags        *diags;
     Names        *names;
     Sources      *sources;
-    const Loader *loader; /* reads the files that a scene names */
+    const Loader *loader;     /* reads the files that a scene names */
+    bool          tells_uses; /* names_check tells what the names of each file mean */
     struct {
         DataFile *items;
         size_t    count, capacity;
@@ -58,6 +60,8 @@ void files_lex(Files *files);
 void files_parse(Files *files);
 /* Reads the files that the scene uses, directly or through others.  Mistakes are reported. */
 void files_load_used(Files *files);
+/* The file that a `use` of another names; NULL: it was not read. */
+const File *files_used(Files *files, const File *from, const Syntax *use);
 /* The number of the source with the text of a file that source `from` reads, named at `place`; 0: it
    cannot be read, which is reported. */
 uint32_t files_load_data(Files *files, uint32_t from, const char *name, Span place);

@@ -1,5 +1,5 @@
 /*
- * names.c: checks, before anything is evaluated, that every name is defined.
+ * names.c: checks, before anything is evaluated, that every name is defined, and tells what each means.
  *
  * One walk over the tree, with a table of the current meaning of each name.  Entering a scope adds
  * its definitions, leaving it restores what they hid.  The walk also records which top-level
@@ -38,6 +38,7 @@ typedef struct Need {
 typedef struct Meaning {
     struct NameSlot   *slot;
     Span               span;
+    const Syntax      *syntax;     /* what defines it; NULL: it is built in, or a property */
     CheckedDefinition *definition; /* NULL unless it is a top-level name of this file */
     uint32_t           depth;      /* of the scope that defines it; 0: another file */
     struct Meaning    *hidden;     /* the name's meaning in the scopes around */
@@ -59,6 +60,8 @@ typedef struct Checker {
     uint32_t           depth;
     CheckedDefinition *current;    /* NULL outside of top-level definitions */
     bool               incomplete; /* names may be missing because of mistakes reported before */
+    NameUses          *uses;       /* what is told, in the memory of `kept`; or NULL */
+    Arena             *kept;
     struct {
         CheckedDefinition **items;
         size_t              count, capacity;
@@ -107,11 +110,18 @@ static NameSlot *find_slot(Checker *c, const char *name)
     return *bucket;
 }
 
-static void add_meaning(Checker *c, NameSlot *slot, Span span, CheckedDefinition *definition)
+static void add_meaning(Checker *c, NameSlot *slot, Span span, const Syntax *syntax,
+                        CheckedDefinition *definition)
 {
     Meaning *meaning = arena_new(c->arena, Meaning);
-    *meaning         = (Meaning){slot, span, definition, c->depth, slot->meaning, c->newest};
+    *meaning      = (Meaning){slot, span, syntax, definition, c->depth, slot->meaning, c->newest};
     slot->meaning = c->newest = meaning;
+}
+
+static void tell_use(Checker *c, NameUse use)
+{
+    if (c->uses)
+        array_push_large(c->kept, c->uses, use);
 }
 
 static void enter_scope(Checker *c) { c->depth++; }
@@ -134,9 +144,13 @@ static void warn_of_coordinate(Checker *c, const char *name, Span span)
     diag->label = "from here on it means this";
 }
 
-static void define(Checker *c, const char *name, Span span, CheckedDefinition *definition)
+/* `seen` is where the name is seen. */
+static void define(Checker *c, const Syntax *syntax, Span seen, CheckedDefinition *definition)
 {
-    NameSlot *slot = find_slot(c, name);
+    const char *name = syntax->name;
+    const Span  span = syntax->name_span;
+    NameSlot   *slot = find_slot(c, name);
+    tell_use(c, (NameUse){span, name, syntax, true, seen});
     if (slot->meaning && slot->meaning->depth == c->depth) {
         Diag *diag  = diag_add(c->diags, DIAG_DUPLICATE_NAME, span, "`%s` is defined twice", name);
         diag->label = "defined again here";
@@ -144,12 +158,12 @@ static void define(Checker *c, const char *name, Span span, CheckedDefinition *d
         return;
     }
     warn_of_coordinate(c, name, span);
-    add_meaning(c, slot, span, definition);
+    add_meaning(c, slot, span, syntax, definition);
 }
 
-static void define_syntax(Checker *c, const Syntax *syntax)
+static void define_local(Checker *c, const Syntax *syntax, Span seen)
 {
-    define(c, syntax->name, syntax->name_span, NULL);
+    define(c, syntax, seen, NULL);
 }
 
 /* ---- uses ---- */
@@ -188,6 +202,7 @@ static void use_name(Checker *c, const Syntax *syntax)
         report_unknown(c, slot, syntax->span);
         return;
     }
+    tell_use(c, (NameUse){syntax->span, syntax->name, slot->meaning->syntax, false, {0}});
     CheckedDefinition *used = slot->meaning->definition;
     if (!used || !c->current || used->user == c->current)
         return;
@@ -199,6 +214,22 @@ static void use_name(Checker *c, const Syntax *syntax)
 /* ---- the walk ---- */
 
 static void walk(Checker *c, const Syntax *syntax);
+
+/* Tells which parameters the names of arguments mean: those of a function that is called by its name. */
+static void tell_arguments(Checker *c, const Syntax *call)
+{
+    const Syntax  *callee  = call->children[0];
+    const Meaning *meaning = callee->kind == SYNTAX_NAME ? find_slot(c, callee->name)->meaning
+                                                         : NULL;
+    if (!meaning || !meaning->syntax || !syntax_is_function(meaning->syntax))
+        return;
+    for (uint32_t i = 1; i < call->count; i++)
+        for (uint32_t k = 0; call->children[i]->name && k < meaning->syntax->count; k++) {
+            const Syntax *argument = call->children[i], *parameter = meaning->syntax->children[k];
+            if (parameter->kind == SYNTAX_PARAMETER && parameter->name == argument->name)
+                tell_use(c, (NameUse){argument->name_span, argument->name, parameter, false, {0}});
+        }
+}
 
 static void walk_children(Checker *c, const Syntax *syntax)
 {
@@ -214,7 +245,7 @@ static void walk_comprehension(Checker *c, const Syntax *syntax)
         walk_children(c, clause);
         enter_scope(c);
         if (clause->kind == SYNTAX_FOR_CLAUSE)
-            define_syntax(c, clause);
+            define_local(c, clause, syntax->span);
     }
     walk(c, syntax->children[0]);
     for (uint32_t i = 1; i < syntax->count; i++)
@@ -235,7 +266,7 @@ static void check_properties(Checker *c, const Syntax *syntax)
             diag->label = "given again here";
             diag_secondary(c->diags, diag, slot->meaning->span, "given here first");
         } else
-            add_meaning(c, slot, property->name_span, NULL);
+            add_meaning(c, slot, property->name_span, NULL, NULL);
     }
     leave_scope(c);
 }
@@ -247,7 +278,7 @@ static void walk_function(Checker *c, const Syntax *syntax)
     for (uint32_t i = 0; i < syntax->count; i++) {
         walk(c, syntax->children[i]);
         if (syntax->children[i]->kind == SYNTAX_PARAMETER)
-            define_syntax(c, syntax->children[i]);
+            define_local(c, syntax->children[i], syntax->span);
     }
     leave_scope(c);
     check_properties(c, syntax);
@@ -262,7 +293,8 @@ static void walk_block(Checker *c, const Syntax *syntax)
         SyntaxKind    kind      = statement->kind;
         walk(c, statement);
         if (kind == SYNTAX_LET || kind == SYNTAX_DEF || kind == SYNTAX_SHAPE)
-            define_syntax(c, statement);
+            define_local(c, statement,
+                         (Span){syntax->span.source, statement->span.end, syntax->span.end});
     }
     leave_scope(c);
 }
@@ -271,6 +303,11 @@ static void walk(Checker *c, const Syntax *syntax)
 {
     switch (syntax->kind) {
     case SYNTAX_NAME: use_name(c, syntax); break;
+    case SYNTAX_CALL:
+        if (c->uses)
+            tell_arguments(c, syntax);
+        walk_children(c, syntax);
+        break;
     case SYNTAX_COMPREHENSION: walk_comprehension(c, syntax); break;
     case SYNTAX_KRS:
     case SYNTAX_BLOCK: walk_block(c, syntax); break;
@@ -281,7 +318,7 @@ static void walk(Checker *c, const Syntax *syntax)
     case SYNTAX_FOR:
         walk(c, syntax->children[0]);
         enter_scope(c);
-        define_syntax(c, syntax);
+        define_local(c, syntax, syntax->children[1]->span);
         walk(c, syntax->children[1]);
         leave_scope(c);
         break;
@@ -449,12 +486,15 @@ static bool has_unread_statement(const Syntax *file)
     return false;
 }
 
-void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena *arena)
+void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena *arena,
+                 NameUses *uses, Arena *kept)
 {
-    Checker checker = {.arena = arena, .diags = diags}, *c = &checker;
-    bool    incomplete = scope->incomplete || has_unread_statement(file);
+    Checker checker = {.arena = arena, .diags = diags, .uses = uses, .kept = kept}, *c = &checker;
+    const Span whole      = {file->span.source, 0, UINT32_MAX};
+    bool       incomplete = scope->incomplete || has_unread_statement(file);
     for (size_t i = scope->known_count; i-- > 0;) /* backwards: suggestions prefer newer names */
-        add_meaning(c, find_slot(c, scope->known[i]), (Span){0}, NULL);
+        add_meaning(c, find_slot(c, scope->known[i].name), (Span){0}, scope->known[i].defined,
+                    NULL);
 
     enter_scope(c);
     for (uint32_t i = 0; i < file->count; i++) {
@@ -463,7 +503,7 @@ void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena
         definition->syntax            = syntax;
         array_push(arena, &c->definitions, definition);
         if (syntax_defines(syntax))
-            define(c, syntax->name, syntax->name_span, definition);
+            define(c, syntax, whole, definition);
     }
     for (uint32_t i = 0; i < file->count; i++) {
         c->current    = c->definitions.items[i];

@@ -52,15 +52,18 @@ static void check_diags(const Diags *diags, size_t size, Arena *arena)
 
 static void read_scene(const char *bytes, size_t size, Arena *arena)
 {
-    static const char *const known[] = {"x", "y", "z", "p", "u", "v", "time", "sphere", "plane"};
-    NameScope                scope = {.known = known, .known_count = sizeof known / sizeof *known};
-    Sources                  sources = {.arena = arena};
-    Names                    names   = {.arena = arena};
-    Diags                    diags   = {.arena = arena, .sources = &sources};
-    uint32_t                 source  = source_add(&sources, "fuzz.krs", bytes, size, false);
-    Tokens                   tokens  = lex(source, &sources, &names, &diags, arena);
-    Syntax                  *file    = parse(&tokens, &diags, arena);
-    bool                     gap     = check_tree(file, size);
+    static const KnownName known[] = {{"x", NULL},    {"y", NULL},      {"z", NULL},
+                                      {"p", NULL},    {"u", NULL},      {"v", NULL},
+                                      {"time", NULL}, {"sphere", NULL}, {"plane", NULL}};
+    NameScope              scope   = {.known = known, .known_count = sizeof known / sizeof *known};
+    Sources                sources = {.arena = arena};
+    Names                  names   = {.arena = arena};
+    Diags                  diags   = {.arena = arena, .sources = &sources};
+    NameUses               uses    = {0};
+    uint32_t               source  = source_add(&sources, "fuzz.krs", bytes, size, false);
+    Tokens                 tokens  = lex(source, &sources, &names, &diags, arena);
+    Syntax                *file    = parse(&tokens, &diags, arena);
+    bool                   gap     = check_tree(file, size);
     demand(!gap || diags.errors > 0);
     Text layout = {.arena = arena}, again = {.arena = arena};
     if (diags.errors == 0) {
@@ -70,7 +73,9 @@ static void read_scene(const char *bytes, size_t size, Arena *arena)
         demand(format_source(written, &sources, arena, &again) && again.length == layout.length &&
                (again.length == 0 || memcmp(again.bytes, layout.bytes, again.length) == 0));
     }
-    names_check(file, &scope, &diags, arena);
+    names_check(file, &scope, &diags, arena, &uses, arena);
+    for (size_t i = 0; i < uses.count; i++)
+        check_span(uses.items[i].span, size);
     diags_sort(&diags);
     check_diags(&diags, size, arena);
     Text text = {.arena = arena};

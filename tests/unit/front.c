@@ -377,6 +377,47 @@ static void names_are_found(void **state)
     expect_name_codes("show pi.unknown(a_name: 1);", "");
 }
 
+/* "a@1:5 a@2:9=1:5": where names stand, and behind a use what it means there. */
+static const char *uses_of(Reading *r)
+{
+    Text text = {.arena = &r->arena};
+    check_all_names(r);
+    for (size_t i = 0; i < r->uses.count; i++) {
+        const NameUse *use    = &r->uses.items[i];
+        const Source  *source = &r->sources.items[use->span.source];
+        Position       at     = source_position(source, use->span.start);
+        text_format(&text, "%s%s@%u:%u", i ? " " : "", use->name, at.line, at.column);
+        if (use->defines || !use->meaning)
+            text_add(&text, use->defines ? "" : "=");
+        else {
+            at = source_position(source, use->meaning->name_span.start);
+            text_format(&text, "=%u:%u", at.line, at.column);
+        }
+    }
+    return text.bytes;
+}
+
+static void meanings_of_names_are_told(void **state)
+{
+    static const char *const rows[][2] = {
+        {"let a = 1;\nlet b = a + pi;", "a@1:5 b@2:5 a@2:9=1:5 pi@2:13="},
+        {"let b = c;\nlet c = 1;", "b@1:5 c@2:5 c@1:9=2:5"},
+        {"let a = let a = 2 in a;", "a@1:5 a@1:13 a@1:22=1:13"},
+        {"let l = [i for i in a if i];\nlet a = 1;",
+         "l@1:5 a@2:5 a@1:21=2:5 i@1:16 i@1:26=1:16 i@1:10=1:16"},
+        {"def f(a, b = a) = b;\nlet c = f(b: 1, d: 2);",
+         "f@1:5 c@2:5 a@1:7 a@1:14=1:7 b@1:10 b@1:19=1:10 b@2:11=1:10 f@2:9=1:5"},
+        {"for i in 0..2 { let q = i; show q; }", "i@1:5 i@1:25=1:5 q@1:21 q@1:33=1:21"},
+        {"let a = nothing + a.nothing;", "a@1:5 a@1:19=1:5"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        Reading *r = read_text(rows[i][0]);
+        assert_string_equal(uses_of(r), rows[i][1]);
+        reading_free(r);
+    }
+}
+
 static void duplicates_are_reported(void **state)
 {
     (void)state;
@@ -454,6 +495,7 @@ int main(void)
         cmocka_unit_test(brackets_nest_200_deep),
         cmocka_unit_test(many_mistakes_are_cut_short),
         cmocka_unit_test(names_are_found),
+        cmocka_unit_test(meanings_of_names_are_told),
         cmocka_unit_test(duplicates_are_reported),
         cmocka_unit_test(circles_are_reported),
         cmocka_unit_test(long_chains_need_no_stack),

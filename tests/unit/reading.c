@@ -44,9 +44,11 @@ Reading *read_text(const char *text) { return read_bytes(text, strlen(text)); }
 
 void check_all_names(Reading *r)
 {
-    static const char *const known[] = {"x", "y", "z", "p", "sphere", "box", "torus", "pi"};
-    NameScope                scope = {.known = known, .known_count = sizeof known / sizeof *known};
-    names_check(r->file, &scope, &r->diags, &r->arena);
+    static const KnownName known[] = {{"x", NULL},     {"y", NULL},      {"z", NULL},
+                                      {"p", NULL},     {"sphere", NULL}, {"box", NULL},
+                                      {"torus", NULL}, {"pi", NULL}};
+    NameScope              scope   = {.known = known, .known_count = sizeof known / sizeof *known};
+    names_check(r->file, &scope, &r->diags, &r->arena, &r->uses, &r->arena);
     diags_sort(&r->diags);
 }
 

@@ -10,14 +10,15 @@
 #include "compiler/front/parse.h"
 
 typedef struct Reading {
-    jmp_buf exhausted;
-    Memory  memory;
-    Arena   arena;
-    Sources sources;
-    Names   names;
-    Diags   diags;
-    Tokens  tokens;
-    Syntax *file;
+    jmp_buf  exhausted;
+    Memory   memory;
+    Arena    arena;
+    Sources  sources;
+    Names    names;
+    Diags    diags;
+    Tokens   tokens;
+    Syntax  *file;
+    NameUses uses; /* of check_all_names */
 } Reading;
 
 Reading *reading_new(void);

@@ -20,6 +20,11 @@ enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 /* Figures of the library say what their outlines are: what `outline` is of polygons, where there are arcs. */
 static const char bridge_name[] = "border";
 
+const char *property_of_shape(size_t index)
+{
+    return index < PROPERTY_COUNT ? property_names[index] : NULL;
+}
+
 static bool is_declared_in_library(const Elaboration *e, const Syntax *declaration)
 {
     return e->sources->items[declaration->span.source].library;

@@ -1,0 +1,62 @@
+/*
+ * json.c: JSON that is written member by member.
+ */
+#include "compiler/base/json.h"
+
+/* What stands before a member or an element. */
+static void begin(Json *json, const char *name)
+{
+    if (json->more)
+        text_add(&json->text, ",");
+    json->more = true;
+    if (!name)
+        return;
+    text_add(&json->text, "\"");
+    text_add(&json->text, name);
+    text_add(&json->text, "\":");
+}
+
+void json_open(Json *json, const char *name, const char *bracket)
+{
+    begin(json, name);
+    text_add(&json->text, bracket);
+    json->more = false;
+}
+
+void json_close(Json *json, const char *bracket)
+{
+    text_add(&json->text, bracket);
+    json->more = true;
+}
+
+void json_string(Json *json, const char *name, const char *string)
+{
+    begin(json, name);
+    if (string)
+        text_json(&json->text, string);
+    else
+        text_add(&json->text, "null");
+}
+
+void json_whole(Json *json, const char *name, uint32_t number)
+{
+    char   digits[10];
+    size_t first = sizeof digits;
+    begin(json, name);
+    do
+        digits[--first] = (char)('0' + number % 10);
+    while ((number /= 10) > 0);
+    text_add_bytes(&json->text, digits + first, sizeof digits - first);
+}
+
+void json_truth(Json *json, const char *name, bool truth)
+{
+    begin(json, name);
+    text_add(&json->text, truth ? "true" : "false");
+}
+
+void json_ready(Json *json, const char *name, const char *value)
+{
+    begin(json, name);
+    text_add(&json->text, value);
+}
