@@ -22,6 +22,7 @@
 # make deps       installs what building and rendering need (Debian packages); test-deps: also what tests need
 # make wasm       the compiler for web pages, in build/wasm/ (web/core/README.md); tools/deps.sh wasm installs what it needs
 # make web        the package `krs` for pages, in build/web/ (web/package/README.md); web-pack: its archive
+# make python     the package for Python, in build/python/; make wheel: as a file for pip (docs/python.md)
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
 B       ?= build
@@ -227,6 +228,7 @@ $(B)/embed: compiler/base/embed/embed.c
 
 include tools/fingerprints.mk
 include web/core/core.mk
+include python/python.mk
 include web/package/package.mk
 include tests/tests.mk
 include bench/bench.mk
