@@ -72,7 +72,10 @@ SHADERS  := $(sort $(wildcard $(addprefix runtime/shaders/,*.comp *.glsl researc
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
 MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) \
             $(addprefix $(B)/modules/, escape.comp-PATH_RAYS.spv background.comp-SKY_MAP.spv \
-                                       shade.comp-SURFACES.spv shade.comp-SURFACES-LAYERS.spv)
+                                       aim.comp-MIXED_RAYS.spv arrive.comp-MIXED_RAYS.spv \
+                                       shade.comp-SURFACES.spv shade.comp-SURFACES-LAYERS.spv \
+                                       shade.comp-SURFACES-MIRRORS-MIXED_RAYS.spv \
+                                       shade.comp-SURFACES-MIRRORS-MIXED_RAYS-LAYERS.spv)
 # lavapipe reads the frame as texels (frame.glsl).
 MODULES  += $(MODULES:%.spv=%-FRAME_TEXELS.spv)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
@@ -196,26 +199,12 @@ define MAKE_MODULE
 	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
 endef
-$(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE)
-$(B)/modules/%-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,FRAME_TEXELS)
-$(B)/modules/%-PATH_RAYS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,PATH_RAYS)
-$(B)/modules/%-PATH_RAYS-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,PATH_RAYS FRAME_TEXELS)
-$(B)/modules/%-SKY_MAP.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,SKY_MAP)
-$(B)/modules/%-SKY_MAP-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,SKY_MAP FRAME_TEXELS)
-$(B)/modules/%-SURFACES.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,SURFACES)
-$(B)/modules/%-SURFACES-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,SURFACES FRAME_TEXELS)
-$(B)/modules/%-SURFACES-LAYERS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,SURFACES LAYERS)
-$(B)/modules/%-SURFACES-LAYERS-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,SURFACES LAYERS FRAME_TEXELS)
+module_words = $(subst -, ,$(1:$(B)/modules/%.spv=%))
+define MODULE_RULE
+$(1): runtime/shaders/$(firstword $(module_words)) $(SHADERS) $(HELPERS)
+	$$(call MAKE_MODULE,$(wordlist 2,$(words $(module_words)),$(module_words)))
+endef
+$(foreach module,$(MODULES),$(eval $(call MODULE_RULE,$(module))))
 # Tables of the light that rough surfaces reflect are means over many points, rounded.
 $(B)/albedo_tables.c: $(B)/albedo_tables
 	@$(B)/albedo_tables >$@

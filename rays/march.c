@@ -301,9 +301,10 @@ static void begin(March *m, size_t count, float *first, float *last)
     for (size_t b = 0; b < count; b++) {
         RayBlock *block = &m->blocks[b];
         for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-            block->t[i]         = block->start[i];
-            block->end[i]       = fminf(block->end[i], block->plane[i]);
-            block->side[i]      = block->start[i] > 0 ? 1 : 0;
+            block->t[i]   = block->start[i];
+            block->end[i] = fminf(block->end[i], block->plane[i]);
+            if (!m->rule->from_surfaces)
+                block->side[i] = block->start[i] > 0 ? 1 : 0;
             block->clearance[i] = block->step[i] = 0;
             block->slope[i]                      = -1 / (1 - 0.3f);
             block->steps[i] = block->unresolved[i] = 0;

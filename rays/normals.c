@@ -60,9 +60,15 @@ typedef struct Hit {
     float  t, middle, reach, bend_wide, at_hit;
 } Hit;
 
+/* How wide a pixel counts that is so wide at t. */
+static float near_width(const RayRule *rule, float width, float t)
+{
+    return fmaxf(rule->from_surfaces ? width : fminf(width, MAX_WIDTH * t), 1e-30f);
+}
+
 float ray_normal_reach(const RayRule *rule, float width, float t, float coordinate)
 {
-    const float near = fmaxf(fminf(width, MAX_WIDTH * t), 1e-30f);
+    const float near = near_width(rule, width, t);
     return fmaxf(rule->normal_reach * near, NOISE * coordinate + 2 * ROUNDING * coordinate);
 }
 
@@ -77,7 +83,7 @@ static Hit begin(const RayRule *rule, const RayBlock *block, int i)
                        .side      = block->side[i]};
     hit.start       = hit.position;
     hit.rounding    = ROUNDING * (largest(hit.position) + largest(origin));
-    hit.t           = fmaxf(rule->normal_reach * fmaxf(fminf(width, MAX_WIDTH * t), 1e-30f),
+    hit.t           = fmaxf(rule->normal_reach * near_width(rule, width, t),
                             NOISE * largest(hit.position) + hit.rounding);
     return hit;
 }

@@ -45,8 +45,8 @@ struct SurfaceField {
 
 bool surface_field_suits(const KrsScene *scene)
 {
-    return scene->component_count > 0 && !scene->program.media && !scene->program.mirrors &&
-           !scene->program.open_surfaces && !ray_has_large_numbers(&scene->surface);
+    return scene->component_count > 0 && !scene->program.media && !scene->program.open_surfaces &&
+           !ray_has_large_numbers(&scene->surface);
 }
 
 /* ---- tapes ---- */

@@ -265,9 +265,8 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
         if (!resident_store(rendering))
             return false;
         rendering->resident = (ResidentBand){0};
-        film->rows          = band_allocate(rendering, &job->cover, plan->halo,
-                                            plan->has_paths || plan->field, film->kept != NULL,
-                                            film->light_count, plan->surface_rows);
+        film->rows = band_allocate(rendering, &job->cover, plan->halo, plan_path_rows(plan),
+                                   film->kept != NULL, film->light_count, plan->surface_rows);
     }
     if (film->rows == 0 ||
         !rendering_set_lights(rendering, job->view.lights, job->view.light_count,

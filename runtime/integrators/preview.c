@@ -250,55 +250,80 @@ static void add_lights(Preview *p, const Shader *shade)
 
 /* ---- mirrors and glass ---- */
 
-/* Adds the light of the surfaces that rays have been followed to.  `ends`: no ray goes on. */
-static void add_mirrored_lights(Preview *p, const PathShaders *shaders, bool ends, float weight)
+/* Tells whether lanes of the host follow the rays, and find all that is known of their hits. */
+static bool lanes_follow_mirrors(const Preview *p)
 {
-    const KrsView *view   = &p->job->view;
-    LightPass      lights = first_lights(p);
+    return p->plan->surfaces && lane_rays_find_normals(p->job);
+}
+
+/* Adds the light of the surfaces that rays have been followed to.  `ends`: no ray goes on. */
+static void add_mirrored_lights(Preview *p, const Shader *shadows, const Shader *scatter, bool ends,
+                                float weight)
+{
+    const KrsView *view     = &p->job->view;
+    const bool     by_lanes = lanes_follow_mirrors(p);
+    LightPass      lights   = first_lights(p);
     do {
         PassConstants constants = constants_of(p, &lights, ends ? PATHS_END : PATHS_GO_ON);
         constants.of_paths      = 1;
         for (uint32_t i = 0; i < lights.count; i++)
             if (view->lights[lights.first + i].shadow)
-                plan_add(p->plan, (Pass){.kind      = PASS_RAYS,
+                plan_add(p->plan, (Pass){.kind      = by_lanes ? PASS_LANE_RAYS : PASS_RAYS,
                                          .phase     = KRS_PHASE_BOUNCES,
                                          .weight    = weight,
-                                         .shader    = shaders->shadows,
+                                         .shader    = by_lanes ? p->secondary : shadows,
+                                         .arrive    = p->arrive,
                                          .in        = LIST_ALL,
                                          .out       = NO_LIST,
                                          .constants = {.phase    = RAYS_TO_LIGHT,
                                                        .light    = lights.first + i,
                                                        .value    = VALUE_VISIBLE + i,
                                                        .of_paths = 1}});
-        add_items(p, KRS_PHASE_BOUNCES, shaders->scatter, LIST_ALL, LIST_OF_PATHS, constants,
-                  weight);
+        add_items(p, KRS_PHASE_BOUNCES, scatter, LIST_ALL, LIST_OF_PATHS, constants, weight);
     } while (next_lights(p, &lights));
 }
 
-/* Adds the passes that follow rays from the surfaces that are shaded, one after the other. */
-static bool add_mirrors(Preview *p)
+/* Adds a pass by lanes of the host over a list of pixels whose paths go on. */
+static void add_lanes_of_paths(Preview *p, PassKind kind, ListId in, float weight)
 {
-    Job                    *job    = p->job;
-    KrsRendering           *r      = job->rendering;
-    const KrsRenderOptions *o      = &job->options;
-    const float             each   = WEIGHT_MIRRORS / MIRRORED_SURFACES;
-    const float             weight = 0.2f * each;
-    PathShaders             shaders;
+    plan_add(p->plan, (Pass){.kind      = kind,
+                             .phase     = KRS_PHASE_BOUNCES,
+                             .weight    = weight,
+                             .in        = in,
+                             .constants = {.of_paths = 1}});
+}
+
+/* Adds the passes that follow rays from the surfaces that are shaded, one after the other.  Hits of these are shaded by
+   the shader of the camera's, where lanes find what is there. */
+static bool add_mirrors(Preview *p, const Shader *shade)
+{
+    Job          *job     = p->job;
+    KrsRendering *r       = job->rendering;
+    const float   each    = WEIGHT_MIRRORS / MIRRORED_SURFACES;
+    const float   weight  = 0.2f * each;
+    const bool    lanes   = lanes_follow_mirrors(p);
+    PathShaders   shaders = {0};
     if (!renderer_create_escapes(r->renderer, RAYS_OF_PATHS, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o, KRS_FOR_PICTURES, false, &shaders))
+        (!lanes && !rendering_paths(r, &job->options, KRS_FOR_PICTURES, false, &shaders)))
         return false;
     const March   march  = primary_march_of_paths(job, shaders.march);
     const Shader *escape = renderer_escape_of_paths(r);
     for (int i = 0; i < MIRRORED_SURFACES; i++) {
-        if (i == 0)
+        if (lanes)
+            add_lanes_of_paths(p, PASS_LANES, LIST_OF_PATHS, 0.4f * each);
+        else if (i == 0)
             plan_add_march(p->plan, &march, 0.4f * each);
         else
             plan_add_march_again(p->plan, 0.4f * each);
         add_items(p, KRS_PHASE_BOUNCES, escape, LIST_OF_PATHS, LIST_ALL,
                   (PassConstants){.phase = ESCAPE_TO_SKY}, weight);
-        add_items(p, KRS_PHASE_BOUNCES, shaders.normals, LIST_ALL, NO_LIST,
-                  (PassConstants){.of_paths = 1}, weight);
-        add_mirrored_lights(p, &shaders, i + 1 == MIRRORED_SURFACES, weight);
+        if (lanes)
+            add_lanes_of_paths(p, PASS_SURFACES, LIST_ALL, weight);
+        else
+            add_items(p, KRS_PHASE_BOUNCES, shaders.normals, LIST_ALL, NO_LIST,
+                      (PassConstants){.of_paths = 1}, weight);
+        add_mirrored_lights(p, shaders.shadows, lanes ? shade : shaders.scatter,
+                            i + 1 == MIRRORED_SURFACES, weight);
     }
     return escape != NULL;
 }
@@ -323,8 +348,8 @@ static bool find_secondary(Preview *p)
     KrsRendering *r = p->job->rendering;
     p->by_roots     = rendering_has_roots(r, options->methods.trace);
     if (p->plan->field) {
-        p->secondary = renderer_aim(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms);
-        p->arrive    = renderer_arrive(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms);
+        p->secondary = renderer_aim(r);
+        p->arrive    = renderer_arrive(r);
         if (!p->arrive)
             return false;
     } else {
@@ -375,5 +400,5 @@ bool preview_plan(Job *job, Plan *plan)
             (Pass){.kind = PASS_SURFACES, .phase = KRS_PHASE_SHADING, .weight = WEIGHT_SURFACES});
     add_occlusion(&p);
     add_lights(&p, shade);
-    return (!plan->has_paths || add_mirrors(&p)) && !plan->failed;
+    return (!plan->has_paths || add_mirrors(&p, shade)) && !plan->failed;
 }

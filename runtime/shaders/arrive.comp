@@ -14,7 +14,7 @@ void do_item(uint number)
 {
     begin_item(number, false);
     if (step_limit > 0u) {
-        vec4 found = load_path(LANE_FOUND, number);
+        vec4 found = load_lane(LANE_FOUND, number);
         t = found.x;
         blocked = found.y > 0.0;
         step_limit = found.z > 0.0 ? 1u : 0u;

@@ -181,6 +181,22 @@ vec4 load_path(uint row, uint index) { return load_hit_row(path_at(index) + row)
 
 void store_path(uint row, uint index, vec4 numbers) { hits[path_at(index) + row] = numbers; }
 
+#ifdef AIMS
+// Returns where the rows of a ray of a hit begin.  Pixels have paths where these rays may be theirs.
+uint lane_at(uint number)
+{
+#ifdef MIXED_RAYS
+    return path_at(64u * count_tiles()) + LANE_ROWS * number;
+#else
+    return path_at(0u) + LANE_ROWS * number;
+#endif
+}
+
+vec4 load_lane(uint row, uint number) { return load_hit_row(lane_at(number) + row); }
+
+void store_lane(uint row, uint number, vec4 numbers) { hits[lane_at(number) + row] = numbers; }
+#endif
+
 // Packs from the lowest bit on: state, side, unresolved, march group; then the steps.
 uint pack_ray(RayEnd ray)
 {

@@ -349,7 +349,8 @@ CONSTANT(PATH_TOWARD, 4);
 CONSTANT(PATH_SURFACE, 5);
 CONSTANT(PATH_ROWS, 6);
 
-/* Rays of hits that lanes of the host march lie in the rows of paths, by the numbers of their items.  LANE_START: where
+/* Rows of rays of hits that lanes of the host march, by the numbers of their items, behind those of all paths, if pixels
+   have paths (frame.glsl).  LANE_START: where
    it begins, and where it ends.  LANE_AHEAD: its direction, and the cosine to the normal.  LANE_SCALE: how high it begins,
    the width of a pixel there, the error of coordinates, and the side of the hit.  LANE_CONE: the radius of a cone at
    distance 1, its margin, the least step, and 1: it is marched.  LANE_FOUND: where it has ended; 1: it is blocked;
@@ -359,6 +360,7 @@ CONSTANT(LANE_AHEAD, 1);
 CONSTANT(LANE_SCALE, 2);
 CONSTANT(LANE_CONE, 3);
 CONSTANT(LANE_FOUND, 4);
+CONSTANT(LANE_ROWS, 5);
 
 /* Lists of pixels (hit_lists.glsl), each with room for all pixels of the band.  LIST_OF_MARCH_GROUP
    is the first of GROUP_LISTS lists. */
@@ -458,7 +460,7 @@ struct ListedRay {
 #ifdef __STDC_VERSION__
 enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 };
 /* The host needs only the size of packed values, and of those in rows. */
-enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, PATH_BYTES = 16 * PATH_ROWS, MARCH_BYTES = 32 };
+enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, PATH_ROW_BYTES = 16, MARCH_BYTES = 32 };
 enum { SURFACE_ROW_BYTES = 16 };
 typedef struct Light LightBlock;
 static_assert(sizeof(LightBlock) == 16 * LIGHT_ROWS, "std430");

@@ -39,16 +39,17 @@ static uint64_t rows_of_results(bool noise, uint32_t lights)
     return lights > 0 ? ROW_OF_LIGHTS + lights : noise ? RESULT_ROWS : ROW_NOISE;
 }
 
-static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bool noise,
+static bool band_create(KrsRendering *rendering, uint64_t pixels, uint32_t path_rows, bool noise,
                         uint32_t lights, uint32_t surface_rows)
 {
     Gpu               *gpu           = &rendering->renderer->gpu;
     Band              *band          = &rendering->band;
     const bool         read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
     const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
-    const VkDeviceSize hit           = HIT_BYTES + (paths ? PATH_BYTES : 0);
-    const VkDeviceSize beams = max_beams(pixels), tiles = ((paths ? pixels : beams) + 3) / 4 * 4;
-    const VkDeviceSize results = pixels * rows_of_results(noise, lights) * RESULT_BYTES;
+    const VkDeviceSize hit           = HIT_BYTES + path_rows * PATH_ROW_BYTES;
+    const VkDeviceSize beams         = max_beams(pixels),
+                       tiles         = ((path_rows ? pixels : beams) + 3) / 4 * 4;
+    const VkDeviceSize results       = pixels * rows_of_results(noise, lights) * RESULT_BYTES;
     const struct {
         Buffer      *buffer;
         uint32_t     binding, texels; /* in set 1: as a buffer, as texels; 0: none */
@@ -64,12 +65,12 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
          "queue of rays"},
         {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
         {&band->tiles, TILES_BINDING, TILE_TEXELS_BINDING,
-         (tiles + (noise ? beams : 0)) * sizeof(uint32_t), ON_DEVICE, "tiles"},
+         (tiles + (noise ? beams : 0)) * sizeof(uint32_t), shared, "tiles"},
         {&band->surfaces, 0, SURFACE_TEXELS_BINDING, pixels * surface_rows * SURFACE_ROW_BYTES,
          shared, "surfaces"},
         {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},
     };
-    if (band->pixels >= pixels && (band->has_paths || !paths) && (band->has_noise || !noise) &&
+    if (band->pixels >= pixels && band->path_rows >= path_rows && (band->has_noise || !noise) &&
         band->lights >= lights && band->surface_rows >= surface_rows)
         return true;
     band_destroy(gpu, band);
@@ -91,7 +92,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
             rendering_bind(rendering, rendering->band_set, wanted[i].texels, buffer);
     }
     band->pixels       = pixels;
-    band->has_paths    = paths;
+    band->path_rows    = path_rows;
     band->has_noise    = noise;
     band->lights       = lights;
     band->surface_rows = surface_rows;
@@ -116,10 +117,11 @@ static uint64_t larger(uint64_t a, uint64_t b) { return a > b ? a : b; }
 
 /* The most pixels that a band may have on this device.  All of its buffers must fit into the
    device's memory, and none may be longer than shaders can read. */
-static uint64_t max_pixels(const Gpu *gpu, bool paths, uint32_t lights, uint32_t surface_rows)
+static uint64_t max_pixels(const Gpu *gpu, uint32_t path_rows, uint32_t lights,
+                           uint32_t surface_rows)
 {
     const uint64_t                rows     = RESULT_ROWS + lights;
-    const uint64_t                hit      = HIT_BYTES + (paths ? PATH_BYTES : 0);
+    const uint64_t                hit      = HIT_BYTES + path_rows * PATH_ROW_BYTES;
     const uint64_t                surface  = surface_rows * SURFACE_ROW_BYTES;
     const uint64_t                usual    = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
     const VkPhysicalDeviceLimits *limits   = &gpu->properties.limits;
@@ -137,18 +139,18 @@ static uint64_t max_pixels(const Gpu *gpu, bool paths, uint32_t lights, uint32_t
     return most > BAND_PIXELS_MIN ? most : BAND_PIXELS_MIN;
 }
 
-uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo, bool paths,
-                       bool noise, uint32_t lights, uint32_t surface_rows)
+uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo,
+                       uint32_t path_rows, bool noise, uint32_t lights, uint32_t surface_rows)
 {
     Gpu           *gpu    = &rendering->renderer->gpu;
     const uint64_t across = round_to_tiles(cover->width) + 2 * halo;
-    for (uint64_t pixels = max_pixels(gpu, paths, lights, surface_rows); pixels >= BAND_PIXELS_MIN;
-         pixels /= 2) {
+    for (uint64_t pixels = max_pixels(gpu, path_rows, lights, surface_rows);
+         pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within((uint32_t)across, pixels);
         rows          = rows > 2 * halo + TILE ? rows - 2 * halo : TILE;
         rows          = rows < cover->height ? rows : cover->height;
-        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, paths, noise, lights,
-                        surface_rows)) {
+        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, path_rows, noise,
+                        lights, surface_rows)) {
             renderer_clear(rendering->renderer);
             return rows;
         }

@@ -7,10 +7,10 @@
 #include "runtime/tracer/handles.h"
 
 /* Allocates buffers for a band of `cover`, a window of whole tiles, with `halo` more pixels on each
-   side; `paths`: each pixel follows a path; `noise`: its error is estimated; `lights` have rows of
+   side; `path_rows`: of the path of each pixel, and of rays of its hit; `noise`: its error is estimated; `lights` have rows of
    results of their own; `surface_rows`: of each hit, that the host finds.  When memory is short the band has fewer rows.  Returns its rows; 0, with the failure noted, when even the smallest band
    does not fit. */
-uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo, bool paths,
-                       bool noise, uint32_t lights, uint32_t surface_rows);
+uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo,
+                       uint32_t path_rows, bool noise, uint32_t lights, uint32_t surface_rows);
 
 #endif

@@ -71,8 +71,7 @@ struct KrsRenderer {
     VkPipelineLayout      layout;       /* shared by all shaders */
     /* Each is made when it is needed, with the shaders of the first scene that needs it. */
     Shader pixels[RAY_KINDS][PIXEL_SHADERS];
-    Shader aims[RAY_KINDS],
-        arrivals[RAY_KINDS];      /* aim.comp and arrive.comp, made when they are needed */
+    Shader aims[2], arrivals[2];  /* aim.comp and arrive.comp; [1]: paths have such rays, too */
     Shader limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Shader escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
     Shader escapes_to_plate;      /* the same for paths that may meet a plate */
@@ -91,7 +90,7 @@ struct KrsRenderer {
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
     uint64_t pixels;       /* the most that fit; 0: there are no buffers */
-    bool     has_paths;    /* there are rows for the path of each */
+    uint32_t path_rows;    /* of the path of each, and of rays of its hit */
     uint32_t lights;       /* for whose light there are rows of results */
     uint32_t surface_rows; /* of each hit, that the host finds */
     bool     has_noise;    /* there are words of the quarters of tiles whose pixels have rays, */

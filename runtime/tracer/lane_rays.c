@@ -65,7 +65,9 @@ typedef struct Slice {
     const Job       *job;
     RayField        *field;
     const WorkBlock *work;
-    FrameBlock       box;        /* around what is marched */
+    const uint8_t
+        *paths; /* of each pixel of the band: 1: its path goes on; NULL: rays are the camera's */
+    FrameBlock  box;             /* around what is marched */
     uint32_t    across, tile[2]; /* of all tiles: in a row, and the first one's column and row */
     uint32_t    items;           /* of rays of hits */
     atomic_uint next;
@@ -161,11 +163,66 @@ static void begin_block(const Slice *slice, Corner corner, RayBlock *block)
     }
 }
 
+void lane_rays_pixel(const WorkBlock *work, uint32_t slot, uint32_t pixel[2])
+{
+    const uint32_t across = (work->extent[0] + TILE - 1) / TILE, tile = slot / (TILE * TILE);
+    pixel[0] = tile % across * TILE + slot % TILE;
+    pixel[1] = tile / across * TILE + slot / TILE % TILE;
+}
+
 uint32_t lane_rays_slot(const WorkBlock *work, const uint32_t pixel[2])
 {
     const uint32_t across = (work->extent[0] + TILE - 1) / TILE;
     return TILE * TILE * (pixel[1] / TILE * across + pixel[0] / TILE) + pixel[1] % TILE * TILE +
            pixel[0] % TILE;
+}
+
+const float (*lane_rays_path(const Job *job, const WorkBlock *work, const uint32_t pixel[2]))[4]
+{
+    const float(*hits)[4] = job->rendering->band.hits.bytes;
+    const size_t index    = (size_t)pixel[1] * work->extent[0] + pixel[0];
+    return hits + (size_t)HIT_ROWS * TILE * TILE * tiles_of_band(work) + PATH_ROWS * index;
+}
+
+uint8_t *lane_rays_mark(Job *job, const WorkBlock *work, const LanePaths *paths)
+{
+    uint8_t *marks = gpu_alloc(job->gpu, (size_t)work->extent[0] * work->extent[1], sizeof *marks,
+                               "march rays");
+    for (uint32_t i = 0; i < paths->count && marks; i++) {
+        uint32_t pixel[2];
+        lane_rays_pixel(work, paths->slots[i], pixel);
+        marks[(size_t)pixel[1] * work->extent[0] + pixel[0]] = 1;
+    }
+    return marks;
+}
+
+/* Tells whether a ray of the slice is that of a pixel of the band. */
+static bool is_marched(const Slice *slice, Corner corner, uint32_t ray, uint32_t pixel[2])
+{
+    return find_pixel(slice->work, corner, ray, pixel) &&
+           (!slice->paths ||
+            slice->paths[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]] == 1);
+}
+
+/* The same for rays of paths, which begin at hits. */
+static void begin_block_of_paths(const Slice *slice, Corner corner, RayBlock *block)
+{
+    for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
+        uint32_t pixel[2];
+        block->state[i] = RAY_IS_ABSENT;
+        if (!is_marched(slice, corner, i, pixel))
+            continue;
+        const float(*path)[4] = lane_rays_path(slice->job, slice->work, pixel);
+        for (int k = 0; k < 3; k++) {
+            block->origin[k][i]    = path[PATH_ORIGIN][k];
+            block->direction[k][i] = path[PATH_DIRECTION][k];
+        }
+        block->width[i]  = path[PATH_ORIGIN][3];
+        block->spread[i] = path[PATH_DIRECTION][3];
+        block->side[i]   = path[PATH_TOWARD][3] < 0 ? -1.0f : 1.0f;
+        block->state[i]  = RAY_MARCHES;
+        clip(slice->box.low, slice->box.high, slice->job->frame.farthest, block, i);
+    }
 }
 
 /* Stores the rays of a block as pack_ray of frame.glsl packs them. */
@@ -175,7 +232,7 @@ static void store_block(Slice *slice, size_t part, Corner corner, const RayBlock
     uint32_t(*ends)[2] = slice->job->rendering->band.ends.bytes;
     for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
         uint32_t pixel[2];
-        if (!find_pixel(slice->work, corner, i, pixel))
+        if (!is_marched(slice, corner, i, pixel))
             continue;
         uint32_t *end = ends[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]];
         memcpy(&end[0], &block->t[i], sizeof *end);
@@ -191,12 +248,13 @@ static void store_block(Slice *slice, size_t part, Corner corner, const RayBlock
     }
 }
 
-static RayRule rule_of(const Job *job)
+static RayRule rule_of(const Job *job, bool of_paths)
 {
-    return (RayRule){.error        = (float)job->options.error,
-                     .max_steps    = job->options.methods.max_steps,
-                     .normal_reach = lane_rays_find_normals(job) ? job->frame.normal_reach : 0,
-                     .plain        = job->rendering->program->plain};
+    return (RayRule){.error         = (float)job->options.error,
+                     .max_steps     = job->options.methods.max_steps,
+                     .normal_reach  = lane_rays_find_normals(job) ? job->frame.normal_reach : 0,
+                     .plain         = job->rendering->program->plain,
+                     .from_surfaces = of_paths};
 }
 
 /* Begins blocks [first, first + count) of a tile. */
@@ -204,7 +262,8 @@ static void begin_blocks(const Slice *slice, size_t part, uint32_t tile, uint32_
                          uint32_t count, RayBlock *blocks)
 {
     for (uint32_t b = 0; b < count; b++) {
-        begin_block(slice, corner_of(slice, tile, first + b), &blocks[b]);
+        (slice->paths ? begin_block_of_paths
+                      : begin_block)(slice, corner_of(slice, tile, first + b), &blocks[b]);
         ray_field_meet_planes(slice->field, part, slice->job->frame.farthest, &blocks[b]);
     }
 }
@@ -212,7 +271,7 @@ static void begin_blocks(const Slice *slice, size_t part, uint32_t tile, uint32_
 static void march_tiles(void *task, size_t part, size_t parts)
 {
     Slice        *slice  = task;
-    const RayRule rule   = rule_of(slice->job);
+    const RayRule rule   = rule_of(slice->job, slice->paths != NULL);
     RayBlock     *blocks = slice->blocks[part];
     (void)parts;
     for (uint32_t tile; (tile = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
@@ -228,7 +287,7 @@ static void march_tiles(void *task, size_t part, size_t parts)
 static void begin_secondary(const Slice *slice, const float (*rows)[4], uint32_t item,
                             RayBlock *block, uint32_t i)
 {
-    const float(*ray)[4] = rows + (size_t)PATH_ROWS * item;
+    const float(*ray)[4] = rows + (size_t)LANE_ROWS * item;
     const bool there     = item < slice->items;
     block->state[i] = !there ? RAY_IS_ABSENT : ray[LANE_CONE][3] > 0 ? RAY_MARCHES : RAY_MISSES;
     if (!there)
@@ -267,7 +326,8 @@ static void march_items(void *task, size_t part, size_t parts)
     const BlockRule rule   = block_rule_of(slice->job);
     RayBlock       *blocks = slice->blocks[part];
     float(*rows)[4]        = slice->job->rendering->band.hits.bytes;
-    rows += (size_t)HIT_ROWS * TILE * TILE * tiles_of_band(slice->work);
+    rows += (size_t)(HIT_ROWS + (slice->job->rendering->program->mirrors ? PATH_ROWS : 0)) * TILE *
+            TILE * tiles_of_band(slice->work);
     (void)parts;
     for (uint32_t tile; (tile = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
         const uint32_t left  = slice->items - tile * RAYS;
@@ -278,7 +338,7 @@ static void march_items(void *task, size_t part, size_t parts)
         slice->evaluations[part] += ray_field_block(slice->field, part, blocks, count, &rule);
         for (uint32_t i = 0; i < count * RAYS_OF_BLOCK && tile * RAYS + i < slice->items; i++) {
             const RayBlock *block = &blocks[i / RAYS_OF_BLOCK];
-            float          *found = rows[(size_t)PATH_ROWS * (tile * RAYS + i) + LANE_FOUND];
+            float          *found = rows[(size_t)LANE_ROWS * (tile * RAYS + i) + LANE_FOUND];
             found[0]              = block->t[i % RAYS_OF_BLOCK];
             found[1]              = block->state[i % RAYS_OF_BLOCK] == RAY_HITS;
             found[2]              = (float)block->unresolved[i % RAYS_OF_BLOCK];
@@ -332,18 +392,23 @@ static bool run_slices(Job *job, Slice *slice, KrsPhase phase, uint32_t tiles,
     return good;
 }
 
-bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work)
+bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const LanePaths *paths)
 {
-    Slice    slice = {.job = job, .field = field, .work = work};
+    uint8_t *marks = paths ? lane_rays_mark(job, work, paths) : NULL;
+    Slice    slice = {.job = job, .field = field, .work = work, .paths = marks};
     uint32_t tiles[2];
+    if (paths && !marks)
+        return false;
     place_box(&slice);
     for (int k = 0; k < 2; k++) {
         slice.tile[k] = work->corner[k] / SIDE;
         tiles[k]      = (work->corner[k] + work->extent[k] - 1) / SIDE - slice.tile[k] + 1;
     }
     slice.across    = tiles[0];
-    const bool good = run_slices(job, &slice, KRS_PHASE_PRIMARY, tiles[0] * tiles[1], march_tiles);
+    const bool good = run_slices(job, &slice, paths ? KRS_PHASE_BOUNCES : KRS_PHASE_PRIMARY,
+                                 tiles[0] * tiles[1], march_tiles);
     add_counts(job, &slice);
+    gpu_release(job->gpu, marks);
     return good;
 }
 
@@ -363,7 +428,7 @@ bool lane_rays_try(Job *job, RayField *field, double budget_ms, LaneTrial *trial
     const uint32_t size[2] = {job->options.width, job->options.height};
     WorkBlock      whole   = {.extent = {size[0], size[1]}, .offset = {0.5f, 0.5f}};
     Slice          slice   = {.job = job, .field = field, .work = &whole};
-    const RayRule  rule    = rule_of(job);
+    const RayRule  rule    = rule_of(job, false);
     RayBlock      *blocks  = gpu_alloc(job->gpu, QUARTER, sizeof *blocks, "march rays");
     uint32_t       tried = 0, count = FIRST;
     double         rays = 0;

@@ -13,8 +13,14 @@ const char *lane_rays_refuse(const Job *job);
 bool lane_rays_find_normals(const Job *job);
 /* Tells whether rays meet planes without a march. */
 bool lane_rays_know_planes(const Job *job);
-/* Marches the ray of each pixel of the band to its end. */
-bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work);
+/* Pixels whose paths go on, by their slots. */
+typedef struct LanePaths {
+    const uint32_t *slots;
+    uint32_t        count;
+} LanePaths;
+
+/* Marches the ray of each pixel of the band to its end, or those of paths. */
+bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const LanePaths *paths);
 
 /* Marches so many rays that shaders have begun (LANE_... of blocks.h). */
 bool lane_rays_march_secondary(Job *job, RayField *field, KrsPhase phase, uint32_t count,
@@ -28,7 +34,13 @@ typedef struct LaneTrial {
 /* Marches small parts of the picture, for about so many milliseconds; false with the failure noted. */
 bool lane_rays_try(Job *job, RayField *field, double budget_ms, LaneTrial *trial);
 
-/* The slot of a pixel, which is counted in the band: as in hit_lists.glsl. */
+/* Returns a byte for each pixel of the band, 1 for those that are listed, which gpu_release frees; NULL with the failure
+   noted. */
+uint8_t *lane_rays_mark(Job *job, const WorkBlock *work, const LanePaths *paths);
+/* The rows of the path of a pixel (PATH_... of blocks.h), which is counted in the band. */
+const float (*lane_rays_path(const Job *job, const WorkBlock *work, const uint32_t pixel[2]))[4];
+/* The pixel of a slot, and the slot of a pixel, which is counted in the band: as in hit_lists.glsl. */
+void     lane_rays_pixel(const WorkBlock *work, uint32_t slot, uint32_t pixel[2]);
 uint32_t lane_rays_slot(const WorkBlock *work, const uint32_t pixel[2]);
 
 #endif

@@ -13,7 +13,6 @@
 #include "compiler/base/parallel.h"
 #include "runtime/tracer/dispatch.h"
 #include "runtime/tracer/lane_fields.h"
-#include "runtime/tracer/lane_rays.h"
 #include "runtime/tracer/rendering.h"
 
 enum { SIDE = 128, OCCLUDERS_AT_ONCE = 4096 };
@@ -42,11 +41,13 @@ typedef struct Slice {
     const Job          *job;
     const SurfaceField *field;
     const WorkBlock    *work;
-    uint32_t            across;      /* squares in a row */
-    uint32_t            list, count; /* where the list of occluders begins, and how many they are */
-    atomic_uint         next;
-    uint32_t            end;
-    SurfacePoint       *points[MAX_PARTS]; /* of each part */
+    const uint8_t
+            *paths;  /* of each pixel of the band: 1: a path has hit; NULL: hits are the camera's */
+    uint32_t across; /* squares in a row */
+    uint32_t list, count; /* where the list of occluders begins, and how many they are */
+    atomic_uint   next;
+    uint32_t      end;
+    SurfacePoint *points[MAX_PARTS]; /* of each part */
 } Slice;
 
 /* Runs `work` on numbers up to `all`, in slices that end often enough. */
@@ -75,13 +76,6 @@ static bool deal(Job *job, Slice *slice, KrsPhase phase, uint32_t all,
 
 /* ---- hits ---- */
 
-static void pixel_of(const WorkBlock *work, uint32_t slot, uint32_t pixel[2])
-{
-    const uint32_t across = (work->extent[0] + TILE - 1) / TILE, tile = slot / (TILE * TILE);
-    pixel[0] = tile % across * TILE + slot % TILE;
-    pixel[1] = tile / across * TILE + slot / TILE % TILE;
-}
-
 /* Finds where the ray of a pixel hits, and how wide the pixel is there, as hit_point_of_slot of
    hit_lists.glsl does. */
 static float find_hit(const Slice *slice, const uint32_t pixel[2], float t, float position[3],
@@ -107,6 +101,18 @@ static float find_hit(const Slice *slice, const uint32_t pixel[2], float t, floa
     return fmaxf(frame->pixel_base + frame->pixel_slope / stretch * t, 1e-30f);
 }
 
+/* The same for the ray of a path. */
+static float find_hit_of_path(const Slice *slice, const uint32_t pixel[2], float t,
+                              float position[3], float direction[3])
+{
+    const float(*path)[4] = lane_rays_path(slice->job, slice->work, pixel);
+    for (int k = 0; k < 3; k++) {
+        direction[k] = path[PATH_DIRECTION][k];
+        position[k]  = path[PATH_ORIGIN][k] + t * direction[k];
+    }
+    return fmaxf(path[PATH_ORIGIN][3] + path[PATH_DIRECTION][3] * t, 1e-30f);
+}
+
 /* The end of the ray of a pixel (frame.glsl). */
 static const uint32_t *end_of(const Slice *slice, const uint32_t pixel[2])
 {
@@ -114,9 +120,10 @@ static const uint32_t *end_of(const Slice *slice, const uint32_t pixel[2])
     return ends[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]];
 }
 
-static bool is_hit(const uint32_t *end)
+static bool is_hit(const Slice *slice, const uint32_t pixel[2], const uint32_t *end)
 {
-    return (end[1] & 3) == STATE_HIT && (end[1] >> 4 & 15) != MARCH_GROUP_OF_PLATE;
+    return slice->paths ? slice->paths[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]] == 1
+                        : (end[1] & 3) == STATE_HIT && (end[1] >> 4 & 15) != MARCH_GROUP_OF_PLATE;
 }
 
 static const float *facing_of(const Slice *slice, uint32_t slot)
@@ -132,10 +139,11 @@ static size_t add_hit(const Slice *slice, const uint32_t pixel[2], SurfacePoint 
     const uint32_t *end = end_of(slice, pixel), slot = lane_rays_slot(slice->work, pixel);
     const float    *facing = facing_of(slice, slot), side = end[1] & 4 ? -1.0f : 1.0f;
     float           t;
-    if (!is_hit(end))
+    if (!is_hit(slice, pixel, end))
         return 0;
     memcpy(&t, &end[0], sizeof t);
-    to->footprint = 0.5f * find_hit(slice, pixel, t, to->position, to->view);
+    to->footprint = 0.5f * (slice->paths ? find_hit_of_path : find_hit)(slice, pixel, t,
+                                                                        to->position, to->view);
     for (int k = 0; k < 3; k++)
         to->normal[k] = side * facing[k];
     to->found = (float *)band->surfaces.bytes +
@@ -169,12 +177,21 @@ static void find_squares(void *task, size_t part, size_t parts)
     }
 }
 
-bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *work)
+bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *work,
+                        const LanePaths *paths)
 {
     const uint32_t down  = (work->extent[1] + SIDE - 1) / SIDE;
-    Slice          slice = {
-                 .job = job, .field = field, .work = work, .across = (work->extent[0] + SIDE - 1) / SIDE};
-    return deal(job, &slice, KRS_PHASE_SHADING, slice.across * down, find_squares);
+    uint8_t       *marks = paths ? lane_rays_mark(job, work, paths) : NULL;
+    Slice          slice = {.job    = job,
+                            .field  = field,
+                            .work   = work,
+                            .paths  = marks,
+                            .across = (work->extent[0] + SIDE - 1) / SIDE};
+    const bool     good  = (!paths || marks) &&
+                      deal(job, &slice, paths ? KRS_PHASE_BOUNCES : KRS_PHASE_SHADING,
+                           slice.across * down, find_squares);
+    gpu_release(job->gpu, marks);
+    return good;
 }
 
 /* ---- occluders ---- */
@@ -263,7 +280,7 @@ static void add_occluder(const Slice *slice, uint32_t slot, SurfacePoint *to, fl
     const uint32_t     *end;
     uint32_t            pixel[2], in_picture[2];
     float               square[2], along[3], t, length;
-    pixel_of(slice->work, slot, pixel);
+    lane_rays_pixel(slice->work, slot, pixel);
     for (int k = 0; k < 2; k++)
         in_picture[k] = slice->work->corner[k] + pixel[k];
     end = end_of(slice, pixel);
@@ -305,7 +322,7 @@ static void find_occluders(void *task, size_t part, size_t parts)
         for (uint32_t i = 0; i < count; i++) {
             const float luminance = luminance_of(colors[i]);
             uint32_t    pixel[2];
-            pixel_of(slice->work, list[first + i], pixel);
+            lane_rays_pixel(slice->work, list[first + i], pixel);
             memcpy(occluder_of(slice, pixel), &luminance, sizeof luminance);
         }
     }

@@ -59,6 +59,11 @@ void plan_add_march_again(Plan *plan, float weight)
 
 void plan_free(Plan *plan) { gpu_release(plan->gpu, plan->passes); }
 
+uint32_t plan_path_rows(const Plan *plan)
+{
+    return (plan->has_paths ? PATH_ROWS : 0) + (plan->field ? LANE_ROWS : 0);
+}
+
 /* ---- lists ---- */
 
 /* The counter of a list: the index of its word, as in Items; 0: it has none. */
@@ -163,6 +168,29 @@ static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
     return true;
 }
 
+/* The numbers of a list. */
+static const uint32_t *words_of(const Job *job, const WorkBlock *work, ListId list)
+{
+    const Band *band = &job->rendering->band;
+    return list == LIST_OF_PATHS ? band->tiles.bytes
+                                 : (const uint32_t *)band->queue.bytes + list_at(work, list);
+}
+
+/* Hits of paths are those that are listed; others are the camera's, all of the band. */
+static bool run_lanes(Job *job, const Plan *plan, const Pass *pass, const WorkBlock *work)
+{
+    const LanePaths paths = {words_of(job, work, pass->in),
+                             items_now(job, items_of(work, pass->in))};
+    return lane_rays_march(job, plan->field, work, pass->constants.of_paths ? &paths : NULL);
+}
+
+static bool run_surfaces(Job *job, const Plan *plan, const Pass *pass, const WorkBlock *work)
+{
+    const LanePaths paths = {words_of(job, work, pass->in),
+                             items_now(job, items_of(work, pass->in))};
+    return lane_surfaces_find(job, plan->surfaces, work, pass->constants.of_paths ? &paths : NULL);
+}
+
 /* Shaders begin the rays, and do what comes of them. */
 static bool run_lane_rays(Job *job, const Plan *plan, const Pass *pass, const WorkBlock *work)
 {
@@ -197,8 +225,8 @@ static bool run_passes(Job *job, const Plan *plan, const Pass *passes, size_t co
 {
     switch (passes[0].kind) {
     case PASS_CLEAR: return march_clear(job);
-    case PASS_LANES: return lane_rays_march(job, plan->field, work);
-    case PASS_SURFACES: return lane_surfaces_find(job, plan->surfaces, work);
+    case PASS_LANES: return run_lanes(job, plan, passes, work);
+    case PASS_SURFACES: return run_surfaces(job, plan, passes, work);
     case PASS_OCCLUDERS:
         return lane_surfaces_find_occluders(job, plan->surfaces, list_at(work, LIST_REMAINING),
                                             work);

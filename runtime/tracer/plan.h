@@ -26,9 +26,9 @@ typedef struct PassConstants {
 } PassConstants;
 
 typedef enum PassKind {
-    PASS_CLEAR,     /* sets all rays to misses */
-    PASS_LANES,     /* primary rays by lanes of the host, until all have ended */
-    PASS_SURFACES,  /* what surfaces of hits are, by lanes of the host */
+    PASS_CLEAR,    /* sets all rays to misses */
+    PASS_LANES,    /* primary rays, or those of paths, by lanes of the host, until all have ended */
+    PASS_SURFACES, /* what surfaces of hits are, by lanes of the host */
     PASS_OCCLUDERS, /* and of what rays over the hemisphere have met */
     PASS_MARCH,     /* beams, then primary rays until all have ended */
     PASS_ITEMS,     /* a shader over items that all cost the same */
@@ -74,6 +74,8 @@ void plan_add_march(Plan *plan, const March *march, float weight);
 /* Adds a pass of the march that was added last. */
 void plan_add_march_again(Plan *plan, float weight);
 void plan_free(Plan *plan);
+/* Rows of each pixel for its path, and for rays of its hit that lanes of the host march. */
+uint32_t plan_path_rows(const Plan *plan);
 /* Runs all passes for ray `index` of every pixel of the band, and adds its light to the results.
    `progress_done` and `progress_share` of the job are those of this run, and are changed. */
 bool plan_run(Job *job, const Plan *plan, WorkBlock *work, uint32_t index);

@@ -170,10 +170,12 @@ void krs_renderer_free(KrsRenderer *renderer)
         for (int kind = 0; kind < RAY_KINDS; kind++) {
             for (int i = 0; i < PIXEL_SHADERS; i++)
                 shader_destroy(gpu, &renderer->pixels[kind][i]);
-            shader_destroy(gpu, &renderer->aims[kind]);
-            shader_destroy(gpu, &renderer->arrivals[kind]);
             shader_destroy(gpu, &renderer->limits[kind]);
             shader_destroy(gpu, &renderer->escapes[kind]);
+        }
+        for (int i = 0; i < 2; i++) {
+            shader_destroy(gpu, &renderer->aims[i]);
+            shader_destroy(gpu, &renderer->arrivals[i]);
         }
         shader_destroy(gpu, &renderer->escapes_to_plate);
         shader_destroy(gpu, &renderer->noise);
@@ -226,14 +228,33 @@ bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_
     return shaders_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
 }
 
-/* Makes a shader without a scene, unless it exists; NULL with the failure noted. */
+/* Makes a requested shader, unless it exists; NULL with the failure noted. */
+static const Shader *make_request(KrsRenderer *renderer, ShaderRequest *request, double *spirv_ms,
+                                  double *pipeline_ms)
+{
+    const bool made = request->shader->pipeline ||
+                      shaders_make(renderer, VK_NULL_HANDLE, request, 1, spirv_ms, pipeline_ms);
+    return made ? request->shader : NULL;
+}
+
+/* The same for a shader without a scene. */
 static const Shader *make_ready(KrsRenderer *renderer, Shader *shader, const char *file,
                                 RayKind kind, double *spirv_ms, double *pipeline_ms)
 {
     ShaderRequest request = request_shader(renderer, shader, file, kind);
-    bool          made    = shader->pipeline ||
-                shaders_make(renderer, VK_NULL_HANDLE, &request, 1, spirv_ms, pipeline_ms);
-    return made ? shader : NULL;
+    return make_request(renderer, &request, spirv_ms, pipeline_ms);
+}
+
+/* The same for one that begins or ends rays of hits: of a camera's rays, or of those of paths as well. */
+static const Shader *make_for_lanes(KrsRendering *rendering, Shader *shader, const char *file,
+                                    bool paths)
+{
+    static const char *const mixed[SHADER_READS] = ALL_READS(MIXED_RAYS);
+    KrsRenderer             *renderer            = rendering->renderer;
+    ShaderRequest            request = request_shader(renderer, shader, file, RAYS_OF_CAMERAS);
+    if (paths)
+        request.source.defines = mixed[variants_reads(&renderer->gpu)];
+    return make_request(renderer, &request, &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
 const Shader *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
@@ -242,17 +263,16 @@ const Shader *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_
     return make_ready(renderer, &renderer->limits[kind], "limit.comp", kind, spirv_ms, pipeline_ms);
 }
 
-const Shader *renderer_aim(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
-                           double *pipeline_ms)
+const Shader *renderer_aim(KrsRendering *rendering)
 {
-    return make_ready(renderer, &renderer->aims[kind], "aim.comp", kind, spirv_ms, pipeline_ms);
+    const bool paths = rendering->program->mirrors;
+    return make_for_lanes(rendering, &rendering->renderer->aims[paths], "aim.comp", paths);
 }
 
-const Shader *renderer_arrive(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
-                              double *pipeline_ms)
+const Shader *renderer_arrive(KrsRendering *rendering)
 {
-    return make_ready(renderer, &renderer->arrivals[kind], "arrive.comp", kind, spirv_ms,
-                      pipeline_ms);
+    const bool paths = rendering->program->mirrors;
+    return make_for_lanes(rendering, &rendering->renderer->arrivals[paths], "arrive.comp", paths);
 }
 
 const Shader *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
@@ -275,7 +295,5 @@ const Shader *renderer_escape_of_paths(KrsRendering *rendering)
          shader, {.file = "escape.comp", .defines = plate_defines[variants_reads(&renderer->gpu)]}};
     if (!rendering->catches)
         return &renderer->escapes[RAYS_OF_PATHS];
-    bool made = shader->pipeline || shaders_make(renderer, VK_NULL_HANDLE, &request, 1,
-                                                 &rendering->spirv_ms, &rendering->pipeline_ms);
-    return made ? shader : NULL;
+    return make_request(renderer, &request, &rendering->spirv_ms, &rendering->pipeline_ms);
 }

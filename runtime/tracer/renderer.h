@@ -27,10 +27,8 @@ const Shader *renderer_escape_of_paths(KrsRendering *rendering);
 /* The shader for pixels without a hit. */
 PixelShader renderer_background(const KrsRendering *rendering);
 /* The shaders before and behind rays of hits that lanes of the host march. */
-const Shader *renderer_aim(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
-                           double *pipeline_ms);
-const Shader *renderer_arrive(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
-                              double *pipeline_ms);
+const Shader *renderer_aim(KrsRendering *rendering);
+const Shader *renderer_arrive(KrsRendering *rendering);
 /* The shader that ends rays at given depths, for rays of a kind; NULL with the failure noted. */
 const Shader *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);

@@ -298,6 +298,8 @@ ShaderVariant variant_of_shade_found(const KrsRendering *rendering)
 {
     ShaderVariant to = {0};
     define(&to, "#define SURFACES\n");
+    if (rendering->program->mirrors)
+        define(&to, "#define MIRRORS\n" MIXED_RAYS);
     if (rendering->program->layers)
         define(&to, "#define LAYERS\n");
     if (rendering->program->anisotropic)
