@@ -428,6 +428,7 @@ static void write_mesh(KrsStatus status, const KrsMesh *mesh)
         add_number("error", mesh->error);
         add_number("unresolved", (double)mesh->unresolved);
         add_truth("estimate", mesh->estimate);
+        add_truth("steps", mesh->steps);
     }
     leave("}");
 }

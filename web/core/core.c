@@ -13,7 +13,7 @@ const char *core_answer(void) { return answer_text(); }
 /* What the page supplied last. */
 static char *supplied;
 
-const char *supply_text(void *user, const char *path, size_t *length)
+static const char *load(void *user, const char *path, size_t *length)
 {
     (void)user;
     free(supplied);
@@ -49,7 +49,7 @@ static KrsOptions options_of(uint32_t bits)
                         .gradients  = (bits & CORE_GRADIENTS) != 0,
                         .assembly   = (bits & CORE_ASSEMBLY) != 0,
                         .figures    = (bits & CORE_FIGURES) != 0,
-                        .load       = supply_text,
+                        .load       = load,
                         .font       = font};
 }
 
@@ -85,6 +85,13 @@ char *core_format(const char *text, size_t length, const char *name)
     end_supply();
     answer_end_compilation(status, NULL);
     return formatted;
+}
+
+char *core_words(void)
+{
+    char *words;
+    krs_words(NULL, &words);
+    return words;
 }
 
 char *core_text(const KrsScene *scene, uint32_t target, uint32_t options)

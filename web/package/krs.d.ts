@@ -117,6 +117,8 @@ export interface Mesh {
     error: number;
     /** Cells in which it is not decided what the surface does. */
     unresolved: number;
+    /** Materials change in steps, as from part to part: each triangle has that of its middle.  At corners several meet. */
+    steps: boolean;
 }
 
 export interface MeshOptions {
