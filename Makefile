@@ -23,6 +23,7 @@
 # make wasm       the compiler for web pages, in build/wasm/ (web/core/README.md); tools/deps.sh wasm installs what it needs
 # make web        the package `krs` for pages, in build/web/ (web/package/README.md); web-pack: its archive
 # make python     the package for Python, in build/python/; make wheel: as a file for pip (docs/python.md)
+# make playground the playground, a static folder in build/playground/ (docs/playground.md); serve: shows it at localhost
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
 B       ?= build
@@ -219,6 +220,7 @@ include tools/fingerprints.mk
 include web/core/core.mk
 include python/python.mk
 include web/package/package.mk
+include web/playground/playground.mk
 include tests/tests.mk
 include bench/bench.mk
 include tools/install.mk

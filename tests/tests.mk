@@ -60,7 +60,7 @@ BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/se
 # else, and `make test-all` both (docs/building.md says what costs what).  The sanitizers, clang and the fuzzers belong
 # to it, as they compile everything once more, the judge of meshes, whose headers take a minute, and what
 # compares switches of `krs help render --all` with each other.
-LONG        := $(addprefix tests/, web/many.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
+LONG        := $(addprefix tests/, web/many.sh web/playground_long.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
                $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_csg.sh mesh_judges.sh outputs.sh \
                pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
                $(addprefix unit/, arguments compiled instance_grid drivers film light_groups memory mesh_proofs methods noise paths \
@@ -203,6 +203,7 @@ test-long: SET := long
 test-all:  SET := all
 # What scripts of tests/web use, which run side by side, where test-deps could install what builds it.  They tell what is missing.
 web        = $(if $(and $(shell command -v emcc),$(shell command -v node)),web $(B)/tests/web/texts)
+played     = $(if $(and $(web),$(shell command -v npm),$(shell command -v esbuild)),playground)
 scripts    = $(call scripts_$(SET), $(1))
 programs   = $(patsubst %,$(B)/%,$(programs_$(SET)))
 sanitized  = $(patsubst %,$(B)/asan/%,$(sanitized_$(SET)))
@@ -211,6 +212,7 @@ test test-long test-all: test-deps
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(B)/bench/bench $(programs) $(if $(DEVICE),$(DRIVERS:%=$(B)/%)) \
 	    $(if $(filter short, $(SET)),,$(JUDGE) $(SECOND:%=$(B)/%) sanitize clang-check fuzzers)
 	@$(if $(web),$(MAKE) --no-print-directory -j$(JOBS) $(web) || echo "$(web): not built")
+	@$(if $(played),$(MAKE) --no-print-directory -j$(JOBS) $(played) || echo "$(played): not built")
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=900 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
 	    JOBS=$(TEST_JOBS) $(call scripts, $(BESIDE)) $(programs) $(sanitized) \

@@ -1,0 +1,76 @@
+// build.mjs: examples with their pictures, and the service worker, for the folder of the playground.
+//
+//     node build.mjs examples ROOT FOLDER     FOLDER/examples.json, and FOLDER/examples/ with texts, what they use, and pictures
+//     node build.mjs service FOLDER           FOLDER/service.js, which knows all other files of the folder
+//
+// It is run where packages of npm are found (playground.mk).
+import crypto from 'node:crypto';
+import fs from 'node:fs';
+import { createRequire } from 'node:module';
+import path from 'node:path';
+
+const [task, ...args] = process.argv.slice(2);
+const require = createRequire(path.join(process.cwd(), 'package.json'));
+const filesOf = folder => fs.readdirSync(folder, { withFileTypes: true, recursive: true }).filter(entry => entry.isFile())
+    .map(entry => path.relative(folder, path.join(entry.path, entry.name)));
+
+// ---- examples ----
+
+const WIDTH = 320, HEIGHT = 180, QUALITY = 82;
+
+// The mean of all pixels below each new one; what is of another form is cut.
+function smaller({ width, height, data }) {
+    const size = Math.min(width / WIDTH, height / HEIGHT), left = (width - size * WIDTH) / 2, top = (height - size * HEIGHT) / 2;
+    const made = Buffer.alloc(4 * WIDTH * HEIGHT, 255);
+    for (let y = 0; y < HEIGHT; y++)
+        for (let x = 0; x < WIDTH; x++)
+            for (let k = 0; k < 3; k++) {
+                let sum = 0, count = 0;
+                for (let j = Math.floor(top + y * size); j < top + (y + 1) * size && j < height; j++)
+                    for (let i = Math.floor(left + x * size); i < left + (x + 1) * size && i < width; i++, count++)
+                        sum += data[4 * (j * width + i) + k];
+                made[4 * (y * WIDTH + x) + k] = sum / count;
+            }
+    return { width: WIDTH, height: HEIGHT, data: made };
+}
+
+// The rows of tools/pictures.txt that show a scene first: a picture's name, and what it shows.
+function pictured(root) {
+    const found = new Map();
+    for (const line of fs.readFileSync(path.join(root, 'tools/pictures.txt'), 'utf8').split('\n')) {
+        const [kind, picture, scene, , , about] = line.split(' | ');
+        if ((kind === 'picture' || kind === 'exr') && !found.has(scene))
+            found.set(scene, { picture, about });
+    }
+    return found;
+}
+
+function examples(root, folder) {
+    const { PNG } = require('pngjs'), jpeg = require('jpeg-js');
+    const from = path.join(root, 'examples'), to = path.join(folder, 'examples'), shown = pictured(root);
+    fs.mkdirSync(path.join(to, 'parts'), { recursive: true });
+    for (const file of ['frieze.png', 'relief.png', 'logo.svg', ...fs.readdirSync(path.join(from, 'parts')).map(name => `parts/${name}`)])
+        fs.copyFileSync(path.join(from, file), path.join(to, file));
+    const list = fs.readdirSync(from).filter(file => file.endsWith('.krs')).map(file => path.basename(file, '.krs')).map(name => {
+        const { picture, about } = shown.get(name), title = name.replace(/^\d+-/, '').replaceAll('-', ' ');
+        const read = PNG.sync.read(fs.readFileSync(path.join(root, `docs/pictures/${picture}.png`)));
+        fs.writeFileSync(path.join(to, `${name}.jpg`), jpeg.encode(smaller(read), QUALITY).data);
+        return { name, title: title[0].toUpperCase() + title.slice(1), about: about[0].toUpperCase() + about.slice(1),
+                 text: fs.readFileSync(path.join(from, `${name}.krs`), 'utf8') };
+    });
+    fs.writeFileSync(path.join(folder, 'examples.json'), JSON.stringify(list));
+}
+
+// ---- the service worker ----
+
+function service(folder, script) {
+    const files = filesOf(folder).filter(file => file !== 'service.js').sort(), hash = crypto.createHash('sha256');
+    for (const file of files)
+        hash.update(file).update(fs.readFileSync(path.join(folder, file)));
+    hash.update(fs.readFileSync(script));
+    const wanted = ['./', ...files.map(file => `./${file}`)];
+    fs.writeFileSync(path.join(folder, 'service.js'),
+        `const VERSION = '${hash.digest('hex').slice(0, 16)}', FILES = ${JSON.stringify(wanted)};\n${fs.readFileSync(script, 'utf8')}`);
+}
+
+({ examples, service })[task](...args);
