@@ -92,5 +92,25 @@ report(core.format('show   sphere( 1 );').text === 'show sphere(1);\n', 'texts a
 report(core.compile(`show ${'-'.repeat(40)}sphere(1);`).scene === null, 'nothing ends the core');
 for (const made of [pictured, studio, state, scene, edited.scene])
     made.free();
+
+// ---- what an editor asks ----
+
+core.open('let radius = 2;\nshow sphere(rad);\n');
+report(core.complete({ line: 1, character: 15 }).some(item => item.label === 'radius'), 'names are completed');
+report(core.hover({ line: 1, character: 7 }).contents.value.includes('A ball around the origin.'), 'hover tells documentation');
+report(core.mistakes()[0].code === 'E0201', 'mistakes of an open text are told');
+report(core.edit({ start: { line: 1, character: 12 }, end: { line: 1, character: 15 } }, 'radius') && core.mistakes().length === 0, 'open texts are edited');
+report(core.hover({ line: 1, character: 13 }).contents.value.includes('= 2'), 'hover tells a value');
+const [link] = [core.ask('textDocument/definition', { position: { line: 1, character: 7 } })];
+report(link.uri === 'library:solids.krs' && core.library('solids.krs').split('\n')[link.range.start.line].startsWith('shape sphere('),
+    'definitions lead into the library');
+let why = '';
+try {
+    core.ask('textDocument/rename', { position: { line: 0, character: 5 }, newName: 'let' });
+} catch (error) {
+    why = error.message;
+}
+report(why.includes('not a name'), 'refusals have a reason');
+core.close();
 console.log(`1..${number}`);
 process.exitCode = failed ? 1 : 0;

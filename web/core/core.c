@@ -13,7 +13,7 @@ const char *core_answer(void) { return answer_text(); }
 /* What the page supplied last. */
 static char *supplied;
 
-static const char *load(void *user, const char *path, size_t *length)
+const char *supply_text(void *user, const char *path, size_t *length)
 {
     (void)user;
     free(supplied);
@@ -49,7 +49,7 @@ static KrsOptions options_of(uint32_t bits)
                         .gradients  = (bits & CORE_GRADIENTS) != 0,
                         .assembly   = (bits & CORE_ASSEMBLY) != 0,
                         .figures    = (bits & CORE_FIGURES) != 0,
-                        .load       = load,
+                        .load       = supply_text,
                         .font       = font};
 }
 

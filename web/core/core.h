@@ -50,4 +50,24 @@ void core_raycast(KrsState *state, const double (*origins)[3], const double (*di
    of bytes in memory. */
 KrsMesh *core_mesh(KrsState *state, double error, size_t component, bool simplify, bool draft);
 
+/* ---- editor.c: what editors ask (compiler/service/service.h) ---- */
+
+/* Open a text, which replaces an open one of that name; change what is between two positions, each a line and a number of
+   UTF-16 units; close it.  False: there is no memory, or it is not open. */
+bool core_open(const char *name, const char *text, size_t length);
+bool core_edit(const char *name, const uint32_t place[4], const char *text, size_t length);
+void core_close(const char *name);
+/* A change that a diagnostic proposes, for the next question. */
+void core_fix(const uint32_t place[4], const char *replacement, const char *diagnostic);
+/* The answer to a question, in JSON, until the next; `color` has three parts.  NULL: it is refused, for this reason. */
+const char *core_ask(const char *question, const char *name, const uint32_t place[4],
+                     const char *word, bool definition, const double *color);
+const char *core_refusal(void);
+/* Mistakes that reading finds, an array in JSON; what a service can be asked, as the protocol says it.  NULL: there is no
+   memory, or it is not open. */
+const char *core_mistakes(const char *name);
+const char *core_capabilities(void);
+/* The text of a file of the library: "solids.krs", "std/trees.krs"; NULL: there is none. */
+const char *core_library(const char *name);
+
 #endif

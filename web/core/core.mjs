@@ -115,6 +115,74 @@ class Core {
         return { scene: scene ? new Scene(this, scene) : null, ...this.answer() };
     }
 
+    // ---- what editors ask: texts that are open, positions { line, character }, questions and answers as in the Language
+    // Server Protocol ----
+
+    // Calls with texts, each of which is there while the call runs.
+    #withTexts(texts, call) {
+        const pieces = texts.map(text => (text == null ? 0 : this.putText(text)[0]));
+        return this.using(pieces, call);
+    }
+
+    // A range, or a position, as four numbers in memory.
+    #withPlace(place, call) {
+        const { start, end } = place?.start ? place : { start: place ?? { line: 0, character: 0 }, end: place ?? { line: 0, character: 0 } };
+        const numbers = Uint32Array.of(start.line, start.character, end.line, end.character);
+        return this.using([this.put(new Uint8Array(numbers.buffer))], call);
+    }
+
+    // Opens a text, or replaces an open one of that name.
+    open(text, { name = 'scene.krs' } = {}) {
+        const [at, length] = this.putText(text);
+        return this.using([at], () => this.#withTexts([name], called => this.m._core_open(called, at, length) !== 0));
+    }
+
+    // Puts a text in place of a range.
+    edit(range, text, { name = 'scene.krs' } = {}) {
+        const [at, length] = this.putText(text);
+        return this.using([at], () => this.#withPlace(range, place =>
+            this.#withTexts([name], called => this.m._core_edit(called, place, at, length) !== 0)));
+    }
+
+    close({ name = 'scene.krs' } = {}) { this.#withTexts([name], called => this.m._core_close(called)); }
+
+    // The result of a question; one that is refused throws why.
+    ask(question, params = {}, { name = 'scene.krs' } = {}) {
+        if (params.positions)
+            return params.positions.flatMap(position => this.ask(question, { position }, { name }));
+        const { color = {}, context = {} } = params;
+        for (const diagnostic of context.diagnostics ?? [])
+            if (diagnostic.data?.replacement != null)
+                this.#withPlace(diagnostic.range, place => this.#withTexts([diagnostic.data.replacement, JSON.stringify(diagnostic)],
+                    (replacement, json) => this.m._core_fix(place, replacement, json)));
+        const parts = this.putNumbers([color.red ?? 0, color.green ?? 0, color.blue ?? 0]);
+        const answer = this.using([parts], () => this.#withPlace(params.range ?? params.position, place =>
+            this.#withTexts([question, name, params.newName], (asked, called, word) =>
+                this.m._core_ask(asked, called, place, word, context.includeDeclaration ?? false, parts))));
+        if (answer)
+            return JSON.parse(this.string(answer));
+        const refusal = this.m._core_refusal();
+        throw new Error(refusal ? this.string(refusal) : 'there is no such method');
+    }
+
+    complete(position, named) { return this.ask('textDocument/completion', { position }, named); }
+    hover(position, named) { return this.ask('textDocument/hover', { position }, named); }
+
+    // What reading an open text finds, as diagnostics; `compile` finds all.
+    mistakes({ name = 'scene.krs' } = {}) {
+        const found = this.#withTexts([name], called => this.m._core_mistakes(called));
+        return found ? JSON.parse(this.string(found)) : [];
+    }
+
+    // What can be asked, as a server says it.
+    capabilities() { return JSON.parse(this.string(this.m._core_capabilities())); }
+
+    // The text of a file of the library, of which answers say "library:NAME"; null: there is none.
+    library(name) {
+        const at = this.#withTexts([name], called => this.m._core_library(called));
+        return at ? this.string(at) : null;
+    }
+
     format(text, { name = 'scene.krs' } = {}) {
         const [at, length] = this.putText(text);
         const [called] = this.putText(name);

@@ -13,4 +13,7 @@ char *page_font(const char *name, size_t *length, int *face);
 /* Told which part of a mesh is done; false: it is not wanted any more. */
 bool page_progress(double done);
 
+/* core.c: page_load, with text that is freed when the next is asked for. */
+const char *supply_text(void *user, const char *path, size_t *length);
+
 #endif
