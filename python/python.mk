@@ -5,11 +5,16 @@ PY           := $(B)/python
 # One that has NumPy and cffi.
 find_python   = $(shell for p in python3 /usr/bin/python3; do $$p -c 'import cffi, numpy' 2>/dev/null && echo $$p && break; done)
 PYTHON       ?= $(or $(find_python),$(error `make python` needs NumPy and cffi: python3-numpy and python3-cffi of Debian))
-PY_SOURCES   := $(wildcard python/krs/*.py) python/krs/py.typed
-PY_PACKAGE   := $(PY_SOURCES:python/%=$(PY)/%) $(PY)/krs/_declarations.py $(PY)/krs/libkrs.so
+PY_SOURCES   := $(wildcard python/krs/*.py) python/krs/view.html python/krs/py.typed
+# What `krs.view` shows scenes by, where `make web` has made it.
+PY_WEB       := $(shell find $(B)/web -type f 2>/dev/null)
+PY_PACKAGE   := $(PY_SOURCES:python/%=$(PY)/%) $(PY)/krs/_declarations.py $(PY)/krs/libkrs.so $(PY_WEB:$(B)/%=$(PY)/krs/%)
 
 python: $(PY)/krs/words.pyi
 $(PY)/krs/%: python/krs/%
+	@mkdir -p $(@D)
+	@cp $< $@
+$(PY)/krs/web/%: $(B)/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 $(PY)/krs/_declarations.py: python/tools/declare.py $(wildcard include/krs/*)

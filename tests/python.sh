@@ -18,17 +18,10 @@ skip() { # name, why
     number=$((number + 1))
     echo "ok $number - $1 # SKIP $2"
 }
-python=$(for one in ${PYTHON:-python3 /usr/bin/python3}; do
-    "$one" -c 'import cffi, numpy' 2>/dev/null && echo "$one" && break
-done)
-if [ -z "$python" ]; then
-    echo "1..1"
-    skip "the package for Python" "no Python with NumPy and cffi: python3-numpy and python3-cffi of Debian"
-    exit 0
-fi
+. tests/support/python.sh
 package=$build/python
 echo "1..6"
-make --no-print-directory B="$build" PYTHON="$python" python >"$work/said" 2>&1
+make_python python >"$work/said" 2>&1
 report $? "the package is made"
 
 # ---- types ----
@@ -60,7 +53,7 @@ if ! "$python" -c 'import build, setuptools, wheel, venv, ensurepip' 2>/dev/null
     skip "a wheel of this platform is made" "no build, setuptools, wheel or venv"
     skip "it works in an environment of its own" "no wheel"
 else
-    make --no-print-directory B="$build" PYTHON="$python" wheel >"$work/said" 2>&1 &&
+    make_python wheel >"$work/said" 2>&1 &&
         wheel=$(ls "$package"/dist/krs-*-py3-none-linux_*.whl) && [ -s "$wheel" ]
     report $? "a wheel of this platform is made"
     "$python" -m venv --system-site-packages "$work/venv" >"$work/said" 2>&1 &&
@@ -74,7 +67,7 @@ assert krs.sphere(2).compile().distance([0, 0, 3]) == 1') >>"$work/said" 2>&1
 fi
 
 # ---- what it does ----
-PYTHONPATH="$package:tests/python" "$python" tests/python/tap.py declarations questions solids pictures built docs/python.md
+PYTHONPATH="$package:tests/python" "$python" tests/python/tap.py declarations questions solids pictures built views krs.scene krs.expressions krs.words krs.picture docs/python.md
 status=$?
 [ "$failed" -eq 0 ] && exit $status
 exit 1

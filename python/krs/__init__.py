@@ -16,9 +16,10 @@ from krs.mesh import Grid, Mesh, Section
 from krs.native import version as __version__
 from krs.picture import Picture, devices
 from krs.scene import Camera, Parameter, Scene, compile, format
+from krs.view import View, view
 
 # What `from krs import *` has: names of Python itself, such as `min`, stay what they are.
 __all__ = ["ArgumentError", "Camera", "DeviceError", "Diagnostic", "Error", "Expression", "Grid", "InternalError",
            "Interrupted", "Library", "MemoryLimit", "Mesh", "Parameter", "Picture", "Scene", "SceneError",
-           "SceneWarning", "Section", "Sequence", "Sketch", "camera", "choose", "deg", "devices", "fog", "image",
-           "kernel", "let", "light", "material", "param", "show", "sky", "use", "zone"]
+           "SceneWarning", "Section", "Sequence", "Sketch", "View", "camera", "choose", "deg", "devices", "fog", "image",
+           "kernel", "let", "light", "material", "param", "show", "sky", "use", "view", "zone"]

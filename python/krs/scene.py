@@ -79,6 +79,11 @@ def _listen(user: Any, told: Any) -> None:
                                             ffi.string(told.text).decode(errors="replace")))
 
 
+@ffi.callback("void(void *, const char *)")
+def _note(user: Any, path: Any) -> None:
+    ffi.from_handle(user)[os.fsdecode(ffi.string(path))] = None
+
+
 class _Loader:
     """Supplies files that a scene uses, from a function of the caller."""
 
@@ -102,11 +107,12 @@ class _Loader:
         self.raised = exception
 
 
-def _compile(text: bytes, name: str, options: dict[str, Any]) -> tuple[Any, list[Diagnostic]]:
-    """A KrsScene, and what is said of it."""
+def _compile(text: bytes, name: str, options: dict[str, Any]) -> tuple[Any, list[Diagnostic], list[str]]:
+    """A KrsScene, what is said of it, and the files that it is read from."""
     said: list[Diagnostic] = []
-    handle = ffi.new_handle(said)
-    struct = ffi.new("KrsOptions *", {"diagnostic": _listen, "user": handle})
+    opened: dict[str, None] = {}
+    handle, files = ffi.new_handle(said), ffi.new_handle(opened)
+    struct = ffi.new("KrsOptions *", {"diagnostic": _listen, "user": handle, "opened": _note, "opened_user": files})
     given = dict(options)
     root = given.pop("root", None)
     load = given.pop("load", None)
@@ -124,7 +130,7 @@ def _compile(text: bytes, name: str, options: dict[str, Any]) -> tuple[Any, list
     if status in (lib.KRS_BAD_SCENE, lib.KRS_IO_ERROR):
         raise SceneError(said)
     check(status, f"cannot compile {name}")
-    return scene[0], said
+    return scene[0], said, list(opened)
 
 
 class _Compiled(Handle):
@@ -132,7 +138,7 @@ class _Compiled(Handle):
 
     def __init__(self, text: bytes, name: str, options: dict[str, Any]):
         self.text, self.name, self.options = text, name, options
-        pointer, self.diagnostics = _compile(text, name, options)
+        pointer, self.diagnostics, self.opened = _compile(text, name, options)
         super().__init__(pointer, lib.krs_scene_free)
         self.parameters = {p.name: p for p in self._parameters()}
         self._pictures: dict[bool, _Compiled] = {}
@@ -343,6 +349,13 @@ class Scene:
     def diagnostics(self) -> list[Diagnostic]:
         """Warnings, and the notes of `print`."""
         return list(self._compiled.diagnostics)
+
+    def files(self) -> dict[str, bytes]:
+        """Files that the scene is read from, but for its own: by their paths, as they are now."""
+        load = self._compiled.options.get("load")
+        read = load or (lambda path: Path(path).read_bytes() if os.path.isfile(path) else None)
+        found = {path: read(path) for path in self._compiled.opened if path != self.name}
+        return {path: data.encode() if isinstance(data, str) else data for path, data in found.items() if data is not None}
 
     @property
     def components(self) -> list[SimpleNamespace]:

@@ -1,4 +1,4 @@
-"""tap.py MODULE... PAGE...: runs tests of these modules, examples in pages and in the package, and says in TAP how they end."""
+"""tap.py NAME...: runs tests of modules, examples in pages (.md) and in modules of the package (krs.), and says in TAP how they end."""
 import doctest
 import importlib
 import sys
@@ -45,10 +45,10 @@ def main(names):
     for name in names:
         if name.endswith(".md"):
             suite.addTest(doctest.DocFileSuite(name, module_relative=False, optionflags=doctest.ELLIPSIS))
+        elif name.startswith("krs."):
+            suite.addTest(doctest.DocTestSuite(importlib.import_module(name)))
         else:
             suite.addTests(unittest.defaultTestLoader.loadTestsFromModule(importlib.import_module(name)))
-    for name in ("scene", "expressions", "words", "picture"):
-        suite.addTest(doctest.DocTestSuite(importlib.import_module(f"krs.{name}")))
     print(f"1..{suite.countTestCases()}")
     return 0 if suite.run(Tap()).wasSuccessful() else 1
 
