@@ -31,10 +31,11 @@ has_chafa  = $(shell $(PKG_CONFIG) --silence-errors --exists chafa && echo chafa
 window     = $(call described,--libs,$(has_chafa)) $(call linked,imgui,imgui) $(call linked,glfw3,glfw) \
              $(call linked,gl,GL) $(call linked,x11,X11)
 mesh_libs  = $(call linked,tinygltf,tinygltf) $(call linked,libzip,zip)
+json_libs  = $(call linked,jansson,jansson)
 vdb_libs   = $(if $(call found,openvdb),$(call found,openvdb tbb))
 # Their warnings are not ours.
 headers    = $(patsubst -I%,-isystem %,$(call described,--cflags,$(has_chafa) freetype2 harfbuzz fontconfig \
-             expat OpenEXR libpng qhull_r libdeflate libxxhash vulkan glfw3 imgui x11 libzip tinygltf))
+             expat OpenEXR libpng qhull_r libdeflate libxxhash vulkan glfw3 imgui x11 libzip tinygltf jansson))
 
 # What the compiler needs but for glslang, which the fuzzers leave out.
 FRONT_LIBS  = $(call once,FRONT_LIBS,front_libs)
@@ -43,6 +44,7 @@ LIBS        = $(call once,LIBS,libs)
 CHAFA       = $(call once,CHAFA,has_chafa)
 WINDOW_LIBS = $(call once,WINDOW_LIBS,window)
 MESH_LIBS   = $(call once,MESH_LIBS,mesh_libs)
+JSON_LIBS   = $(call once,JSON_LIBS,json_libs)
 # The module for OpenVDB needs it; without the library `krs grid` says so.
 VDB_LIBS    = $(call once,VDB_LIBS,vdb_libs)
 HEADERS     = $(call once,HEADERS,headers)

@@ -34,7 +34,7 @@ static void document_free(Document *document)
 }
 
 /* Forgets what was read: any text may use the one that changed. */
-static void forget(Service *service)
+void service_forget(Service *service)
 {
     for (Document *document = service->documents; document; document = document->next)
         analysis_free(&document->analysis);
@@ -75,7 +75,7 @@ static bool guard(Service *service, void (*work)(Service *, void *), void *user)
         work(service, user);
     else {
         begin(service);
-        forget(service);
+        service_forget(service);
     }
     service->memory.exhausted = NULL;
     return enough;
@@ -121,7 +121,7 @@ static bool set_text(Service *service, Document *document, char *text, size_t le
         free(text);
         return false;
     }
-    forget(service);
+    service_forget(service);
     free(document->text);
     document->text   = text;
     document->length = length;
@@ -177,7 +177,7 @@ void service_close(Service *service, const char *path)
             Document *closed = *at;
             *at              = closed->next;
             document_free(closed);
-            forget(service);
+            service_forget(service);
             break;
         }
     free(own);
@@ -212,13 +212,20 @@ static void answer(Service *service, void *user)
     asked->answer(&here, asked->about, &service->json);
 }
 
-const char *service_answer(Service *service, const char *question, const ServiceQuestion *about)
+static Answer *find_answer(const char *question)
 {
-    Question asked = {.about = about};
-    begin(service);
     for (size_t i = 0; i < QUESTION_COUNT; i++)
         if (strcmp(questions[i].name, question) == 0)
-            asked.answer = questions[i].answer;
+            return questions[i].answer;
+    return NULL;
+}
+
+bool service_knows(const char *question) { return find_answer(question) != NULL; }
+
+const char *service_answer(Service *service, const char *question, const ServiceQuestion *about)
+{
+    Question asked = {.about = about, .answer = find_answer(question)};
+    begin(service);
     if (!asked.answer)
         return NULL;
     char *path     = simplified(about->path);

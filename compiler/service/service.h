@@ -35,6 +35,8 @@ bool service_open(Service *service, const char *path, const char *uri, const cha
 bool service_edit(Service *service, const char *path, Utf16Position from, Utf16Position to,
                   const char *text, size_t length);
 void service_close(Service *service, const char *path);
+/* Files that are not open are read again: one may have changed. */
+void service_forget(Service *service);
 
 /* What a diagnostic proposes: a text in place of another; and the diagnostic itself, as JSON. */
 typedef struct ServiceFix {
@@ -55,6 +57,8 @@ typedef struct ServiceQuestion {
 
 /* The result, until the next call; NULL: there is no such question, or it is refused. */
 const char *service_answer(Service *service, const char *question, const ServiceQuestion *about);
+/* Tells whether there is a question of this name. */
+bool service_knows(const char *question);
 /* Why the last question was refused; NULL: there is none of this name. */
 const char *service_refusal(const Service *service);
 
