@@ -37,7 +37,7 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources by folder, in the order of the pipeline: reading down this list is reading the program.
-ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower lower/research family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl print/essl target scene passes refute field service
+ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower lower/research family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl print/essl print/wgsl target scene passes refute field service
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Clients of the compiler: it knows nothing of them.

@@ -20,10 +20,11 @@ static KrsStatus write_output_file(const Options *options, const char *base, con
 
 /* ---- tables ---- */
 
-/* A texel buffer of the GLSL, or a texture of the ESSL, and the file that has its contents. */
+/* A texel buffer of the GLSL, a texture of the ESSL or a storage buffer of the WGSL, and the file that has its
+   contents. */
 typedef struct TableFile {
     const char *buffer, *ending, *format;
-    uint32_t    binding; /* of the GLSL, in set 0 */
+    uint32_t    binding; /* of the GLSL and the WGSL, in set or group 0 */
 } TableFile;
 
 static const TableFile rows_file  = {"krs_rows", ".rows.bin", "RGBA32F", 1};
@@ -74,7 +75,8 @@ static void add_table_json(Text *json, const char *name, const TableFile *file, 
     if (target == KRS_TARGET_ESSL)
         text_format(json, "\"width\": %d, ", KRS_TEXTURE_WIDTH);
     else
-        text_format(json, "\"set\": 0, \"binding\": %u, ", file->binding);
+        text_format(json, "\"%s\": 0, \"binding\": %u, ",
+                    target == KRS_TARGET_WGSL ? "group" : "set", file->binding);
     text_format(json, "\"format\": \"%s\", \"texels\": %zu, \"file\": ", file->format, texels);
     text_json(json, path.bytes);
     text_add(json, "}");

@@ -8,7 +8,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/bounds compiler/graph/lanes compiler/graph/rewrite compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/lower/research compiler/family compiler/front
-        compiler/eval compiler/eval/declared compiler/eval/view compiler/eval/data compiler/eval/hulls compiler/eval/builtins compiler/print compiler/print/glsl compiler/print/essl compiler/target compiler/scene compiler/passes compiler/refute compiler/field compiler/service
+        compiler/eval compiler/eval/declared compiler/eval/view compiler/eval/data compiler/eval/hulls compiler/eval/builtins compiler/print compiler/print/glsl compiler/print/essl compiler/print/wgsl compiler/target compiler/scene compiler/passes compiler/refute compiler/field compiler/service
         mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays
         platform/linux platform/web web/core
         runtime/device runtime/shared runtime/tracer/research runtime/tracer runtime/integrators runtime/film runtime/display

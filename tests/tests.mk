@@ -7,7 +7,7 @@
 
 # What tests of several kinds share; nothing of it knows what is tested.
 SUPPORT     := $(addprefix tests/support/, agreement.c bench.c instance_texts.c device.c folder.c random.c \
-               renderer.c same_scene.c scarce.c)
+               renderer.c same_scene.c scarce.c scattered.c)
 # What tests of one kind share.
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
                formulas.c montecarlo.c quaternions.c chain.c chain_random.c map_chain.c \
@@ -60,7 +60,7 @@ BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/se
 # else, and `make test-all` both (docs/building.md says what costs what).  The sanitizers, clang and the fuzzers belong
 # to it, as they compile everything once more, the judge of meshes, whose headers take a minute, and what
 # compares switches of `krs help render --all` with each other.
-LONG        := $(addprefix tests/, web/many.sh web/playground_long.sh web/python.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
+LONG        := $(addprefix tests/, web/many.sh web/wgsl_many.sh web/playground_long.sh web/python.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
                $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_csg.sh mesh_judges.sh outputs.sh \
                pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
                $(addprefix unit/, arguments compiled instance_grid drivers film light_groups memory mesh_proofs methods noise paths \
@@ -72,8 +72,8 @@ LONG        := $(addprefix tests/, web/many.sh web/playground_long.sh web/python
 # What a set has of scripts, of programs, and of programs under the sanitizers.
 scripts_short    = $(filter-out $(LONG), $(1))
 scripts_long     = $(filter $(LONG), $(1))
-# many.sh is core.sh with more scenes.
-scripts_all      = $(filter-out tests/web/core.sh, $(1))
+# many.sh is core.sh with more scenes, wgsl_many.sh wgsl.sh.
+scripts_all      = $(filter-out tests/web/core.sh tests/web/wgsl.sh, $(1))
 programs_short  := $(filter-out $(LONG), $(PROGRAMS))
 programs_long   := $(filter $(LONG), $(PLAIN))
 programs_all    := $(PLAIN)
@@ -112,7 +112,7 @@ $(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a $(
 $(B)/tests/%: $(B)/tests/%.o $(LINKED)
 	@$(LINK)
 # What node compares with.
-$(B)/tests/web/texts: $(B)/tests/web/texts.o $(B)/tests/oracle/oracle.a $(LINKED)
+$(B)/tests/web/texts $(B)/tests/web/points: %: %.o $(B)/tests/oracle/oracle.a $(LINKED)
 	@$(LINK)
 IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_open_surfaces
 $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o $(B)/tests/oracle/pov_trees.o \
@@ -202,7 +202,7 @@ test:      SET := short
 test-long: SET := long
 test-all:  SET := all
 # What scripts of tests/web use, which run side by side, where test-deps could install what builds it.  They tell what is missing.
-web        = $(if $(and $(shell command -v emcc),$(shell command -v node)),web $(B)/tests/web/texts)
+web        = $(if $(and $(shell command -v emcc),$(shell command -v node)),web $(B)/tests/web/texts $(B)/tests/web/points)
 played     = $(if $(and $(web),$(shell command -v npm),$(shell command -v esbuild)),playground)
 scripts    = $(call scripts_$(SET), $(1))
 programs   = $(patsubst %,$(B)/%,$(programs_$(SET)))

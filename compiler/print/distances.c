@@ -77,7 +77,7 @@ void emit_distance(Emitter *e)
     bool some = e->variant->march_group > 0 || (e->variant->planes && e->module->is_plane) ||
                 (e->variant->glass && e->module->is_medium);
     uint32_t count = (uint32_t)e->module->components, first = !some && count > 0;
-    emit_local(e, TYPE_FLOAT, "d", first ? emit_call_of(e, OF_DISTANCE, 0) : NOWHERE_TEXT);
+    emit_variable(e, TYPE_FLOAT, "d", first ? emit_call_of(e, OF_DISTANCE, 0) : NOWHERE_TEXT);
     for (uint32_t i = first; i < count; i++)
         if (!emit_leaves_out(e, i) && !emit_is_medium(e, i))
             text_format(e->out, "    d = min(d, %s);\n", emit_call_of(e, OF_DISTANCE, i));
@@ -151,7 +151,7 @@ static const char *with_distance(Emitter *e, const char *gradient, const char *d
    other is not a number. */
 static const char *emit_kept_distance(Emitter *e, uint32_t component, const char *distance)
 {
-    emit_local(e, TYPE_FLOAT, "tangent", distance);
+    emit_variable(e, TYPE_FLOAT, "tangent", distance);
     emit_local(e, TYPE_FLOAT, "outside", emit_box_distance(e, component));
     emit_template(e, TEMPLATE_SET_IF,
                   (Operands){"outside > 0.0 && !(tangent > outside)", "tangent", "outside"});

@@ -44,7 +44,7 @@ static void emit_guard(Emitter *e, const Regions *regions, Node guard)
     Text        name = {.arena = e->scratch}, found = name;
     text_format(&name, "t%u", e->next++);
     text_format(&found, "min(%s, %s)", bound, least);
-    emit_local(e, TYPE_FLOAT, name.bytes, found.bytes);
+    emit_variable(e, TYPE_FLOAT, name.bytes, found.bytes);
     emit_line(e, "    if (!(%s)) {\n", guard_text(e, o));
     size_t      outside = e->row_texels.count;
     const char *rest    = emit_region(e, regions, regions->body[guard], o[2], false);
@@ -141,7 +141,7 @@ static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
 {
     const char *call = emit_call_of(e, OF_LOD, component);
     if (first) {
-        emit_local(e, TYPE_FLOAT, "d", call);
+        emit_variable(e, TYPE_FLOAT, "d", call);
         return;
     }
     Text least = {.arena = e->scratch}, nearer = least;
@@ -167,13 +167,13 @@ void emit_lod(Emitter *e)
     bool   found = e->module->is_plane == NULL; /* by the first component */
     size_t count = 0;
     if (!found)
-        emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
+        emit_variable(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     for (int finite = 0; finite < 2; finite++)
         for (uint32_t i = 0; i < e->module->components; i++)
             if (is_looked_at(e, i) && box_is_finite(e->module->boxes[i]) == finite &&
                 !emit_is_medium(e, i))
                 emit_guarded_component(e, i, found && count++ == 0);
     if (found && count == 0)
-        emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
+        emit_variable(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     emit_media_steps(e, kind_of_lod, "d");
 }

@@ -62,29 +62,31 @@ typedef struct Emitter {
     Text             *out;
     bool              wanted[KRS_FUNCTION_COUNT];
     bool             *needed_of[FUNCTION_KINDS]; /* of each component, whether it is called */
-    const char      **text;    /* of a node in the function being written: its name or expression */
-    uint8_t          *nesting; /* of that expression */
-    uint32_t         *uses;    /* in the function being written */
-    NodeList          needed;  /* all that have uses, in order */
-    const char      **given;   /* names of nodes that the function need not compute */
-    uint8_t          *mark;    /* for walks, zero between them */
-    uint32_t         *rank;    /* how many noises a value needs, one in the other (noises.c) */
-    uint32_t          iterations;     /* of loops over noises, so far */
-    bool              gathers_noises; /* in the function being written */
-    const char      **frame;          /* names of the globals that krs_prepare sets */
-    bool             *slot_is_read;   /* in krs_prepare: whether a local has the slot's numbers */
-    uint8_t          *feeds_mirror;   /* whether a mirror (OP_fold) uses it */
-    const char      **excess; /* of mirrors in a row: the name of how far beyond it the point is */
-    uint32_t          next;   /* number of the next local name */
-    uint32_t          globals;
-    uint32_t         *place;   /* of values that the host finds: their number + 1 */
-    Regions           regions; /* of the function being written, where it has guards */
-    Span              last;    /* the line that was commented last */
-    uint8_t          *called;  /* of each instance function: how many operands calls have behind its
+    const char *
+        *operations;      /* of each operation and type, in words of the printer; NULL: not yet */
+    const char **text;    /* of a node in the function being written: its name or expression */
+    uint8_t     *nesting; /* of that expression */
+    uint32_t    *uses;    /* in the function being written */
+    NodeList     needed;  /* all that have uses, in order */
+    const char **given;   /* names of nodes that the function need not compute */
+    uint8_t     *mark;    /* for walks, zero between them */
+    uint32_t    *rank;    /* how many noises a value needs, one in the other (noises.c) */
+    uint32_t     iterations;     /* of loops over noises, so far */
+    bool         gathers_noises; /* in the function being written */
+    const char **frame;          /* names of the globals that krs_prepare sets */
+    bool        *slot_is_read;   /* in krs_prepare: whether a local has the slot's numbers */
+    uint8_t     *feeds_mirror;   /* whether a mirror (OP_fold) uses it */
+    const char **excess; /* of mirrors in a row: the name of how far beyond it the point is */
+    uint32_t     next;   /* number of the next local name */
+    uint32_t     globals;
+    uint32_t    *place;       /* of values that the host finds: their number + 1 */
+    Regions      regions;     /* of the function being written, where it has guards */
+    Span         last;        /* the line that was commented last */
+    uint8_t     *called;      /* of each instance function: how many operands calls have behind its
                                   number; 0: there is no call.  NULL: there are no instance groups */
-    bool             *reads_table;   /* of each table */
-    bool             *reads_texture; /* of each texture */
-    bool              sees;          /* something needs the ray that sees the surface */
+    bool        *reads_table; /* of each table */
+    bool        *reads_texture; /* of each texture */
+    bool         sees;          /* something needs the ray that sees the surface */
     struct {
         RowTexel *items;
         size_t    count, capacity;
@@ -130,8 +132,9 @@ typedef const char *Operands[3];
 /* The printer's words for a template; the second writes them as a line. */
 const char *template_text(Emitter *e, TextTemplate template, const Operands operands);
 void        emit_template(Emitter *e, TextTemplate template, const Operands operands);
-/* A local variable. */
+/* A local variable that stays as it is, and one that changes. */
 void emit_local(Emitter *e, GraphType type, const char *name, const char *value);
+void emit_variable(Emitter *e, GraphType type, const char *name, const char *value);
 /* Says where the next statement comes from, unless it is the same line as before, or the same file
    of the standard library. */
 void emit_comment(Emitter *e, Span span);
@@ -152,8 +155,9 @@ const char *emit_slot(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
 
 /* Reads the printer's files; then, of a call in a text, what it needs is in e->helper_text. */
 void helpers_read(Emitter *e);
-/* The function that `name` begins with is called, with so many operands of that type. */
-void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands);
+/* The function that `name` begins with is called, with so many operands of that type.  Returns what it is called
+   of that type. */
+const char *emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands);
 /* Writes a function of these files that is one of a component: N in it stands for the number. */
 void emit_helper_of(Emitter *e, const char *name, uint32_t component);
 

@@ -3,7 +3,7 @@
  *
  * A helper is a function of such a file, with a comment above it, between blank lines.  It is printed
  * before the first that calls it, if any does.  Where there is one of floats alone, the same of
- * vectors is written here; that is for languages in which functions of one name may differ by type.
+ * vectors is written here.  No two functions have one name: that of vectors ends with "_vec3".
  */
 #include <assert.h>
 #include <ctype.h>
@@ -53,24 +53,31 @@ static void find_type(const Emitter *e, Helper *helper, const char *from)
 }
 
 /* The part of a file between blank lines, unless it is none; "float krs_sin(float a)..." */
-static void read_helper(Emitter *e, const char *text, size_t length)
+static void read_helper(Emitter *e, const char *text, size_t length, bool of_base)
 {
     const char *from = skip_comment(text), *end = text + length;
-    const char *name = strstr(from, "krs_");
+    const char *name    = strstr(from, "krs_");
+    Text        spelled = {.arena = e->scratch};
     if (from >= end || *from == '#' || !name || name >= end)
         return;
+    if (of_base && e->printer->spell) {
+        e->printer->spell(text, length, TYPE_FLOAT, &spelled);
+        text   = spelled.bytes;
+        length = spelled.length;
+        name   = strstr(skip_comment(text), "krs_");
+    }
     Helper helper      = {.text = text, .length = length, .name = name};
     helper.name_length = strcspn(name, "( ");
     find_type(e, &helper, name + helper.name_length);
     array_push(e->scratch, &e->helpers, helper);
 }
 
-static void read_file(Emitter *e, const EmbeddedFile *file)
+static void read_file(Emitter *e, const EmbeddedFile *file, bool of_base)
 {
     for (const char *text = file->text; *text;) {
         const char *blank  = strstr(text, "\n\n");
         size_t      length = blank ? (size_t)(blank - text) + 1 : strlen(text);
-        read_helper(e, text, length);
+        read_helper(e, text, length, of_base);
         text += length + (blank != NULL);
     }
 }
@@ -80,7 +87,7 @@ void helpers_read(Emitter *e)
 {
     for (const Printer *printer = e->printer; printer; printer = printer->base)
         for (const EmbeddedFile *file = printer->helpers; file && file->name; file++)
-            read_file(e, file);
+            read_file(e, file, printer != e->printer);
 }
 
 /* The one whose first operand has this type, if any; NULL: any type. */
@@ -124,19 +131,19 @@ static const char *text_of(Emitter *e, const char *bytes, size_t length)
     return arena_copy_text(e->scratch, bytes, length);
 }
 
-/* Prints an operation on vectors, component by component. */
-static void print_spread(Emitter *e, const char *name, size_t length, GraphType type,
+/* Prints an operation on vectors, component by component, by the `plain` one. */
+static void print_spread(Emitter *e, const char *name, const char *plain, GraphType type,
                          uint32_t operands)
 {
-    const char *vector = e->printer->types[type], *plain = text_of(e, name, length);
-    Text       *out  = &e->helper_text;
-    Text        text = {.arena = e->scratch};
+    const char *vector = e->printer->types[type];
+    Text       *out    = &e->helper_text;
+    Text        text   = {.arena = e->scratch};
     for (uint32_t k = 0; k < operands; k++) {
         Operands parameter = {vector, text_of(e, &"abcd"[k], 1)};
         text_add(&text, k ? ", " : "");
         text_add(&text, template_text(e, TEMPLATE_PARAMETER, parameter));
     }
-    const char *head = template_text(e, TEMPLATE_FUNCTION, (Operands){vector, plain, text.bytes});
+    const char *head = template_text(e, TEMPLATE_FUNCTION, (Operands){vector, name, text.bytes});
     if (out->length > 0 && strstr(out->bytes, head))
         return;
     text_format(out, "%s\n{\n    return %s(", head, vector);
@@ -149,32 +156,42 @@ static void print_spread(Emitter *e, const char *name, size_t length, GraphType 
     text_add(out, ");\n}\n\n");
 }
 
-/* False: there is no such function. */
-static bool print_called(Emitter *e, const char *name, GraphType type, uint32_t operands)
+/* Returns what it is called; NULL: there is no such function. */
+static const char *print_called(Emitter *e, const char *call, GraphType type, uint32_t operands)
 {
-    size_t  length = name_length(name);
-    Helper *exact  = find_helper(e, name, length, e->printer->types[type]);
+    const size_t length     = name_length(call);
+    const char  *name       = text_of(e, call, length);
+    Text         of_vectors = {.arena = e->scratch};
+    Helper      *exact      = find_helper(e, name, length, e->printer->types[type]);
+    if (exact) {
+        print_helper(e, exact);
+        return name;
+    }
+    if (type < TYPE_VEC2 || type > TYPE_VEC4)
+        return NULL;
+    text_format(&of_vectors, "%s_vec%d", name, (int)type);
+    exact          = find_helper(e, of_vectors.bytes, of_vectors.length, NULL);
     Helper *of_one = find_helper(e, name, length, e->printer->types[TYPE_FLOAT]);
-    if (!exact && (!of_one || type > TYPE_VEC4))
-        return false;
+    if (!exact && !of_one)
+        return NULL;
     print_helper(e, exact ? exact : of_one);
     if (!exact)
-        print_spread(e, name, length, type, operands);
-    return true;
+        print_spread(e, of_vectors.bytes, name, type, operands);
+    return of_vectors.bytes;
 }
 
-void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands)
+const char *emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands)
 {
-    bool found = print_called(e, name, type, operands);
-    assert(found);
-    (void)found;
+    const char *called = print_called(e, name, type, operands);
+    assert(called);
+    return called;
 }
 
 bool module_print_helpers(const Printer *printer, Op op, GraphType type, uint32_t operands,
                           Text *out)
 {
     const Printer whole = printer_with_base(printer, out->arena);
-    const char   *call  = strstr(whole.operation(op, type), "krs_");
+    const char   *call  = strstr(printer_operation(&whole, op, type, out->arena), "krs_");
     Emitter       e     = {.printer = &whole, .scratch = out->arena, .helper_text = *out};
     helpers_read(&e);
     bool found = !call || print_called(&e, call, type, operands);

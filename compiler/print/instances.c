@@ -185,7 +185,7 @@ static void emit_first_states(Emitter *e, const InstanceFunction *function)
         const InstanceState *state = &function->states[i];
         Expr                 first = {.op = OP_CONSTANT, .type = (uint8_t)state->type};
         memcpy(first.number, state->first, sizeof first.number);
-        emit_local(e, state->type, state_name(e, i), emit_constant(e, &first));
+        emit_variable(e, state->type, state_name(e, i), emit_constant(e, &first));
     }
 }
 
@@ -234,6 +234,12 @@ static const char *tail_text(Emitter *e, uint32_t table_number)
     return text.bytes;
 }
 
+static const char *choice_text(Emitter *e, const char *condition, const char *one,
+                               const char *other)
+{
+    return template_text(e, TEMPLATE_CHOICE, (Operands){condition, one, other});
+}
+
 /* A sum of powers, until what is left may lack.  The last power that counts is cut so that the result has no steps. */
 static void emit_sum_that_ends(Emitter *e, const InstanceFunction *function, const Node *bodies)
 {
@@ -247,8 +253,8 @@ static void emit_sum_that_ends(Emitter *e, const InstanceFunction *function, con
     text.length = 0;
     text_format(&text, "krs_exact_from(p, %s)", table);
     emit_local(e, TYPE_FLOAT, "exact_from", text.bytes);
-    emit_local(e, TYPE_FLOAT, "sum", "0.0");
-    emit_local(e, TYPE_FLOAT, "whole", "0.0");
+    emit_variable(e, TYPE_FLOAT, "sum", "0.0");
+    emit_variable(e, TYPE_FLOAT, "whole", "0.0");
     emit_template(e, TEMPLATE_EACH_LISTED, (Operands){table});
     const size_t body = e->out->length;
     emit_body(e, &bodies[3], 1);
@@ -261,12 +267,15 @@ static void emit_sum_that_ends(Emitter *e, const InstanceFunction *function, con
     emit_local(e, TYPE_FLOAT, "most", text.bytes);
     emit_line(e, "    sum += power;\n");
     emit_line(e, "    whole = sum + krs_lack(sum, exact_from);\n");
-    emit_line(e, "    nearby.end = most > whole ? nearby.end : i;\n");
+    emit_line(e, "    nearby.end = %s;\n", choice_text(e, "most > whole", "nearby.end", "i"));
     emit_line(e, "    whole = min(whole, most);\n");
     indent_lines(e, body);
     text_add(e->out, "    }\n");
-    emit_line(e, "    float blended = nearby.clearance - %s.width * log(whole);\n", table);
-    text_add(e->out, "    return whole > 0.0 ? blended : nearby.clearance;\n}\n\n");
+    text.length = 0;
+    text_format(&text, "nearby.clearance - %s.width * log(whole)", table);
+    emit_local(e, TYPE_FLOAT, "blended", text.bytes);
+    emit_line(e, "    return %s;\n}\n\n",
+              choice_text(e, "whole > 0.0", "blended", "nearby.clearance"));
 }
 
 /* What the function returns that joins its states. */
@@ -286,12 +295,14 @@ static void emit_end_of_states(Emitter *e, const InstanceFunction *function, con
         memcpy(first.number, state->first, sizeof first.number);
         Text none = {.arena = e->scratch};
         text_add(&none, emit_constant(e, &first));
-        emit_line(e, "    bool listed = %s < nearby.clearance;\n", end);
-        emit_local(e, state->type, "none", none.bytes);
+        Text is_listed = {.arena = e->scratch};
+        text_format(&is_listed, "%s < nearby.clearance", end);
+        emit_local(e, TYPE_BOOL, "listed", is_listed.bytes);
+        emit_variable(e, state->type, "none", none.bytes);
         if (function->listed == 0)
             emit_line(e, state->type == TYPE_FLOAT ? "    none = nearby.clearance;\n"
                                                    : "    none.x = nearby.clearance;\n");
-        text_format(e->out, "    return listed ? %s : none;\n}\n\n", listed);
+        text_format(e->out, "    return %s;\n}\n\n", choice_text(e, "listed", listed, "none"));
     }
 }
 
@@ -323,7 +334,8 @@ static void emit_function_of_instances(Emitter *e, uint32_t id)
     if (function->sums) /* without an instance the sum is 0 */
         emit_line(e, "    state0 -= state2 * log(max(state1, 1.0));\n");
     text_format(e->out, "    return %s;\n}\n\n",
-                function->either ? "abs(state0) < abs(nearby.clearance) ? state0 : nearby.clearance"
+                function->either  ? choice_text(e, "abs(state0) < abs(nearby.clearance)", "state0",
+                                                "nearby.clearance")
                 : function->clear ? "min(state0, nearby.clearance)"
                                   : "state0");
 }

@@ -123,6 +123,11 @@ void emit_local(Emitter *e, GraphType type, const char *name, const char *value)
     emit_template(e, TEMPLATE_LOCAL, (Operands){e->printer->types[type], name, value});
 }
 
+void emit_variable(Emitter *e, GraphType type, const char *name, const char *value)
+{
+    emit_template(e, TEMPLATE_VARIABLE, (Operands){e->printer->types[type], name, value});
+}
+
 /* ---- literals ---- */
 
 /* The shortest literal that reads back as the float nearest to the number. */
@@ -185,12 +190,18 @@ const char *emit_vector(Emitter *e, const double v[3])
     return emit_constant(e, &constant);
 }
 
-/* A file may have any name; what would end the comment, or the text, is shown as `?`. */
+/* A file may have any name; what would end the comment, in WGSL any end of a line of Unicode, or the text, is shown
+   as `?`. */
 static void add_file_name(Text *out, const char *name)
 {
-    for (; *name; name++) {
-        bool control = (unsigned char)*name < ' ' || *name == 0x7f;
-        text_add_bytes(out, control ? "?" : name, 1);
+    size_t left = strlen(name), length;
+    for (; left > 0; name += length, left -= length) {
+        uint32_t   character;
+        const bool coded = (length = text_character(name, left, &character)) > 0;
+        const bool shown = coded && character >= ' ' && character != 0x7f && character != 0x85 &&
+                           character != 0x2028 && character != 0x2029;
+        length = coded ? length : 1;
+        text_add_bytes(out, shown ? name : "?", shown ? length : 1);
     }
 }
 

@@ -55,7 +55,7 @@ static void emit_part_case(Emitter *e, size_t part)
 void emit_scene_part_distance(Emitter *e)
 {
     size_t parts = module_scene_part_count(e->module->components);
-    emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
+    emit_variable(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     emit_template(e, TEMPLATE_SWITCH, (Operands){"scene_part"});
     for (size_t part = 0; part < parts; part++)
         emit_part_case(e, part);
@@ -127,7 +127,7 @@ void emit_along_of(Emitter *e, const ModuleFunction *function)
 /* The least of all, of which some have no more than a distance. */
 static void emit_steps(Emitter *e, FunctionKind kind)
 {
-    emit_local(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
+    emit_variable(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
     for (uint32_t i = 0; i < e->module->components; i++) {
         FunctionKind called = has_own_step(e, kind, i) ? kind : OF_DISTANCE;
         bool         apart  = kind == OF_ALONG && emit_is_medium(e, i);
@@ -151,8 +151,8 @@ void emit_along(Emitter *e)
 void emit_separate_steps(Emitter *e)
 {
     const bool together = e->cuts || emit_has_media(e);
-    emit_local(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
-    emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
+    emit_variable(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
+    emit_variable(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     for (uint32_t i = 0; i < e->module->components; i++) {
         const FunctionKind kind = kind_of_step(e, i);
         const char        *into = kind == OF_ALONG || together ? "t" : "d";

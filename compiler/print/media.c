@@ -127,7 +127,7 @@ void need_media(Emitter *e)
 
 void emit_medium_at(Emitter *e)
 {
-    emit_local(e, TYPE_UINT, "medium", "0u");
+    emit_variable(e, TYPE_UINT, "medium", "0u");
     for (uint32_t i = 0; i < e->module->components; i++) {
         Text inside = {.arena = e->scratch};
         if (!e->module->is_medium || !e->module->is_medium[i])
@@ -141,7 +141,7 @@ void emit_medium_at(Emitter *e)
 /* The distance to the nearest of some components. */
 static void emit_nearest_of(Emitter *e, const bool *of)
 {
-    emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
+    emit_variable(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     for (uint32_t i = 0; i < e->module->components; i++)
         if (of && of[i])
             text_format(e->out, "    d = min(d, %s);\n", emit_call_of(e, OF_DISTANCE, i));

@@ -49,6 +49,7 @@ Emitter emitter_new(const Module *module, Arena *scratch)
 {
     size_t  count  = module->graph->count + 1;
     Emitter e      = {.module = module, .graph = module->graph, .scratch = scratch};
+    e.operations   = arena_new_array(scratch, const char *, OP_COUNT *TYPES);
     e.text         = arena_new_array(scratch, const char *, count);
     e.frame        = arena_new_array(scratch, const char *, count);
     e.nesting      = arena_new_array(scratch, uint8_t, count);
@@ -280,18 +281,18 @@ static void emit_functions(Emitter *e)
 
 static void emit_about_textures(Emitter *e)
 {
-    text_add(
-        e->out,
-        "// Textures are in krs_cells, a texel buffer of format RG32UI, and equal in all frames:\n"
-        "// krs_state_tables in krs.h.\n");
+    text_add(e->out,
+             "// Textures are in krs_cells, two words each (RG32UI), and equal in all frames:\n"
+             "// krs_state_tables in krs.h.\n");
 }
 
 static void emit_about_tables(Emitter *e)
 {
     bool vary = instances_vary(e->graph->instances);
-    text_add(e->out,
-             "// Parts that are alike are rows of krs_rows, a texel buffer of format RGBA32F.\n"
-             "// krs_cells, of format RG32UI, says which of them are near a point.  ");
+    text_add(
+        e->out,
+        "// Parts that are alike are rows of krs_rows, four floats each (RGBA32F).  krs_cells,\n"
+        "// two words each (RG32UI), says which of them are near a point.  ");
     text_add(e->out, vary ? "Both are\n// found for each frame: krs_state_tables in krs.h.\n"
                           : "Both are\n// equal in all frames: krs_state_tables in krs.h.\n");
     text_add(e->out,

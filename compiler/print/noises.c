@@ -67,9 +67,9 @@ static void emit_loop(Emitter *e, const NodeList *noises)
         emit_comment(e, noise->span);
         places[i] = new_name(e, 'v');
         values[i] = new_name(e, 't');
-        emit_local(e, (GraphType)e->graph->items[place].type, places[i],
-                   emit_bare(e, e->text[noise->operands[0]]));
-        emit_local(e, TYPE_FLOAT, values[i], "0.0");
+        emit_variable(e, (GraphType)e->graph->items[place].type, places[i],
+                      emit_bare(e, e->text[noise->operands[0]]));
+        emit_variable(e, TYPE_FLOAT, values[i], "0.0");
     }
     emit_template(e, TEMPLATE_ITERATIONS, (Operands){iteration});
     const char *text = e->text[place];

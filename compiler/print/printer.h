@@ -21,6 +21,8 @@ typedef struct Alternative {
     const char *threads, *few; /* for many threads, or for few; with $a and $b */
 } Alternative;
 
+enum { TYPES = TYPE_UINT + 1 }; /* of the graph; 0 is none */
+
 typedef enum TextTemplate {
 #define TEMPLATE(NAME, operands, meaning) TEMPLATE_##NAME,
 #include "compiler/print/templates.def"
@@ -34,14 +36,17 @@ typedef struct Printer {
     const struct Printer *base;
     const char *const    *types; /* by GraphType */
     /* An expression of operands $a to $d, by the type of its result; $A is $a without parentheses
-       around it.  What is before a semicolon is a statement, which sets $t. */
+       around it.  What is before a semicolon is a statement, which sets $t.  NULL: the base's. */
     const char *(*operation)(Op op, GraphType type);
     /* Functions that operations call, with blank lines between; and krs_box_distance,
        krs_mirror_excess, krs_sin, krs_cos, krs_tan and krs_gradient_N, which texts call themselves:
        the last is the gradient of component N by differences. */
     const EmbeddedFile *helpers;
-    const Alternative  *alternatives; /* the last has no name */
-    const char *const  *templates;    /* by TextTemplate */
+    /* Adds a helper or an operation of the base in words of this language; of helpers the type does not
+       matter.  NULL: they have the same words. */
+    void (*spell)(const char *text, size_t length, GraphType type, Text *out);
+    const Alternative *alternatives; /* the last has no name */
+    const char *const *templates;    /* by TextTemplate */
 } Printer;
 
 #define KRS_TARGET(id, name, about) extern const Printer name##_printer;
@@ -51,6 +56,9 @@ extern const Printer *const printers[];
 
 /* A printer with its base's words; they are in memory of the arena. */
 Printer printer_with_base(const Printer *printer, Arena *arena);
+
+/* An operation in words of the printer. */
+const char *printer_operation(const Printer *printer, Op op, GraphType type, Arena *arena);
 
 /* Adds the functions that the text of one operation calls, where its first operand has this type;
    false: it cannot have it. */

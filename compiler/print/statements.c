@@ -27,9 +27,13 @@ static char type_letter(GraphType type)
     }
 }
 
+/* The printer's words for an operation. */
 static const char *template_of(const Emitter *e, const Expr *expr)
 {
-    return e->printer->operation((Op)expr->op, (GraphType)expr->type);
+    const char **words = &e->operations[expr->op * TYPES + expr->type];
+    if (!*words)
+        *words = printer_operation(e->printer, (Op)expr->op, (GraphType)expr->type, e->scratch);
+    return *words;
 }
 
 /* What $a or $A stands for. */
@@ -52,10 +56,16 @@ static const char *fill_template(Emitter *e, const Expr *expr)
     const char *from  = template_of(e, expr);
     uint32_t    local = strchr(from, ';') ? e->next++ : 0;
     const char *call  = strstr(from, "krs_");
-    if (call)
-        emit_call(e, call, (GraphType)e->graph->items[expr->operands[0]].type, expr->operand_count);
     while (*from) {
         size_t plain = strcspn(from, "$;");
+        if (call && call <= from + plain) {
+            const GraphType type = (GraphType)e->graph->items[expr->operands[0]].type;
+            text_add_bytes(&text, from, (size_t)(call - from));
+            text_add(&text, emit_call(e, call, type, expr->operand_count));
+            from = call + strcspn(call, "(");
+            call = NULL;
+            continue;
+        }
         text_add_bytes(&text, from, plain);
         from += plain;
         if (*from == ';') {

@@ -50,7 +50,7 @@ static const char *emit_distance_of_surface(Emitter *e, uint32_t component, cons
 {
     if (!emit_has_tangent(e, component))
         return distance;
-    emit_local(e, TYPE_FLOAT, "tangent", distance);
+    emit_variable(e, TYPE_FLOAT, "tangent", distance);
     emit_local(e, TYPE_FLOAT, "outside", emit_box_distance(e, component));
     emit_template(e, TEMPLATE_SET_IF, (Operands){"outside > 0.0", "tangent", "outside"});
     return "tangent";
@@ -88,7 +88,7 @@ void emit_nothing(Emitter *e)
         text_format(&nothing, ", %s", emit_constant(e, &value));
     }
     text_add(&nothing, ", normal)");
-    emit_template(e, TEMPLATE_LOCAL, (Operands){"KrsSurface", "nearest", nothing.bytes});
+    emit_template(e, TEMPLATE_VARIABLE, (Operands){"KrsSurface", "nearest", nothing.bytes});
 }
 
 void emit_surface(Emitter *e)
@@ -99,7 +99,7 @@ void emit_surface(Emitter *e)
     }
     uint32_t count = (uint32_t)e->module->components;
     if (count > 0)
-        emit_template(e, TEMPLATE_LOCAL,
+        emit_template(e, TEMPLATE_VARIABLE,
                       (Operands){"KrsSurface", "nearest", emit_call_of(e, OF_SURFACE, 0)});
     else
         emit_nothing(e);

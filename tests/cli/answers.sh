@@ -2,7 +2,7 @@
 # answers.sh: what query, info, devices, dump, explain and validate answer.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 42
+plan 43
 
 ask() { # question, options...
     question=$1
@@ -145,6 +145,10 @@ run compile --language essl wave.krs -o for-web
 [ "$status" -eq 0 ] && [ "$(echo for-web/*)" = "for-web/wave.essl for-web/wave.json" ] &&
     grep -q '^layout(std140) uniform KrsParameters' for-web/wave.essl && ! grep -q 'set =\|precise\|\[\[' for-web/wave.essl
 result $? "compile --language essl writes the text of WebGL2, and no SPIR-V"
+run compile --language wgsl wave.krs -o for-webgpu
+[ "$status" -eq 0 ] && [ "$(echo for-webgpu/*)" = "for-webgpu/wave.json for-webgpu/wave.wgsl" ] &&
+    grep -q '^@group(0) @binding(0) var<uniform> krs_parameter: array<vec4f, 3>;' for-webgpu/wave.wgsl && ! grep -q 'float\|vec3(' for-webgpu/wave.wgsl
+result $? "compile --language wgsl writes the text of WebGPU"
 run query --time 2 wave.krs
 said 2 "at time 2 the slope of the expression at wave.krs:2:11 has no bound" "a frame without one"
 run query --set k=1e38 wave.krs

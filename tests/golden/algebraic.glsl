@@ -60,11 +60,11 @@ float krs_inverse_length(float square)
     return mix(0.0, inversesqrt(square), square > 0.0);
 }
 
-vec3 krs_normalize(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
+vec3 krs_normalize_vec3(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
 
 float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    return length(max(abs(p - center) - half_sides, vec3(0.0)));
 }
 
 float krs_frame0;
@@ -334,7 +334,7 @@ vec4 krs_gradient_1(vec3 p, float reach)
     float t5 = p.y * 2.0;
     float t6 = p.z * 2.0;
     vec3 v7 = vec3(((t4 * (t0 * 2.0)) - (krs_frame0 * t4)), ((t5 * (t1 * 2.0)) - (krs_frame0 * t5)), ((t6 * (t2 * 2.0)) - (krs_frame0 * t6)));
-    vec3 v8 = krs_normalize(v7);
+    vec3 v8 = krs_normalize_vec3(v7);
     float t9 = dot(p, v8);
     float t10 = t9 + (((t3 - 0.2) / max(length(v7), 1e-30)) - t9);
     vec3 v11 = vec3(dot(v8, vec3(1.0, 0.0, 0.0)), dot(v8, vec3(0.0, 1.0, 0.0)), dot(v8, vec3(0.0, 0.0, 1.0)));
@@ -351,7 +351,7 @@ vec4 krs_gradient_2(vec3 p, float reach)
     float t2 = 1.5 - t1;
     float t3 = v0.x * v0.y;
     vec3 v4 = vec3((v0.y * v0.z), (v0.x * v0.z), t3);
-    vec3 v5 = krs_normalize(v4);
+    vec3 v5 = krs_normalize_vec3(v4);
     float t6 = dot(v0, v5);
     float t7 = t6 + ((((v0.z * t3) - 0.1) / max(length(v4), 1e-30)) - t6);
     float t8 = -(t7 + (abs(t7) - t7));

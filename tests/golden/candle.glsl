@@ -50,11 +50,11 @@ float krs_inverse_length(float square)
     return mix(0.0, inversesqrt(square), square > 0.0);
 }
 
-vec3 krs_normalize(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
+vec3 krs_normalize_vec3(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
 
 float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    return length(max(abs(p - center) - half_sides, vec3(0.0)));
 }
 
 vec3 krs_frame0;
@@ -179,7 +179,7 @@ KrsSurface krs_surface_3(vec3 p, vec3 normal, float footprint)
     vec3 v7 = vec3(((dot(v0, vec2(1.0, 0.0)) / t2) * t5), ((t1 / t4) * 1.6666666), (t5 * (dot(v0, vec2(0.0, 1.0)) / t2)));
     vec3 v8 = cross(v7, normal);
     vec3 v9 = mix(mix(v8, (-v8), bvec3(dot(v6, v8) < 0.0)), v6, bvec3(dot(v8, v8) < (dot(v7, v7) * 0.0001)));
-    vec3 v10 = krs_normalize(v9);
+    vec3 v10 = krs_normalize_vec3(v9);
     return KrsSurface(d, vec3(0.9, 0.75, 0.4), 0.4, 1.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.8, v10, 0.0, vec3(0.8), vec3(1.0), 3u, uint(0.0), 1u, 2u, normal);
 }
 
@@ -189,7 +189,7 @@ KrsSurface krs_surface_4(vec3 p, vec3 normal, float footprint)
     float d = krs_shared_4(p, s0);
     // tests/golden/candle.krs:10
     vec3 v0 = (vec3(0.9961947, 0.087155744, 0.0) * s0.x) + (vec3(0.0, 0.0, 1.0) * s0.z);
-    vec3 v1 = krs_normalize(v0);
+    vec3 v1 = krs_normalize_vec3(v0);
     return KrsSurface(d, vec3(0.8, 0.8, 0.82), 0.35, 1.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.9, v1, 0.0, vec3(0.8), vec3(1.0), 4u, uint(0.0), 1u, 3u, normal);
 }
 

@@ -52,7 +52,7 @@ float krs_sine_small(float r, int n)
     p = p * z + 8.33307859e-3;
     p = p * z - 1.66666597e-1;
     float s = r + r * z * p;
-    return uintBitsToFloat(floatBitsToUint(s) ^ uint(n) << 31);
+    return uintBitsToFloat(floatBitsToUint(s) ^ (uint(n) << 31));
 }
 
 float krs_reduce(float a, float n)
@@ -97,7 +97,7 @@ float krs_atan(float a)
 
 float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    return length(max(abs(p - center) - half_sides, vec3(0.0)));
 }
 
 void krs_prepare()

@@ -52,7 +52,7 @@ float krs_sine_small(float r, int n)
     p = p * z + 8.33307859e-3;
     p = p * z - 1.66666597e-1;
     float s = r + r * z * p;
-    return uintBitsToFloat(floatBitsToUint(s) ^ uint(n) << 31);
+    return uintBitsToFloat(floatBitsToUint(s) ^ (uint(n) << 31));
 }
 
 float krs_reduce(float a, float n)
@@ -77,17 +77,17 @@ float krs_cos(float a)
 
 uint krs_lattice(uint x)
 {
-    x = (x ^ (x >> 16)) * 0x7feb352du;
-    x = (x ^ (x >> 15)) * 0x846ca68bu;
-    return x ^ (x >> 16);
+    uint once = (x ^ (x >> 16)) * 0x7feb352du;
+    uint twice = (once ^ (once >> 15)) * 0x846ca68bu;
+    return twice ^ (twice >> 16);
 }
 
 float krs_slope_3(uint h, vec3 d)
 {
     float u = mix(d.y, d.x, h < 8u);
     float v = mix(mix(d.z, d.x, (h | 2u) == 14u), d.y, h < 4u);
-    return uintBitsToFloat(floatBitsToUint(u) ^ h << 31) +
-           uintBitsToFloat(floatBitsToUint(v) ^ h >> 1u << 31);
+    return uintBitsToFloat(floatBitsToUint(u) ^ (h << 31)) +
+           uintBitsToFloat(floatBitsToUint(v) ^ ((h >> 1) << 31));
 }
 
 uint krs_lattice_bits(uint x) { return krs_lattice(x) >> 28; }
@@ -100,8 +100,7 @@ float krs_noise_row(uint row, vec3 f, float s)
 
 float krs_noise3(vec3 p)
 {
-    p = clamp(p, -1073741824.0, 1073741824.0);
-    vec3 whole = floor(p), f = p - whole;
+    vec3 place = clamp(p, -1073741824.0, 1073741824.0), whole = floor(place), f = place - whole;
     vec3 s = f * f * f * (f * (6.0 * f - 15.0) + 10.0);
     uvec3 cell = uvec3(ivec3(whole));
     uint a = krs_lattice(cell.x) + cell.y, b = krs_lattice(cell.x + 1u) + cell.y;
@@ -116,7 +115,7 @@ float krs_noise3(vec3 p)
 
 float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    return length(max(abs(p - center) - half_sides, vec3(0.0)));
 }
 
 void krs_prepare()

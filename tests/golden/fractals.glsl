@@ -52,11 +52,11 @@ vec2 krs_times(vec2 a, vec2 b, float square)
 
 vec2 krs_raise(vec2 base, int power, float square)
 {
-    vec2 all = vec2(1.0, 0.0);
-    for (int i = 0; i < 5; i++) {
-        if ((power >> i & 1) != 0)
-            all = krs_times(all, base, square);
-        base = krs_times(base, base, square);
+    vec2 all = vec2(1.0, 0.0), factor = base;
+    for (uint i = 0u; i < 5u; i++) {
+        if (((power >> i) & 1) != 0)
+            all = krs_times(all, factor, square);
+        factor = krs_times(factor, factor, square);
     }
     return all;
 }
@@ -103,11 +103,11 @@ float krs_julia(vec3 p, vec4 c, vec2 range, vec2 settings)
 
 float krs_whole_power(float x, int power)
 {
-    float all = 1.0;
-    for (int i = 0; i < 5; i++) {
-        if ((power >> i & 1) != 0)
-            all *= x;
-        x *= x;
+    float all = 1.0, factor = x;
+    for (uint i = 0u; i < 5u; i++) {
+        if (((power >> i) & 1) != 0)
+            all *= factor;
+        factor *= factor;
     }
     return all;
 }
@@ -119,19 +119,21 @@ vec2 krs_doubled(vec2 a, float norm)
 
 vec2 krs_multiplied(vec2 base, int power, float norm, float square)
 {
-    vec2 all = base;
-    for (int i = 0; i < 5; i++) {
-        if ((power >> i & 1) != 0)
-            all = (power & (1 << i) - 1) == 0
-                ? base : vec2(0.5 * all.x * base.x - 2.0 * square * all.y * base.y,
-                              0.5 * (all.x * base.y + all.y * base.x));
-        base = krs_doubled(base, norm);
-        norm *= norm;
+    vec2 all = base, factor = base;
+    float size = norm;
+    for (uint i = 0u; i < 5u; i++) {
+        if (((power >> i) & 1) != 0)
+            all = (power & ((1 << i) - 1)) == 0
+                ? factor : vec2(0.5 * all.x * factor.x - 2.0 * square * all.y * factor.y,
+                                0.5 * (all.x * factor.y + all.y * factor.x));
+        factor = krs_doubled(factor, size);
+        size *= size;
     }
     return all;
 }
 
-vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float lateral)
+// The next place, and how far the tilt is lateral.
+vec4 krs_triplex_step(vec3 w, vec3 c, float norm, int power)
 {
     float square = max(dot(w.xz, w.xz), 1e-18), inverse = 1.0 / square;
     vec2 tilt = krs_multiplied(vec2(2.0 * w.y, 1.0), power, norm, square);
@@ -144,16 +146,15 @@ vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float lateral)
     if (power % 2 == 1)
         turn = vec2(0.5 * turn.x * once.x - 2.0 * turn.y * once.y,
                     0.5 * (turn.x * once.y + turn.y * once.x));
-    lateral = tilt.y;
-    float reach = power % 2 == 0 ? lateral * sqrt(square) : lateral;
-    return vec3(reach * turn.y, 0.5 * tilt.x, 0.5 * reach * turn.x) + c;
+    float reach = power % 2 == 0 ? tilt.y * sqrt(square) : tilt.y;
+    return vec4(vec3(reach * turn.y, 0.5 * tilt.x, 0.5 * reach * turn.x) + c, tilt.y);
 }
 
 float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
 {
     int power = int(range.x), most = int(range.y);
     float radius = settings.y, norm = dot(c, c), start = sqrt(norm), steep = 1.0;
-    float far = min(256.0, exp2(64.0 / range.x)), sum = 0.0, lateral;
+    float far = min(256.0, exp2(64.0 / range.x)), sum = 0.0;
     float root = -1.0 / (range.x - 1.0), core = pow(range.x, root) * (1.0 - 1.0 / range.x);
     float least = pow(4.0 * range.x, root), min_even = 1.0 / (16.0 * range.x * range.x);
     float last = norm, stretch = 1.0;
@@ -164,10 +165,11 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
         if (most > 8 && !going)
             break;
         float even = max(krs_whole_power(norm, power - 1), min_even);
-        w = krs_triplex_step(w, c, norm, power, lateral);
+        vec4 next = krs_triplex_step(w, c, norm, power);
+        w = next.xyz;
         norm = dot(w, w);
         sum = going ? sum + steep : sum;
-        even = max(0.85 * even, mix(even, lateral * lateral, 0.33333333));
+        even = max(0.85 * even, mix(even, next.w * next.w, 0.33333333));
         steep = range.x * sqrt(even) * steep + 1.0;
         last = going ? norm : last;
         stretch = going ? steep : stretch;
@@ -183,7 +185,7 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
 
 float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    return length(max(abs(p - center) - half_sides, vec3(0.0)));
 }
 
 void krs_prepare()

@@ -47,7 +47,7 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
 
 float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    return length(max(abs(p - center) - half_sides, vec3(0.0)));
 }
 
 vec3 krs_frame0;

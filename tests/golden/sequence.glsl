@@ -52,7 +52,7 @@ float krs_sine_small(float r, int n)
     p = p * z + 8.33307859e-3;
     p = p * z - 1.66666597e-1;
     float s = r + r * z * p;
-    return uintBitsToFloat(floatBitsToUint(s) ^ uint(n) << 31);
+    return uintBitsToFloat(floatBitsToUint(s) ^ (uint(n) << 31));
 }
 
 float krs_reduce(float a, float n)
@@ -80,7 +80,7 @@ float krs_inverse_length(float square)
     return mix(0.0, inversesqrt(square), square > 0.0);
 }
 
-vec3 krs_normalize(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
+vec3 krs_normalize_vec3(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
 
 float krs_mirror_excess(vec3 p, vec3 n, float w)
 {
@@ -107,23 +107,23 @@ void krs_prepare()
 {
     // tests/golden/sequence.krs:6
     vec3 v0 = vec3(krs_cos(krs_parameter[1].x), krs_sin(krs_parameter[1].x), 0.2);
-    krs_frame0 = krs_normalize(v0);
+    krs_frame0 = krs_normalize_vec3(v0);
     krs_frame1 = 0.3 / length(v0);
     float t1 = krs_parameter[1].x * 2.0;
     vec3 v2 = vec3(krs_cos(t1), krs_sin(t1), 0.2);
-    krs_frame2 = krs_normalize(v2);
+    krs_frame2 = krs_normalize_vec3(v2);
     krs_frame3 = 0.3 / length(v2);
     float t3 = krs_parameter[1].x * 3.0;
     vec3 v4 = vec3(krs_cos(t3), krs_sin(t3), 0.2);
-    krs_frame4 = krs_normalize(v4);
+    krs_frame4 = krs_normalize_vec3(v4);
     krs_frame5 = 0.3 / length(v4);
     float t5 = krs_parameter[1].x * 4.0;
     vec3 v6 = vec3(krs_cos(t5), krs_sin(t5), 0.2);
-    krs_frame6 = krs_normalize(v6);
+    krs_frame6 = krs_normalize_vec3(v6);
     krs_frame7 = 0.3 / length(v6);
     float t7 = krs_parameter[1].x * 5.0;
     vec3 v8 = vec3(krs_cos(t7), krs_sin(t7), 0.2);
-    krs_frame8 = krs_normalize(v8);
+    krs_frame8 = krs_normalize_vec3(v8);
     krs_frame9 = 0.3 / length(v8);
 }
 

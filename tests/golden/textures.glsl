@@ -1,5 +1,5 @@
 // Distance code of a scene; slot 0 holds the time, then one slot for each `param`.
-// Textures are in krs_cells, a texel buffer of format RG32UI, and equal in all frames:
+// Textures are in krs_cells, two words each (RG32UI), and equal in all frames:
 // krs_state_tables in krs.h.
 layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[1]; };
 
@@ -93,10 +93,10 @@ vec4 krs_texture_level(vec2 place, uvec2 found, KrsTexture picture)
 // A place in the picture that stands there, in [0, 1].
 vec2 krs_wrapped(vec2 uv, uint wrap)
 {
-    uv = clamp(uv, -1073741824.0, 1073741824.0);
-    vec2 mirrored = abs(uv - 2.0 * floor(0.5 * uv + 0.5));
-    vec2 other = mix(clamp(uv, 0.0, 1.0), mirrored, bvec2(wrap == 2u));
-    return mix(other, fract(uv), bvec2(wrap == 0u));
+    vec2 at = clamp(uv, -1073741824.0, 1073741824.0);
+    vec2 mirrored = abs(at - 2.0 * floor(0.5 * at + 0.5));
+    vec2 other = mix(clamp(at, 0.0, 1.0), mirrored, bvec2(wrap == 2u));
+    return mix(other, fract(at), bvec2(wrap == 0u));
 }
 
 vec4 krs_texture_sharp(vec2 uv, KrsTexture picture)
@@ -160,11 +160,11 @@ float krs_inverse_length(float square)
     return mix(0.0, inversesqrt(square), square > 0.0);
 }
 
-vec3 krs_normalize(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
+vec3 krs_normalize_vec3(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
 
 float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    return length(max(abs(p - center) - half_sides, vec3(0.0)));
 }
 
 KrsTexture krs_texture0;
@@ -307,7 +307,7 @@ KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
     float t25 = (length(p) + 1.0) * 0.0001;
     float t26 = max(footprint, t25);
     vec3 v27 = mix(vec3(0.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0), bvec3(abs(normal.x) < 0.6));
-    vec3 v28 = krs_normalize(cross(v27, normal));
+    vec3 v28 = krs_normalize_vec3(cross(v27, normal));
     vec3 v29 = v28 * t26;
     vec3 v30 = p + v29;
     vec3 v31 = p - v29;
@@ -319,8 +319,8 @@ KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
     float t37 = (krs_texture(vec2(v35.x, v35.z), v24, krs_texture1).x * 0.01) - (krs_texture(vec2(v36.x, v36.z), v24, krs_texture1).x * 0.01);
     vec3 v38 = v35 - v36;
     vec3 v39 = (normal - (v33 * (t32 / max(dot(v33, v33), 1e-30)))) - (v38 * (t37 / max(dot(v38, v38), 1e-30)));
-    vec3 v40 = krs_normalize(v39);
-    vec3 v41 = mix(krs_normalize(v40), normal, bvec3(dot(v40, v40) < 1e-08));
+    vec3 v40 = krs_normalize_vec3(v39);
+    vec3 v41 = mix(krs_normalize_vec3(v40), normal, bvec3(dot(v40, v40) < 1e-08));
     return KrsSurface(d, v6, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 2u, uint(0.0), 1u, 2u, v41);
 }
 

@@ -21,6 +21,7 @@
 
 #include "krs/krs.h"
 #include "tests/oracle/random_scene.h"
+#include "tests/support/scattered.h"
 
 enum { ACROSS = 32, POINTS = ACROSS * ACROSS, RANDOM_SCENES = 24 };
 
@@ -191,22 +192,6 @@ static void evaluate(const KrsState *state, const KrsScene *scene, const char *w
 
 /* ---- what is compared ---- */
 
-/* Points in the boxes of components, one after the other, and around them. */
-static void scatter(const KrsScene *scene, Random *random, float (*points)[4], double (*same)[3])
-{
-    const size_t count = krs_component_count(scene);
-    for (size_t i = 0; i < POINTS; i++) {
-        KrsComponent component = {.low = {-2, -2, -2}, .high = {2, 2, 2}};
-        krs_component(scene, count ? i % count : 0, &component);
-        for (int k = 0; k < 3; k++) {
-            double low = fmax(component.low[k], -10), high = fmin(component.high[k], 10);
-            double margin = 0.2 * fmax(high - low, 0) + 0.1;
-            points[i][k]  = (float)random_between(random, low - margin, fmax(high, low) + margin);
-            same[i][k]    = points[i][k];
-        }
-    }
-}
-
 /* The points where a scene's distances differ by more than a ten-thousandth of the numbers that are added.  Of what is far
    away in a table the driver only knows a bound nearer to 0.  `planted` multiplies what the driver says: 1, except
    to show that a fault is found. */
@@ -219,7 +204,10 @@ static size_t count_wrong(const char *name, KrsScene *scene, const char *what, f
     size_t        wrong = 0, equal = 0;
     double        worst = 0;
     assert_int_equal(krs_state_new(scene, &state), KRS_OK);
-    scatter(scene, &random, points, same);
+    scatter(scene, &random, points, POINTS);
+    for (size_t i = 0; i < POINTS; i++)
+        for (int k = 0; k < 3; k++)
+            same[i][k] = points[i][k];
     krs_distance(state, (const double(*)[3])same, POINTS, distances);
     evaluate(state, scene, what, (const float(*)[4])points, found);
     for (size_t i = 0; i < POINTS; i++) {

@@ -14,9 +14,11 @@
 #include <ctype.h>
 #include <glob.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "compiler/scene/program.h"
+#include "tests/support/instance_texts.h"
 
 /* ---- the words of GLSL ---- */
 
@@ -79,7 +81,15 @@ static const EmbeddedFile helpers[] = {
              "fn krs_atan2(y: f32, x: f32) -> f32 {\n}\n\n"
              "fn krs_read_texture(header: u32) -> KrsTexture {\n}\n\n"
              "fn krs_texture_sharp(uv: vec2f, read: KrsTexture) -> vec4f {\n}\n\n"
-             "fn krs_texture(uv: vec2f, pixel: vec4f, read: KrsTexture) -> vec4f {\n}\n"},
+             "fn krs_texture(uv: vec2f, pixel: vec4f, read: KrsTexture) -> vec4f {\n}\n\n"
+             "fn krs_read_table(table: u32) -> KrsTable {\n}\n\n"
+             "fn krs_near(p: vec3f, table: KrsTable) -> KrsNear {\n}\n\n"
+             "fn krs_listed(i: u32, table: KrsTable) -> u32 {\n}\n\n"
+             "fn krs_row(row: u32, texels: u32, texel: u32, table: KrsTable) -> vec4f {\n}\n\n"
+             "fn krs_listed_row(i: u32, texels: u32, texel: u32, table: KrsTable) -> vec4f {\n}\n\n"
+             "fn krs_growth(p: vec3f, table: KrsTable) -> f32 {\n}\n\n"
+             "fn krs_exact_from(p: vec3f, table: KrsTable) -> f32 {\n}\n\n"
+             "fn krs_lack(sum: f32, exact_from: f32) -> f32 {\n}\n"},
     {0},
 };
 
@@ -99,7 +109,8 @@ static const char *const templates[TEMPLATE_COUNT] = {
     [TEMPLATE_CHANGED]         = "*$a",
     [TEMPLATE_ARGUMENT_OUT]    = "&$a",
     [TEMPLATE_PROTOTYPE]       = "",
-    [TEMPLATE_LOCAL]           = "    var $b: $a = $c;\n",
+    [TEMPLATE_LOCAL]           = "    let $b: $a = $c;\n",
+    [TEMPLATE_VARIABLE]        = "    var $b: $a = $c;\n",
     [TEMPLATE_LOCAL_UNSET]     = "    var $b: $a;\n",
     [TEMPLATE_GLOBAL]          = "var<private> $b: $a;\n",
     [TEMPLATE_CONSTANT_UINT]   = "let $a = $bu;\n",
@@ -212,11 +223,8 @@ static void print_variant(const KrsScene *scene, const KrsVariant *variant, cons
     arena_free(&arena);
 }
 
-static void print_scene(const char *path)
+static void print_variants(KrsScene *scene, const char *path)
 {
-    KrsScene        *scene;
-    const KrsOptions options = {.gradients = true, .research = true};
-    assert_int_equal(krs_compile_file(path, &options, &scene), KRS_OK);
     const KrsVariant variants[] = {
         {.many_threads = false},
         {.many_threads = true, .shares = true},
@@ -229,6 +237,26 @@ static void print_scene(const char *path)
     krs_scene_free(scene);
 }
 
+static const KrsOptions all_there_is = {.gradients = true, .research = true};
+
+static void print_scene(const char *path)
+{
+    KrsScene *scene;
+    assert_int_equal(krs_compile_file(path, &all_there_is, &scene), KRS_OK);
+    print_variants(scene, path);
+}
+
+/* Parts that are alike. */
+static void print_instances(const InstanceText *instances)
+{
+    KrsScene *scene;
+    char     *text = instance_text(instances, 1, 1);
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &all_there_is, &scene),
+                     KRS_OK);
+    print_variants(scene, instances->name);
+    free(text);
+}
+
 static void texts_are_in_the_language_of_their_printer(void **state)
 {
     glob_t found;
@@ -239,7 +267,24 @@ static void texts_are_in_the_language_of_their_printer(void **state)
         print_scene(found.gl_pathv[i]);
     globfree(&found);
     print_scene("bench/scenes/compound.krs");
+    for (size_t i = 0; i < instance_text_count; i++)
+        print_instances(&instance_texts[i]);
     assert_true(lines_seen > 10000);
+}
+
+/* A comment ends with its line, in WGSL by each character of Unicode that ends one, and texts are UTF-8. */
+static void names_of_files_end_no_comment(void **state)
+{
+    static const char text[] = "show sphere(1).twist([0, 1, 0], 0.5);";
+    static const char name[] = "a\n\xC2\x85\xE2\x80\xA8\xE2\x80\xA9\xFF\xC3\xA9.krs";
+    KrsScene         *scene;
+    char             *printed;
+    (void)state;
+    assert_int_equal(krs_compile_text(text, strlen(text), name, NULL, &scene), KRS_OK);
+    assert_int_equal(krs_text(scene, KRS_TARGET_WGSL, NULL, &printed), KRS_OK);
+    assert_non_null(strstr(printed, "// a?????\xC3\xA9.krs:1\n"));
+    free(printed);
+    krs_scene_free(scene);
 }
 
 /* The same search finds GLSL where there is some. */
@@ -261,6 +306,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(glsl_has_words_for_all_templates),
         cmocka_unit_test(texts_are_in_the_language_of_their_printer),
+        cmocka_unit_test(names_of_files_end_no_comment),
         cmocka_unit_test(words_of_glsl_are_found),
     };
     return cmocka_run_group_tests_name("printers", tests, NULL, NULL);

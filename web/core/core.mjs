@@ -9,7 +9,7 @@ import Krs from './krs.mjs';
 
 const options = { studio: 1, pictures: 2, gradients: 4, assembly: 8, figures: 16, structure: 32 };
 const textOptions = { stateValues: 1, noEarlyOuts: 2 };
-export const targets = ['glsl', 'essl'];
+export const targets = ['glsl', 'essl', 'wgsl'];
 
 const bitsOf = (names, wanted) =>
     Object.entries(names).reduce((bits, [name, bit]) => (wanted[name] ? bits | bit : bits), 0);

@@ -205,7 +205,7 @@ export interface Scene extends EventTarget {
     /** Triangles; in a worker of its own. */
     mesh(options?: MeshOptions): Promise<Mesh>;
     /** The scene in a shading language; 'glsl' is that of `krs compile`. */
-    shader(target?: 'glsl' | 'essl', options?: { stateValues?: boolean; earlyOuts?: boolean }): Promise<string>;
+    shader(target?: 'glsl' | 'essl' | 'wgsl', options?: { stateValues?: boolean; earlyOuts?: boolean }): Promise<string>;
     /** Gives its memory back; it cannot be used any more. */
     free(): void;
 }

@@ -40,6 +40,7 @@ static const char *const templates[TEMPLATE_COUNT] = {
     [TEMPLATE_PROTOTYPE]       = "$a$b;\n\n",
 
     [TEMPLATE_LOCAL]         = "    $a $b = $c;\n",
+    [TEMPLATE_VARIABLE]      = "    $a $b = $c;\n",
     [TEMPLATE_LOCAL_UNSET]   = "    $a $b;\n",
     [TEMPLATE_GLOBAL]        = "$a $b;\n",
     [TEMPLATE_CONSTANT_UINT] = "const uint $a = $bu;\n\n",

@@ -5,9 +5,9 @@
 
 uint krs_scramble(uint x)
 {
-    x = (x ^ (x >> 16)) * 0x7feb352du;
-    x = (x ^ (x >> 15)) * 0x846ca68bu;
-    return x ^ (x >> 16);
+    uint once = (x ^ (x >> 16)) * 0x7feb352du;
+    uint twice = (once ^ (once >> 15)) * 0x846ca68bu;
+    return twice ^ (twice >> 16);
 }
 
 uint krs_hash_id(uint a, bool b)

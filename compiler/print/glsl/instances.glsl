@@ -29,7 +29,7 @@ KrsNear krs_near(vec3 p, KrsTable table)
     uint record = table.records + cell.x + table.cells.x * (cell.y + table.cells.y * cell.z);
     uvec2 first = krs_cell_texel(record);
     uint end = krs_cell_texel(record + 1u).x;
-    float wall = length(max(abs(p - table.centre) - table.half_sides, 0.0));
+    float wall = length(max(abs(p - table.centre) - table.half_sides, vec3(0.0)));
     return KrsNear(first.x, inside ? end : first.x, inside ? uintBitsToFloat(first.y) : wall);
 }
 

@@ -15,11 +15,11 @@ vec2 krs_times(vec2 a, vec2 b, float square)
 
 vec2 krs_raise(vec2 base, int power, float square)
 {
-    vec2 all = vec2(1.0, 0.0);
-    for (int i = 0; i < 5; i++) {
-        if ((power >> i & 1) != 0)
-            all = krs_times(all, base, square);
-        base = krs_times(base, base, square);
+    vec2 all = vec2(1.0, 0.0), factor = base;
+    for (uint i = 0u; i < 5u; i++) {
+        if (((power >> i) & 1) != 0)
+            all = krs_times(all, factor, square);
+        factor = krs_times(factor, factor, square);
     }
     return all;
 }
@@ -69,7 +69,7 @@ vec2 krs_julia_trap(vec3 p, vec4 c, vec2 range, vec2 settings)
     float last = min(settings.x, range.y), size = length(p);
     vec4 z = vec4(p, 0.0);
     vec2 trap = vec2(1.0);
-    for (float n = 1.0; n <= last && size <= 2.0 * settings.y; n++) {
+    for (float n = 1.0; n <= last && size <= 2.0 * settings.y; n += 1.0) {
         z = krs_julia_step(z, c, int(range.x));
         size = length(z);
         trap = size < trap.x ? vec2(size, n / last) : trap;

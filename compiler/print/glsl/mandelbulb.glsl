@@ -9,11 +9,11 @@
 
 float krs_whole_power(float x, int power)
 {
-    float all = 1.0;
-    for (int i = 0; i < 5; i++) {
-        if ((power >> i & 1) != 0)
-            all *= x;
-        x *= x;
+    float all = 1.0, factor = x;
+    for (uint i = 0u; i < 5u; i++) {
+        if (((power >> i) & 1) != 0)
+            all *= factor;
+        factor *= factor;
     }
     return all;
 }
@@ -25,19 +25,21 @@ vec2 krs_doubled(vec2 a, float norm)
 
 vec2 krs_multiplied(vec2 base, int power, float norm, float square)
 {
-    vec2 all = base;
-    for (int i = 0; i < 5; i++) {
-        if ((power >> i & 1) != 0)
-            all = (power & (1 << i) - 1) == 0
-                ? base : vec2(0.5 * all.x * base.x - 2.0 * square * all.y * base.y,
-                              0.5 * (all.x * base.y + all.y * base.x));
-        base = krs_doubled(base, norm);
-        norm *= norm;
+    vec2 all = base, factor = base;
+    float size = norm;
+    for (uint i = 0u; i < 5u; i++) {
+        if (((power >> i) & 1) != 0)
+            all = (power & ((1 << i) - 1)) == 0
+                ? factor : vec2(0.5 * all.x * factor.x - 2.0 * square * all.y * factor.y,
+                                0.5 * (all.x * factor.y + all.y * factor.x));
+        factor = krs_doubled(factor, size);
+        size *= size;
     }
     return all;
 }
 
-vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float lateral)
+// The next place, and how far the tilt is lateral.
+vec4 krs_triplex_step(vec3 w, vec3 c, float norm, int power)
 {
     float square = max(dot(w.xz, w.xz), 1e-18), inverse = 1.0 / square;
     vec2 tilt = krs_multiplied(vec2(2.0 * w.y, 1.0), power, norm, square);
@@ -50,16 +52,15 @@ vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float lateral)
     if (power % 2 == 1)
         turn = vec2(0.5 * turn.x * once.x - 2.0 * turn.y * once.y,
                     0.5 * (turn.x * once.y + turn.y * once.x));
-    lateral = tilt.y;
-    float reach = power % 2 == 0 ? lateral * sqrt(square) : lateral;
-    return vec3(reach * turn.y, 0.5 * tilt.x, 0.5 * reach * turn.x) + c;
+    float reach = power % 2 == 0 ? tilt.y * sqrt(square) : tilt.y;
+    return vec4(vec3(reach * turn.y, 0.5 * tilt.x, 0.5 * reach * turn.x) + c, tilt.y);
 }
 
 float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
 {
     int power = int(range.x), most = int(range.y);
     float radius = settings.y, norm = dot(c, c), start = sqrt(norm), steep = 1.0;
-    float far = min(256.0, exp2(64.0 / range.x)), sum = 0.0, lateral;
+    float far = min(256.0, exp2(64.0 / range.x)), sum = 0.0;
     float root = -1.0 / (range.x - 1.0), core = pow(range.x, root) * (1.0 - 1.0 / range.x);
     float least = pow(4.0 * range.x, root), min_even = 1.0 / (16.0 * range.x * range.x);
     float last = norm, stretch = 1.0;
@@ -70,10 +71,11 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
         if (most > 8 && !going)
             break;
         float even = max(krs_whole_power(norm, power - 1), min_even);
-        w = krs_triplex_step(w, c, norm, power, lateral);
+        vec4 next = krs_triplex_step(w, c, norm, power);
+        w = next.xyz;
         norm = dot(w, w);
         sum = going ? sum + steep : sum;
-        even = max(0.85 * even, mix(even, lateral * lateral, 0.33333333));
+        even = max(0.85 * even, mix(even, next.w * next.w, 0.33333333));
         steep = range.x * sqrt(even) * steep + 1.0;
         last = going ? norm : last;
         stretch = going ? steep : stretch;
@@ -89,11 +91,11 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
 
 vec2 krs_mandelbulb_trap(vec3 c, vec2 range, vec2 settings)
 {
-    float last = min(settings.x, range.y), norm = dot(c, c), size = sqrt(norm), lateral;
+    float last = min(settings.x, range.y), norm = dot(c, c), size = sqrt(norm);
     vec3 w = c;
     vec2 trap = vec2(1.0);
-    for (float n = 1.0; n <= last && size <= 2.0 * settings.y; n++) {
-        w = krs_triplex_step(w, c, norm, int(range.x), lateral);
+    for (float n = 1.0; n <= last && size <= 2.0 * settings.y; n += 1.0) {
+        w = krs_triplex_step(w, c, norm, int(range.x)).xyz;
         norm = dot(w, w);
         size = sqrt(norm);
         trap = size < trap.x ? vec2(size, n / last) : trap;

@@ -7,9 +7,9 @@
 
 uint krs_lattice(uint x)
 {
-    x = (x ^ (x >> 16)) * 0x7feb352du;
-    x = (x ^ (x >> 15)) * 0x846ca68bu;
-    return x ^ (x >> 16);
+    uint once = (x ^ (x >> 16)) * 0x7feb352du;
+    uint twice = (once ^ (once >> 15)) * 0x846ca68bu;
+    return twice ^ (twice >> 16);
 }
 
 uint krs_lattice_bits(uint x) { return krs_lattice(x) >> 28; }
@@ -19,21 +19,20 @@ float krs_slope_2(uint h, vec2 d)
     bool second = (h & 2u) != 0u;
     float straight = mix(d.x, d.y, second) * 1.41421356237;
     float along = mix(d.x + mix(d.y, -d.y, second), straight, (h & 4u) != 0u);
-    return uintBitsToFloat(floatBitsToUint(along) ^ h << 31);
+    return uintBitsToFloat(floatBitsToUint(along) ^ (h << 31));
 }
 
 float krs_slope_3(uint h, vec3 d)
 {
     float u = mix(d.y, d.x, h < 8u);
     float v = mix(mix(d.z, d.x, (h | 2u) == 14u), d.y, h < 4u);
-    return uintBitsToFloat(floatBitsToUint(u) ^ h << 31) +
-           uintBitsToFloat(floatBitsToUint(v) ^ h >> 1u << 31);
+    return uintBitsToFloat(floatBitsToUint(u) ^ (h << 31)) +
+           uintBitsToFloat(floatBitsToUint(v) ^ ((h >> 1) << 31));
 }
 
 float krs_noise2(vec2 p)
 {
-    p = clamp(p, -1073741824.0, 1073741824.0);
-    vec2 whole = floor(p), f = p - whole;
+    vec2 place = clamp(p, -1073741824.0, 1073741824.0), whole = floor(place), f = place - whole;
     vec2 s = f * f * f * (f * (6.0 * f - 15.0) + 10.0);
     uvec2 cell = uvec2(ivec2(whole));
     uint a = krs_lattice(cell.x) + cell.y, b = krs_lattice(cell.x + 1u) + cell.y;
@@ -52,8 +51,7 @@ float krs_noise_row(uint row, vec3 f, float s)
 
 float krs_noise3(vec3 p)
 {
-    p = clamp(p, -1073741824.0, 1073741824.0);
-    vec3 whole = floor(p), f = p - whole;
+    vec3 place = clamp(p, -1073741824.0, 1073741824.0), whole = floor(place), f = place - whole;
     vec3 s = f * f * f * (f * (6.0 * f - 15.0) + 10.0);
     uvec3 cell = uvec3(ivec3(whole));
     uint a = krs_lattice(cell.x) + cell.y, b = krs_lattice(cell.x + 1u) + cell.y;

@@ -21,7 +21,7 @@ vec4 krs_merge4(vec4 a)
 vec4 krs_heights4(vec4 a, float width)
 {
     vec4 all = krs_sort4(a);
-    return vec4(min(all.yzw - all.x, width), all.x);
+    return vec4(min(all.yzw - all.x, vec3(width)), all.x);
 }
 
 // The threshold above the least, and what is taken from the least, times twice the width.
@@ -34,9 +34,8 @@ vec2 krs_share(vec2 threshold, float height, float j)
 // The same after three more operands, of which the first is operand j + 1.
 vec2 krs_share3(vec2 threshold, vec3 heights, float j)
 {
-    threshold = krs_share(threshold, heights.x, j);
-    threshold = krs_share(threshold, heights.y, j + 1.0);
-    return krs_share(threshold, heights.z, j + 2.0);
+    vec2 next = krs_share(krs_share(threshold, heights.x, j), heights.y, j + 1.0);
+    return krs_share(next, heights.z, j + 2.0);
 }
 
 float krs_smin4_quadratic(vec4 a, float width)
@@ -57,8 +56,8 @@ vec3 krs_shares8(vec4 a, vec4 b, float width)
 {
     vec4 first = krs_sort4(a), last = krs_sort4(b).wzyx;
     vec4 near = krs_merge4(min(first, last)), more = krs_merge4(max(first, last));
-    more = min(more - near.x, width);
-    vec2 threshold = krs_share3(vec2(width, 0.0), min(near.yzw - near.x, width), 1.0);
+    more = min(more - near.x, vec4(width));
+    vec2 threshold = krs_share3(vec2(width, 0.0), min(near.yzw - near.x, vec3(width)), 1.0);
     threshold = krs_share3(krs_share(threshold, more.x, 4.0), more.yzw, 5.0);
     return vec3(threshold, near.x);
 }
@@ -116,7 +115,7 @@ float krs_second8(vec4 a, vec4 b)
 float krs_smin8_cubic(vec4 a, vec4 b, float width)
 {
     float w = max(width, 1e-30), least = min(krs_least4(a), krs_least4(b));
-    vec4 near = min((a - least) / w, 1.0), more = min((b - least) / w, 1.0);
+    vec4 near = min((a - least) / w, vec4(1.0)), more = min((b - least) / w, vec4(1.0));
     float threshold = krs_threshold_cubic(near, more, krs_second8(near, more));
     return least + w * (threshold - 0.5 - krs_sum_cubic(threshold - near) - krs_sum_cubic(threshold - more));
 }
@@ -124,7 +123,7 @@ float krs_smin8_cubic(vec4 a, vec4 b, float width)
 float krs_threshold8_cubic(vec4 a, vec4 b, float width)
 {
     float w = max(width, 1e-30), least = min(krs_least4(a), krs_least4(b));
-    vec4 near = min((a - least) / w, 1.0), more = min((b - least) / w, 1.0);
+    vec4 near = min((a - least) / w, vec4(1.0)), more = min((b - least) / w, vec4(1.0));
     return least + w * krs_threshold_cubic(near, more, krs_second8(near, more));
 }
 

@@ -27,7 +27,7 @@ float krs_sine_small(float r, int n)
     p = p * z + 8.33307859e-3;
     p = p * z - 1.66666597e-1;
     float s = r + r * z * p;
-    return uintBitsToFloat(floatBitsToUint(s) ^ uint(n) << 31);
+    return uintBitsToFloat(floatBitsToUint(s) ^ (uint(n) << 31));
 }
 
 float krs_sin(float a)

@@ -22,10 +22,10 @@ vec4 krs_texel(uint i, bool gray)
 // A place in the picture that stands there, in [0, 1].
 vec2 krs_wrapped(vec2 uv, uint wrap)
 {
-    uv = clamp(uv, -1073741824.0, 1073741824.0);
-    vec2 mirrored = abs(uv - 2.0 * floor(0.5 * uv + 0.5));
-    vec2 other = mix(clamp(uv, 0.0, 1.0), mirrored, bvec2(wrap == 2u));
-    return mix(other, fract(uv), bvec2(wrap == 0u));
+    vec2 at = clamp(uv, -1073741824.0, 1073741824.0);
+    vec2 mirrored = abs(at - 2.0 * floor(0.5 * at + 0.5));
+    vec2 other = mix(clamp(at, 0.0, 1.0), mirrored, bvec2(wrap == 2u));
+    return mix(other, fract(at), bvec2(wrap == 0u));
 }
 
 // Bilinear between four texels of a level, whose texel in the list is `found`.
