@@ -95,8 +95,24 @@ KrsStatus point_query_sample(KrsRendering *rendering, KrsState *state, const flo
     return KRS_OK;
 }
 
+/* What single precision can square. */
+static bool are_in_reach(const float (*points)[3], size_t count)
+{
+    for (size_t i = 0; points && i < count; i++)
+        for (int k = 0; k < 3; k++)
+            if (!(fabsf(points[i][k]) <= (float)KRS_MAX_COORDINATE))
+                return false;
+    return true;
+}
+
 KrsStatus krs_device_distance(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                               size_t count, float *distances)
 {
+    if (!are_in_reach(points, count)) {
+        renderer_clear(rendering->renderer);
+        gpu_refuse(&rendering->renderer->gpu, KRS_BAD_ARGUMENT,
+                   "points have finite coordinates below 1e18");
+        return KRS_BAD_ARGUMENT;
+    }
     return point_query_sample(rendering, state, points, count, distances, NULL);
 }

@@ -253,6 +253,16 @@ static void points_are_sampled(void **state)
                      KRS_OK);
     assert_int_equal(krs_device_distance(fixture->rendering, fixture->state, NULL, 1, distances),
                      KRS_BAD_ARGUMENT);
+    static const float wrong[] = {NAN, INFINITY, -2e18f};
+    for (int i = 0; i < 3; i++) {
+        const float point[2][3] = {{0, 0, 0}, {0, wrong[i], 0}};
+        distances[0]            = 7;
+        assert_int_equal(
+            krs_device_distance(fixture->rendering, fixture->state, point, 2, distances),
+            KRS_BAD_ARGUMENT);
+        assert_true(distances[0] == 7);
+        assert_true(strlen(krs_renderer_message(fixture->renderer)) > 0);
+    }
 }
 
 /* ---- What must not be seen ---- */
