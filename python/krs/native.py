@@ -17,8 +17,8 @@ from krs._declarations import ffi
 from krs._tables import VERSION
 
 
-def _load() -> Any:
-    """KRS_LIBRARY, the library in this folder, or that of the system."""
+def _load() -> tuple[Any, str]:
+    """KRS_LIBRARY, the library in this folder, or that of the system; and its path."""
     minor = VERSION.rsplit(".", 1)[0]
     beside = os.path.join(os.path.dirname(__file__), "libkrs.so")
     path = os.environ.get("KRS_LIBRARY") or (beside if os.path.exists(beside) else f"libkrs.so.{minor}")
@@ -29,10 +29,10 @@ def _load() -> Any:
     found = ffi.string(library.krs_version()).decode()
     if found.rsplit(".", 1)[0] != minor:
         raise ImportError(f"{path} is krs {found}, and this package needs {minor}")
-    return library
+    return library, path
 
 
-lib = _load()
+lib, path = _load()
 version = ffi.string(lib.krs_version()).decode()
 _c = ffi.dlopen(None)
 
@@ -122,9 +122,9 @@ def dtype_of(name: str) -> np.dtype:
     return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": ffi.sizeof(name)})
 
 
-def rows(values: Any, columns: int, what: str) -> np.ndarray:
-    """Vectors as one block of doubles; an array that is such is not copied."""
-    array = np.ascontiguousarray(values, dtype=np.float64)
+def rows(values: Any, columns: int, what: str, dtype: Any = np.float64) -> np.ndarray:
+    """Vectors as one block; an array that is such is not copied."""
+    array = np.ascontiguousarray(values, dtype=dtype)
     if array.ndim == 0 or array.shape[-1] != columns:
         raise errors.ArgumentError(f"{what} must be an array of vectors of {columns}, not of shape {array.shape}")
     return array

@@ -174,9 +174,8 @@ class Picture:
 # ---- rendering ----
 
 
-def _rendering(scene: Scene, renderer: Renderer, studio: bool, purpose: str) -> Handle:
+def _rendering(compiled: Any, renderer: Renderer, purpose: str) -> Handle:
     """A scene with its shaders, which are compiled once."""
-    compiled = scene._compiled.for_pictures(studio)
     key = (renderer, purpose)
     renderings = compiled.__dict__.setdefault("renderings", {})
     if key not in renderings:
@@ -185,7 +184,7 @@ def _rendering(scene: Scene, renderer: Renderer, studio: bool, purpose: str) -> 
         if status == lib.KRS_BAD_SCENE:
             raise ArgumentError(ffi.string(lib.krs_scene_too_large(compiled.pointer).message).decode())
         native.check(status, renderer.message("cannot compile the shaders"))
-        renderings[key] = Handle(made[0], lib.krs_rendering_free, renderer)
+        renderings[key] = Handle(made[0], lib.krs_rendering_free, renderer, compiled)
     return renderings[key]
 
 
@@ -257,7 +256,7 @@ def render(scene: Scene, size: tuple[int, int] | None = None, *, camera: int | s
     struct.progress = done.pointer
     renderer = _renderer(device)
     with renderer.lock:
-        rendering = _rendering(scene, renderer, studio, _purpose(scene, options))
+        rendering = _rendering(scene._compiled.for_pictures(studio), renderer, _purpose(scene, options))
         picture = ffi.new("KrsPicture **")
         if moved is None:
             status = lib.krs_render_sized(rendering.pointer, state.pointer, struct, ffi.sizeof("KrsRenderOptions"), picture)
@@ -279,3 +278,15 @@ def _render_moved(rendering: Handle, state: Any, struct: Any, camera: Any, image
         status = lib.krs_film_read(film[0], 0, picture)
     lib.krs_film_free(film[0])
     return status
+
+
+# ---- questions ----
+
+
+def ask(scene: Scene, device: str, function: Any, *arguments: Any) -> None:
+    """Asks a device what `function` answers of a state."""
+    renderer = _renderer(device)
+    with scene._state.lock, renderer.lock:
+        rendering = _rendering(scene._compiled, renderer, "KRS_FOR_QUESTIONS")
+        status = function(rendering.pointer, scene._state.pointer, *arguments)
+        native.check(status, renderer.message("the device cannot answer"))

@@ -54,7 +54,11 @@ class Camera:
         if name.startswith("_") or not hasattr(lib, f"krs_camera_{name}"):
             raise AttributeError(f"a camera has no `{name}`")
         function = getattr(lib, f"krs_camera_{name}")
-        return lambda *arguments: function(self._struct, *arguments)
+        return lambda *arguments: function(self._struct, *map(self._argument, arguments))
+
+    @staticmethod
+    def _argument(value: Any) -> Any:
+        return ffi.NULL if value is None else [float(v) for v in value] if np.ndim(value) else value
 
     def __setattr__(self, name: str, value: Any) -> None:
         native.fill(self._struct, {name: value}, "a camera")
@@ -328,6 +332,11 @@ class Scene:
             other[name] = value
         return other
 
+    def __reduce__(self) -> Any:
+        """Other processes compile the text anew, at the same values."""
+        compiled = self._compiled
+        return _restore, (compiled.text, compiled.name, compiled.options, dict(self._set), self.time, self._zones)
+
     # -- what there is --
 
     @property
@@ -409,18 +418,29 @@ class Scene:
 
     # -- questions --
 
-    def distance(self, points: ArrayLike, out: np.ndarray | None = None) -> Any:
+    def _ask(self, device: str | None, here: Any, there: Any, message: str, *arguments: Any) -> None:
+        """Asks the host, or a device."""
+        if device is not None:
+            from krs.picture import ask
+            ask(self, device, there, *arguments)
+            return
+        with self._state.lock:
+            status = here(self._state.pointer, *arguments)
+        check(status, message)
+
+    def distance(self, points: ArrayLike, out: np.ndarray | None = None, device: str | None = None) -> Any:
         """Signed distances, negative inside: never above the distance to the nearest surface.  `points` has any shape (..., 3).
+
+        `device`, "" for the usual one, asks a Vulkan device, in single precision: for millions of points.
 
         >>> compile("show box([2, 2, 2]);").distance([[0, 0, 0], [2, 0, 0], [2, 2, 1]])
         array([-1.        ,  1.        ,  1.41421356])
         """
-        at = native.rows(points, 3, "points")
-        found = native.target(out, at.shape[:-1], np.float64)
-        with self._state.lock:
-            status = lib.krs_distance(self._state.pointer, native.pointer(at, "const double (*)[3]"), at.size // 3,
-                                      native.pointer(found, "double *"))
-        check(status, "coordinates must be finite")
+        dtype, kind = (np.float64, "double") if device is None else (np.float32, "float")
+        at = native.rows(points, 3, "points", dtype)
+        found = native.target(out, at.shape[:-1], dtype)
+        self._ask(device, lib.krs_distance, lib.krs_device_distance, "coordinates must be finite",
+                  native.pointer(at, f"const {kind} (*)[3]"), at.size // 3, native.pointer(found, f"{kind} *"))
         return found if found.ndim else float(found)
 
     def normals(self, points: ArrayLike, out: np.ndarray | None = None) -> np.ndarray:
@@ -431,13 +451,11 @@ class Scene:
         """
         at = native.rows(points, 3, "points")
         found = native.target(out, at.shape, np.float64)
-        with self._state.lock:
-            status = lib.krs_normal(self._state.pointer, native.pointer(at, "const double (*)[3]"), at.size // 3,
-                                    native.pointer(found, "double (*)[3]"))
-        check(status, "coordinates must be finite")
+        self._ask(None, lib.krs_normal, None, "coordinates must be finite",
+                  native.pointer(at, "const double (*)[3]"), at.size // 3, native.pointer(found, "double (*)[3]"))
         return found
 
-    def probe(self, points: ArrayLike) -> np.recarray:
+    def probe(self, points: ArrayLike, device: str | None = None) -> np.recarray:
         """All that is known at points, an array with the members of KrsHit: `distance`, `normal`, `component`, `color`, ...
 
         >>> compile("show sphere(1).paint(red);").probe([[0, 2, 0], [0, 0, 3]]).color
@@ -446,14 +464,12 @@ class Scene:
         """
         at = native.rows(points, 3, "points")
         hits = np.zeros(at.shape[:-1], HIT)
-        with self._state.lock:
-            status = lib.krs_probe_sized(self._state.pointer, native.pointer(at, "const double (*)[3]"), at.size // 3,
-                                         native.pointer(hits, "KrsHit *"), HIT.itemsize)
-        check(status, "coordinates must be finite")
+        self._ask(device, lib.krs_probe_sized, lib.krs_device_probe_sized, "coordinates must be finite",
+                  native.pointer(at, "const double (*)[3]"), at.size // 3, native.pointer(hits, "KrsHit *"), HIT.itemsize)
         return hits.view(np.recarray)
 
-    def raycast(self, origins: ArrayLike, directions: ArrayLike, farthest: float = np.inf,
-                tolerance: float = 0) -> np.recarray:
+    def raycast(self, origins: ArrayLike, directions: ArrayLike, farthest: float = np.inf, tolerance: float = 0,
+                device: str | None = None) -> np.recarray:
         """Where rays hit first, an array with the members of KrsHit: `hit`, `t`, `point`, `normal`, `component`, ...
 
         Directions have any length but 0; `t` counts along the unit direction.  One origin, or one direction, may be that of
@@ -466,12 +482,10 @@ class Scene:
         starts, along = np.broadcast_arrays(np.asarray(origins, np.float64), np.asarray(directions, np.float64))
         starts, along = native.rows(starts, 3, "origins"), native.rows(along, 3, "directions")
         hits = np.zeros(starts.shape[:-1], HIT)
-        with self._state.lock:
-            status = lib.krs_raycast_sized(
-                self._state.pointer, native.pointer(starts, "const double (*)[3]"),
-                native.pointer(along, "const double (*)[3]"), starts.size // 3, farthest, tolerance,
-                native.pointer(hits, "KrsHit *"), HIT.itemsize)
-        check(status, "numbers must be finite, directions not 0, and `farthest` and `tolerance` not negative")
+        self._ask(device, lib.krs_raycast_sized, lib.krs_device_raycast_sized,
+                  "numbers must be finite, directions not 0, and `farthest` and `tolerance` not negative",
+                  native.pointer(starts, "const double (*)[3]"), native.pointer(along, "const double (*)[3]"), starts.size // 3,
+                  farthest, tolerance, native.pointer(hits, "KrsHit *"), HIT.itemsize)
         return hits.view(np.recarray)
 
     # -- solids --
@@ -564,6 +578,13 @@ class Scene:
 
     def _repr_png_(self) -> bytes:
         return self.render((480, 320)).png()
+
+
+def _restore(text: bytes, name: str, options: dict[str, Any], values: dict[str, np.ndarray], time: float,
+             zones: np.ndarray) -> Scene:
+    scene = Scene(_Compiled(text, name, options))
+    scene.zones = zones
+    return scene.values(time=time, **values)
 
 
 def find_camera(scene: Any, which: int | str) -> int:

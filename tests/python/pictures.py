@@ -1,6 +1,8 @@
 """Pictures and their AOVs, beside rays of the host."""
+import gc
 import struct
 import unittest
+import weakref
 import zlib
 
 import numpy as np
@@ -74,7 +76,12 @@ class Pictures(unittest.TestCase):
         camera = self.scene.camera("side")
         camera.orbit(-np.pi / 2, 0)
         np.testing.assert_allclose(np.abs(camera.eye), [0, 0, 5], atol=1e-9)
-        camera.eye = [0, 0, 5]
+        camera.dolly(None, 0.5)
+        np.testing.assert_allclose(np.abs(camera.eye), [0, 0, 2.5], atol=1e-9)
+        camera.aim(np.array([0, 1, 0]))
+        np.testing.assert_allclose(camera.target, [0, 1, 0], atol=1e-9)
+        camera = self.scene.camera("side")
+        camera.eye, camera.target = [0, 0, 5], (0, 0, 0)
         moved = self.scene.render(SIZE, camera=camera, aovs=["component"])
         np.testing.assert_array_equal(moved.component, self.picture.component)
         crop = self.scene.render(SIZE, crop=(10, 5, 20, 8), aovs=["component"])
@@ -118,10 +125,39 @@ class Pictures(unittest.TestCase):
         self.assertEqual(set(np.unique(bare.component)), {0, 1})
         self.assertEqual(len(scene.components), 1)
 
+    def test_freed(self):
+        """a scene that was rendered is freed, behind its shaders"""
+        scene = krs.compile("show sphere(1);")
+        scene.render((8, 8))
+        compiled = scene._compiled.for_pictures(True)
+        rendering, = compiled.renderings.values()
+        self.assertIn(compiled._owned, rendering._owned.needs)
+        refs = [weakref.ref(x) for x in (scene._compiled, compiled, rendering)]
+        owned = compiled._owned
+        del scene, compiled, rendering
+        gc.collect()
+        self.assertEqual([ref() for ref in refs], [None] * 3)
+        self.assertEqual((owned.users, owned.free), ([], []))
+
     def test_in_place(self):
         """AOVs are memory of the library"""
         pointer = int(native.ffi.cast("uintptr_t", self.picture._handle.pointer.depth))
         self.assertEqual(self.picture.depth.ctypes.data, pointer)
+
+    def test_questions(self):
+        """a device answers as the host does, in single precision"""
+        points = np.random.default_rng(5).uniform(-3, 3, (5000, 3)).astype(np.float32)
+        found = self.scene.distance(points, device="")
+        self.assertEqual(found.dtype, np.float32)
+        np.testing.assert_allclose(found, self.scene.distance(points), atol=2e-6)
+        rays = camera_rays()
+        there, here = (self.scene.raycast([0, 0, 5], rays, device=device) for device in ("", None))
+        same = there.hit == here.hit
+        self.assertGreater(same.mean(), 0.99)
+        np.testing.assert_allclose(there.t[same & here.hit], here.t[same & here.hit], atol=1e-4)
+        np.testing.assert_array_equal(there.component[same], here.component[same])
+        with self.assertRaisesRegex(krs.ArgumentError, "finite|number"):
+            self.scene.distance([[np.inf, 0, 0]], device="")
 
     def test_devices(self):
         """the device of the picture is one of the machine"""

@@ -1,4 +1,5 @@
 """What is asked of scenes, beside closed forms."""
+import pickle
 import unittest
 import warnings
 
@@ -147,6 +148,15 @@ show sphere(r).move([0, time, 0]).paint(tint);
         scene.r = 0.5
         self.assertEqual(other.distance([0, 1, 4]), 2)
         self.assertEqual(other.zones.tolist(), scene.zones.tolist())
+
+    def test_pickled(self):
+        """other processes get the same scene at the same values"""
+        scene = krs.compile(self.text, name="part.krs", figures=True)
+        scene.r, scene.time, scene.zones = 2, 1, [[0, 0, 1, 0.5]]
+        other = pickle.loads(pickle.dumps(scene))
+        self.assertEqual((other.r, other.time, other.name), (2, 1, "part.krs"))
+        points = RANDOM.normal(size=(50, 3))
+        np.testing.assert_array_equal(other.distance(points), scene.distance(points))
 
     def test_zones(self):
         """zones are empty"""
