@@ -51,6 +51,13 @@ report(await page.evaluate(async () => {
 }), 'of edits that come at once the last counts');
 
 report(await page.evaluate(async () => {
+    const text = 'param radius = 1;\nshow sph', position = { line: 1, character: 8 };
+    const offered = await krs.ask('textDocument/completion', text, { position });
+    const { contents } = await krs.ask('textDocument/hover', text, { position: { line: 0, character: 8 } });
+    return offered.some(item => item.label === 'sphere') && offered.some(item => item.label === 'radius') && /radius/.test(contents.value);
+}), 'editors are answered, also about texts with mistakes');
+
+report(await page.evaluate(async () => {
     const [hit] = await scene.query([[0, 4, 0]]), [ray] = await scene.raycast([[0, 9, 0]], [[0, -1, 0]]);
     return Math.abs(hit.normal[1] - 1) < 1e-9 && Math.abs(ray.t - 6) < 1e-6 && ray.component === 1;
 }), 'points and rays are answered');

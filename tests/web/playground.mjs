@@ -277,7 +277,7 @@ const parts = {
         const seen = [], unseen = [];
         for (let i = 0; i < 60; i++) {
             await key('Tab');
-            await wait(30); // the editor tells it a little later
+            await wait(100); // the editor tells it a little later
             const focus = await page.evaluate(() => {
                 const element = document.activeElement, style = getComputedStyle(element);
                 const marked = style.outlineStyle !== 'none' && parseFloat(style.outlineWidth) > 1 || Boolean(element.closest('.cm-focused'));
@@ -344,8 +344,22 @@ const parts = {
         report(true, 'methods are behind a dot');
         await key('Escape');
         await write('material clay { rou');
-        await page.until('[...document.querySelectorAll(".cm-tooltip-autocomplete li")].some(item => item.textContent === "roughness")');
+        await page.until('[...document.querySelectorAll(".cm-tooltip-autocomplete li")].some(item => item.textContent.startsWith("roughness"))');
         report(true, 'properties are in blocks');
+        await key('Escape');
+        await write('def ring(width, height = 2) = torus(width, height);\nshow ring(1, ');
+        await page.until('document.querySelector(".call b")?.textContent === "height = 2"');
+        await shot('call');
+        report(true, 'the parameter that comes next is shown');
+        await write('/// As it is.\ndef ring(width) = torus(width);\nshow ring(1);');
+        const { x, y } = await page.evaluate(() => {
+            const { left, top } = [...document.querySelectorAll('.t-call')].at(-1).getBoundingClientRect();
+            return { x: left + 8, y: top + 8 };
+        });
+        await page.mouse('mouseMoved', x, y, { button: 'none' });
+        await page.until('document.querySelector(".explained")?.textContent.includes("As it is.")');
+        await shot('hover');
+        report(true, 'a tip tells what a name means');
         quiet('words are offered');
     },
 

@@ -87,13 +87,6 @@ char *core_format(const char *text, size_t length, const char *name)
     return formatted;
 }
 
-char *core_words(void)
-{
-    char *words;
-    krs_words(NULL, &words);
-    return words;
-}
-
 char *core_text(const KrsScene *scene, uint32_t target, uint32_t options)
 {
     char                *text;

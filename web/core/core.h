@@ -28,9 +28,6 @@ KrsScene *core_update(const KrsScene *scene, const char *text, size_t length);
 /* The text in the canonical layout, for free(); the answer is that of a compilation. */
 char *core_format(const char *text, size_t length, const char *name);
 
-/* What scenes may use without defining it (krs_words), for free(). */
-char *core_words(void);
-
 /* The text in a language of targets.def, for free(); `options` are the members of KrsTextOptions, as bits. */
 char *core_text(const KrsScene *scene, uint32_t target, uint32_t options);
 /* What a scene has: parameters, components, cameras, textures, sizes of what its text reads. */

@@ -189,9 +189,6 @@ class Core {
         const formatted = this.using([at, called], () => this.take(this.m._core_format(at, length, called)));
         return { text: formatted, ...this.answer() };
     }
-
-    // What scenes may use without defining it.
-    vocabulary() { return JSON.parse(this.take(this.m._core_words())); }
 }
 
 class Scene {

@@ -66,7 +66,7 @@ class Calls {
     }
 }
 
-let shared;
+let shared, answering;
 const ask = (call, args) => (shared ??= new Calls()).call(call, args);
 
 // ---- scenes ----
@@ -214,4 +214,8 @@ export const format = async (text, { name } = {}) => {
     return { text: formatted, diagnostics };
 };
 export const check = (text, options) => ask('check', { text, options: optionsOf(options) });
+// Whoever writes does not wait for what is compiled.
+const askAbout = (question, text, params, options) =>
+    (answering ??= new Calls()).call('ask', { question, text, params, options: optionsOf(options) });
+export { askAbout as ask };
 export const version = () => ask('version');

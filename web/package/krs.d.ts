@@ -219,6 +219,12 @@ export function format(text: string, options?: { name?: string }): Promise<{ tex
 /** Mistakes and warnings of a text, without a scene. */
 export function check(text: string, options?: CompileOptions): Promise<Diagnostic[]>;
 
+/**
+ * What editors ask of a text, scene or not: a question of the Language Server Protocol ("textDocument/completion"), its
+ * parameters without `textDocument`, and its result.  A worker of its own answers, while another compiles.
+ */
+export function ask(question: string, text: string, params: object, options?: CompileOptions): Promise<any>;
+
 /** The version of the compiler. */
 export function version(): Promise<string>;
 

@@ -253,6 +253,14 @@ const calls = {
 
     format({ text, name }) { return core.format(text, { name }); },
 
+    async ask({ question, text, params, options }) {
+        const { name } = options;
+        return (await withFiles(options, () => {
+            core.open(text, { name });
+            return { answer: core.ask(question, params, { name }) };
+        })).answer;
+    },
+
     async check({ text, options }) {
         const { scene, diagnostics } = await withFiles(options, () => core.compile(text, { name: options.name }));
         scene?.free();

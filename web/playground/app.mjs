@@ -148,7 +148,7 @@ const problems = new Problems($('problems'), { name: NAME, go: place => editor.g
                                                fixes: diagnostic => editor.fixes(diagnostic) });
 const camera = new Camera(view, { moved: () => { $('home').hidden = !camera.moved; keep(); } });
 const downloads = new Downloads($('download'), { view, text: () => editor.text, title: () => examples.current?.title ?? 'scene' });
-const editor = new Editor($('editor'), { text: '', changed: compileSoon, run: compile, said: say });
+const editor = new Editor($('editor'), { name: NAME, changed: compileSoon, run: compile, said: say, ask: (...question) => krs.ask(...question, options) });
 const examples = new Examples($('examples'), {
     open: async example => {
         const before = editor.text;

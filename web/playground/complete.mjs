@@ -1,106 +1,144 @@
-// complete.mjs: what can be written at a place of a text, and what a word there means.
-import words from 'krs-words';
+// complete.mjs: what the compiler knows of a text while it is written: words that fit, what a word means, the call that is
+// being written, and where a name is defined.  Questions and answers are those of the Language Server Protocol.
+import { autocompletion, snippet } from '@codemirror/autocomplete';
+import { StateEffect, StateField } from '@codemirror/state';
+import { hoverTooltip, showTooltip, ViewPlugin } from '@codemirror/view';
 
-const blocks = new RegExp(`\\b(${Object.keys(words.properties).join('|')})\\b[^;{}]*$`);
+const kinds = { 2: 'method', 3: 'function', 5: 'property', 6: 'variable', 7: 'class', 10: 'property', 14: 'keyword', 16: 'constant', 21: 'constant' };
+const called = new Set(['method', 'function', 'class']);
 
-const called = ({ name, parameters }) => (parameters === null ? name : `${name}(${parameters})`);
-
-// Puts a function with its parentheses, and the cursor between them.
-function apply(view, { label }, from, to) {
-    const next = view.state.sliceDoc(to, to + 1), insert = next === '(' ? label : `${label}()`;
-    view.dispatch({ changes: { from, to, insert }, selection: { anchor: from + label.length + 1 }, userEvent: 'input.complete' });
+export function positionAt(doc, offset) {
+    const line = doc.lineAt(offset);
+    return { line: line.number - 1, character: offset - line.from };
 }
 
-function option(entry, boost = 0) {
-    const { name, parameters, about, kind } = entry;
+// A place as compilers say it, in a text that may have become another since.
+export function offsetOf(doc, { line, character }) {
+    if (line >= doc.lines)
+        return doc.length;
+    const { from, to } = doc.line(line + 1);
+    return Math.min(from + character, to);
+}
+
+function make(name, className, ...children) {
+    const element = document.createElement(name);
+    element.className = className;
+    element.append(...children);
+    return element;
+}
+
+// ---- text with marks ----
+
+// Blocks of code between ```, and paragraphs with code between `.
+function shown(markdown) {
+    const pieces = markdown.split(/^```.*\n?/m).flatMap((piece, i) => i % 2 ? [make('pre', '', piece.trimEnd())]
+        : piece.split(/\n\n+/).filter(text => text.trim()).map(text =>
+            make('p', '', ...text.trim().split('`').map((part, k) => (k % 2 ? make('code', '', part) : part)))));
+    return make('div', 'explained', ...pieces);
+}
+
+// ---- words that fit ----
+
+// Puts a function with its parentheses, and the cursor between them.
+function applyCall(view, { label }, from, to) {
+    const open = view.state.sliceDoc(to, to + 1) === '(';
+    snippet(open ? `${label}\${}` : `${label}(\${})\${}`)(view, null, from, to);
+}
+
+function option({ label, kind, detail, documentation, sortText, textEdit }) {
+    const type = kinds[kind] ?? 'text';
     return {
-        label: name, boost, type: kind ?? 'function', info: about ? () => explained(entry) : undefined,
-        detail: parameters === null ? undefined : `(${parameters})`,
-        apply: parameters === null ? undefined : apply,
+        label, type, sortText, info: documentation ? () => shown(documentation) : undefined,
+        detail: detail?.startsWith(`${label}(`) ? detail.slice(label.length) : detail,
+        apply: called.has(type) ? applyCall : textEdit?.newText,
     };
 }
 
-const plain = (labels, boost) => labels.map(label => ({ label, boost, type: 'keyword' }));
-const keywords = plain(Object.values(words.tokens).flat().filter(spelling => /^\w/.test(spelling)), 1);
-const anywhere = [...keywords, ...words.names.map(entry => option(entry, entry.kind === 'value' && !entry.about ? -50 : 0))];
-const methods = words.methods.map(entry => option(entry));
+// `ask` takes a question, a text and parameters.
+const completions = ask => async context => {
+    const { state, pos } = context, before = state.sliceDoc(state.doc.lineAt(pos).from, pos);
+    if (!context.explicit && !/[A-Za-z_]\w*$|[^\d.]\.$|#$|"[^"]*$/.test(before) || /\/\//.test(before))
+        return null;
+    const items = await ask('textDocument/completion', state.doc.toString(), { position: positionAt(state.doc, pos) });
+    if (!items?.length)
+        return null;
+    const from = items[0].textEdit ? offsetOf(state.doc, items[0].textEdit.range.start) : context.matchBefore(/\w*/).from;
+    return { from, options: items.map(option), validFor: /^#?\w*$/ };
+};
 
-// Names that a text defines.
-function defined(text) {
-    const found = [];
-    for (const [, doc, kind, name, parameters] of text.matchAll(
-        /((?:^[ \t]*\/\/\/.*\n)*)^[ \t]*(let|def|shape|param|material)[ \t]+([A-Za-z]\w*)[ \t]*(?:\(([^()]*)\))?/gm))
-        found.push({ name, kind, parameters: parameters ?? null, about: doc.replace(/^[ \t]*\/\/\/ ?/gm, '').trim() || `a ${kind} of this text` });
-    for (const [, file] of text.matchAll(/\buse\s+"([^"]+)"/g))
-        found.push(...(words.files[file] ?? []));
-    return found;
+// ---- what a word means ----
+
+const meanings = ask => hoverTooltip(async (view, offset) => {
+    const { doc } = view.state, hover = await ask('textDocument/hover', doc.toString(), { position: positionAt(doc, offset) });
+    if (!hover || view.state.doc !== doc)
+        return null;
+    const { start, end } = hover.range;
+    return { pos: offsetOf(doc, start), end: offsetOf(doc, end), above: true, create: () => ({ dom: shown(hover.contents.value) }) };
+}, { hoverTime: 400 });
+
+// ---- the call that is being written ----
+
+const setCall = StateEffect.define();
+
+const callField = StateField.define({
+    create: () => null,
+    update(tip, transaction) {
+        for (const effect of transaction.effects)
+            if (effect.is(setCall))
+                return effect.value;
+        return transaction.docChanged && tip ? { ...tip, pos: transaction.changes.mapPos(tip.pos) } : tip;
+    },
+    provide: field => showTooltip.from(field),
+});
+
+function callTip({ signatures, activeSignature = 0, activeParameter = 0 }, pos) {
+    const { label, parameters = [] } = signatures[activeSignature], [from, to] = parameters[activeParameter]?.label ?? [0, 0];
+    const dom = () => make('div', 'call', make('code', '', label.slice(0, from), make('b', '', label.slice(from, to)), label.slice(to)));
+    return { pos, above: true, strictSide: true, create: () => ({ dom: dom() }) };
 }
 
-// What opens the brace around the end of a text: the word of a block, or null.
-function blockAround(before) {
-    let depth = 0;
-    for (let i = before.length - 1; i >= 0; i--) {
-        if (before[i] === '}')
-            depth++;
-        else if (before[i] === '{' && depth-- === 0)
-            return { name: blocks.exec(before.slice(0, i))?.[1], inside: before.slice(i + 1) };
+const calls = ask => [callField, ViewPlugin.fromClass(class {
+    update(update) {
+        if (!update.docChanged && !(update.selectionSet && update.startState.field(callField)))
+            return;
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => this.look(update.view), 120);
     }
-    return null;
-}
 
-// A property can begin behind the brace, or behind a comma that is in no parentheses.
-function propertiesAt(before) {
-    const block = blockAround(before);
-    if (!block?.name)
-        return null;
-    let depth = 0, begun = 0;
-    for (let i = 0; i < block.inside.length; i++) {
-        depth += '([{'.includes(block.inside[i]) - ')]}'.includes(block.inside[i]);
-        if (block.inside[i] === ',' && depth === 0)
-            begun = i + 1;
+    async look(view) {
+        const { state } = view, { head } = state.selection.main, line = state.sliceDoc(state.doc.lineAt(head).from, head);
+        // Most places are in no call: these are not asked about.
+        const inCall = [...line].reduce((depth, sign) => depth + (sign === '(') - (sign === ')'), 0) > 0 && view.hasFocus;
+        const help = inCall ? await ask('textDocument/signatureHelp', state.doc.toString(), { position: positionAt(state.doc, head) }) : null;
+        if (view.state.doc !== state.doc || view.state.selection.main.head !== head)
+            return;
+        const tip = help?.signatures?.length ? callTip(help, head) : null;
+        if (tip || view.state.field(callField))
+            view.dispatch({ effects: setCall.of(tip) });
     }
-    return block.inside.slice(begun).includes(':') ? null : words.properties[block.name];
+
+    destroy() { clearTimeout(this.timer); }
+})];
+
+// Takes the tip of a call away; false: there is none.
+export function closeCall(view) {
+    if (!view.state.field(callField))
+        return false;
+    view.dispatch({ effects: setCall.of(null) });
+    return true;
 }
 
-export function complete(context) {
-    const before = context.state.sliceDoc(0, context.pos), word = context.matchBefore(/[A-Za-z_]\w*/);
-    const line = before.slice(before.lastIndexOf('\n') + 1);
-    if (/\/\//.test(line))
-        return null;
-    const file = /\buse\s+"([^"]*)$/.exec(line);
-    if (file)
-        return { from: context.pos - file[1].length, options: plain(Object.keys(words.files)), validFor: /^[^"]*$/ };
-    if ((line.match(/"/g) ?? []).length % 2 === 1)
-        return null;
-    const from = word?.from ?? context.pos;
-    if (before[from - 1] === '.')
-        return /\d\.$/.test(before.slice(0, from)) ? null : { from, options: methods, validFor: /^\w*$/ };
-    if (!word && !context.explicit)
-        return null;
-    const properties = propertiesAt(before.slice(0, from));
-    if (properties)
-        return { from, options: properties.map(label => ({ label, type: 'property', apply: `${label}: ` })), validFor: /^\w*$/ };
-    const own = defined(context.state.doc.toString()).map(entry => option(entry, 2));
-    const names = new Set(own.map(({ label }) => label));
-    return { from, options: [...own, ...anywhere.filter(({ label }) => !names.has(label))], validFor: /^\w*$/ };
-}
+// ---- where a name is defined ----
 
-function explained(entry) {
-    const dom = document.createElement('div'), code = document.createElement('code'), about = document.createElement('p');
-    dom.className = 'explained';
-    code.textContent = called(entry);
-    about.textContent = entry.about;
-    dom.append(code, about);
-    return dom;
-}
+export const goToDefinition = (ask, name) => view => {
+    const { doc, selection } = view.state;
+    ask('textDocument/definition', doc.toString(), { position: positionAt(doc, selection.main.head) }).then(found => {
+        const place = Array.isArray(found) ? found[0] : found;
+        if (place?.uri !== name || view.state.doc !== doc)
+            return;
+        view.dispatch({ selection: { anchor: offsetOf(doc, place.range.start), head: offsetOf(doc, place.range.end) }, scrollIntoView: true });
+    });
+    return true;
+};
 
-// What is known of the word at a place, for a tip.
-export function describe(view, at) {
-    const range = view.state.wordAt(at);
-    if (!range)
-        return null;
-    const word = view.state.sliceDoc(range.from, range.to), text = view.state.doc.toString();
-    const known = view.state.sliceDoc(range.from - 1, range.from) === '.' ? words.methods : [...defined(text), ...words.names];
-    const entry = known.find(({ name, about }) => name === word && about);
-    return entry ? { pos: range.from, end: range.to, above: true, create: () => ({ dom: explained(entry) }) } : null;
-}
+export const knowledge = ask => [autocompletion({ override: [completions(ask)], icons: false }), meanings(ask), calls(ask)];

@@ -1,25 +1,16 @@
 // editor.mjs: the text of the scene, in CodeMirror.
-import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
+import { closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, history, historyKeymap, indentWithTab } from '@codemirror/commands';
 import { bracketMatching, indentOnInput, indentUnit } from '@codemirror/language';
 import { forEachDiagnostic, lintGutter, nextDiagnostic, setDiagnostics } from '@codemirror/lint';
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search';
 import { EditorState, Prec } from '@codemirror/state';
-import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap,
-         lineNumbers } from '@codemirror/view';
-import { swatches } from './swatches.mjs';
-import { complete, describe } from './complete.mjs';
+import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers } from '@codemirror/view';
+import { closeCall, goToDefinition, knowledge, offsetOf } from './complete.mjs';
 import { language } from './language.mjs';
+import { swatches } from './swatches.mjs';
 
 const severities = { 1: 'error', 2: 'warning', 3: 'info' };
-
-// A place as compilers say it, in a text that may have become another since.
-function offsetOf(text, { line, character }) {
-    if (line >= text.lines)
-        return text.length;
-    const { from, to } = text.line(line + 1);
-    return Math.min(from + character, to);
-}
 
 const same = (a, b) => a.line === b.line && a.character === b.character;
 
@@ -33,12 +24,15 @@ function fixOf({ range, data }, text) {
 }
 
 export class Editor {
-    // `changed` is told of each text that a user makes, `run` that it is wanted now, `said` what is worth a word.
-    constructor(parent, { text, changed, run, said }) {
-        this.view = new EditorView({ parent, state: EditorState.create({ doc: text, extensions: this.#extensions(changed, run, said) }) });
+    // The text has a name.  `changed` is told that a user has changed it, `run` that it is wanted now, `said` what is worth a
+    // word; `ask` asks the compiler.
+    constructor(parent, { name, changed, run, said, ask }) {
+        // An answer that does not come is none.
+        const asked = (...question) => ask(...question).catch(() => null);
+        this.view = new EditorView({ parent, state: EditorState.create({ extensions: this.#extensions({ name, changed, run, said, ask: asked }) }) });
     }
 
-    #extensions(changed, run, said) {
+    #extensions({ name, changed, run, said, ask }) {
         // Tab indents; after Escape it leaves the editor, until something is typed.
         const leave = view => {
             view.setTabFocusMode(true);
@@ -48,22 +42,22 @@ export class Editor {
         return [
             lineNumbers(), lintGutter(), history(), drawSelection(), dropCursor(), indentOnInput(), indentUnit.of('    '),
             bracketMatching(), closeBrackets(), highlightActiveLine(), highlightActiveLineGutter(),
-            highlightSelectionMatches(), search({ top: true }), autocompletion({ override: [complete], icons: false }),
-            hoverTooltip(describe, { hoverTime: 400 }), language, swatches, EditorView.lineWrapping,
+            highlightSelectionMatches(), search({ top: true }), knowledge(ask), language, swatches, EditorView.lineWrapping,
             EditorState.tabSize.of(4),
             EditorView.contentAttributes.of({ 'aria-label': 'Text of the scene', 'spellcheck': 'false', 'autocapitalize': 'off' }),
             Prec.high(keymap.of([
                 { key: 'Mod-Enter', run: () => (run(), true) },
                 { key: 'F8', run: nextDiagnostic },
+                { key: 'F12', run: goToDefinition(ask, name) },
             ])),
             keymap.of([...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...historyKeymap, ...defaultKeymap,
-                       indentWithTab, { key: 'Escape', run: leave }]),
+                       indentWithTab, { key: 'Escape', run: view => closeCall(view) || leave(view) }]),
             EditorView.domEventHandlers({ blur: (event, view) => view.setTabFocusMode(false) }),
             EditorView.updateListener.of(update => {
                 if (!update.docChanged)
                     return;
                 update.view.setTabFocusMode(false);
-                changed(this.text);
+                changed();
             }),
         ];
     }

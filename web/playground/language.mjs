@@ -14,7 +14,7 @@ const classes = {
 };
 export const classNames = Object.keys(classes);
 
-const classOf = new Map(Object.entries(words.tokens).flatMap(([name, spellings]) =>
+const classOf = new Map(Object.entries(words).flatMap(([name, spellings]) =>
     spellings.map(spelling => [spelling, name.toLowerCase()])));
 const signs = [...classOf.keys()].filter(spelling => /^\W/.test(spelling)).sort((a, b) => b.length - a.length);
 const stages = new Set(['kernel', 'reflect', 'mobius']), messages = new Set(['print', 'assert']);

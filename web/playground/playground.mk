@@ -14,9 +14,9 @@ $(NPM)/.package-lock: $(PLAY)/package.json $(PLAY)/package-lock.json
 	@mkdir -p $(NPM) && cp $^ $(NPM)
 	@cd $(NPM) && npm ci --ignore-scripts --no-audit --no-fund --silent
 	@touch $@
-$(NPM)/words.json: $(PLAY)/words.mjs compiler/front/token.def compiler/eval/properties.c $(wildcard include/krs/*.def) $(W)/krs.wasm $(W)/core.mjs
+$(NPM)/words.json: $(PLAY)/words.mjs compiler/front/token.def
 	@mkdir -p $(NPM)
-	@node $< . $(W) >$@
+	@node $^ >$@
 $(Y)/app.js: $(wildcard $(PLAY)/*.mjs) $(NPM)/words.json $(NPM)/.package-lock
 	@echo "bundle $@"
 	@mkdir -p $(Y)

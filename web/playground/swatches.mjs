@@ -28,7 +28,11 @@ class Swatch extends WidgetType {
 
 const colours = new MatchDecorator({
     regexp: /#[0-9a-fA-F]{6}\b/g,
-    decorate: (add, from, to, [colour]) => add(from, from, Decoration.widget({ widget: new Swatch(colour.toLowerCase()), side: 1 })),
+    // Both stay in one line.
+    decorate: (add, from, to, [colour]) => {
+        add(from, to, Decoration.mark({ class: 'colour', inclusive: true }));
+        add(from, from, Decoration.widget({ widget: new Swatch(colour.toLowerCase()), side: 1 }));
+    },
 });
 
 export const swatches = ViewPlugin.fromClass(class {
