@@ -6,8 +6,10 @@
 
 #include "compiler/print/emitter.h"
 
-/* Declares the globals; `set` gets the nodes that have one, of which there are so many. */
-static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *set, bool *is_global)
+/* Names the values of a frame, and declares them as globals unless they are macros; `set` gets their nodes, of which there
+   are so many. */
+static size_t emit_globals(Emitter *e, const Node *roots, size_t count, bool macros, Node *set,
+                           bool *is_global)
 {
     const Graph *g       = e->graph;
     size_t       globals = 0;
@@ -21,8 +23,9 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *se
         Text name      = {.arena = e->scratch};
         text_format(&name, "krs_frame%u", e->globals++);
         e->frame[n] = name.bytes;
-        emit_template(e, TEMPLATE_GLOBAL,
-                      (Operands){e->printer->types[g->items[n].type], name.bytes});
+        if (!macros)
+            emit_template(e, TEMPLATE_GLOBAL,
+                          (Operands){e->printer->types[g->items[n].type], name.bytes});
     }
     return globals;
 }
@@ -31,6 +34,8 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *se
    compare each read with all reads before it, so fewer reads are compiled sooner. */
 static const char *component_text(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
 {
+    if (e->printer->macros)
+        return emit_slot(e, slot, first, width);
     Text name = {.arena = e->scratch};
     text_format(&name, "krs_slot%u", slot);
     if (!e->slot_is_read[slot])
@@ -89,7 +94,7 @@ static const char *read_text(Emitter *e, const StateValues *values, Node n)
     return emit_expression(e, expr);
 }
 
-/* The globals from the parameter block, in which the host has put them. */
+/* The globals, or macros, from the parameter block, in which the host has put them. */
 static void emit_reads(Emitter *e, const Node *set, size_t globals, const StateValues *values)
 {
     e->slot_is_read = arena_new_array(e->scratch, bool, emit_slot_count(e));
@@ -97,7 +102,7 @@ static void emit_reads(Emitter *e, const Node *set, size_t globals, const StateV
     for (size_t i = 0; i < values->count; i++)
         e->place[values->items[i].node] = (uint32_t)i + 1;
     for (size_t i = 0; i < globals; i++)
-        emit_line(e, "    %s = %s;\n", e->frame[set[i]],
+        emit_line(e, e->printer->macros ? "#define %s (%s)\n" : "    %s = %s;\n", e->frame[set[i]],
                   emit_bare(e, read_text(e, values, set[i])));
 }
 
@@ -153,18 +158,23 @@ void emit_prepare(Emitter *e, const Node *roots, size_t count, const StateValues
 {
     Node  *set       = arena_new_array(e->scratch, Node, e->graph->count);
     bool  *is_global = arena_new_array(e->scratch, bool, e->graph->count);
-    size_t globals   = emit_globals(e, roots, count, set, is_global);
     bool   reads     = e->variant->camera_relative || (e->variant->values && values->slots > 0);
+    bool   macros    = reads && e->printer->macros;
+    size_t globals   = emit_globals(e, roots, count, macros, set, is_global);
     emit_table_globals(e);
     emit_texture_globals(e);
     bool any = globals || emit_reads_tables(e) || emit_reads_textures(e) || e->sees;
     text_add(e->out, any ? "\n" : "");
+    if (macros) {
+        emit_reads(e, set, globals, values);
+        text_add(e->out, globals ? "\n" : "");
+    }
     emit_prepare_head(e);
     emit_table_reads(e);
     emit_texture_reads(e);
-    if (reads)
+    if (reads && !macros)
         emit_reads(e, set, globals, values);
-    else
+    if (!reads)
         emit_definitions(e, set, globals, is_global);
     emit_zone_reads(e);
     text_add(e->out, "}\n\n");

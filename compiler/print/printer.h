@@ -47,6 +47,9 @@ typedef struct Printer {
     void (*spell)(const char *text, size_t length, GraphType type, Text *out);
     const Alternative *alternatives; /* the last has no name */
     const char *const *templates;    /* by TextTemplate */
+    /* What the host has found of a state is a macro that reads its slot, not a global that krs_prepare sets: drivers that
+       follow each global through all functions take several times as long to compile. */
+    bool macros;
 } Printer;
 
 #define KRS_TARGET(id, name, about) extern const Printer name##_printer;

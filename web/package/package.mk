@@ -6,7 +6,7 @@ FONTS_AT   ?= /usr/share/fonts/truetype/dejavu
 PAGE_FILES := $(notdir $(wildcard web/package/*.mjs)) krs.d.ts package.json README.md
 PAGE_FONTS := DejaVuSans.ttf DejaVuSans-Bold.ttf DejaVuSerif.ttf DejaVuSerif-Bold.ttf
 
-web: $(PAGE_FILES:%=$(P)/%) $(addprefix $(P)/,krs.wasm krs.mjs core.mjs shaders.mjs LICENSE) $(PAGE_FONTS:%=$(P)/fonts/%)
+web: $(PAGE_FILES:%=$(P)/%) $(addprefix $(P)/,krs.wasm krs.mjs core.mjs shaders.mjs albedos.bin LICENSE) $(PAGE_FONTS:%=$(P)/fonts/%)
 $(PAGE_FILES:%=$(P)/%): $(P)/%: web/package/%
 	@mkdir -p $(@D) && cp $< $@
 $(addprefix $(P)/,krs.wasm krs.mjs core.mjs): $(P)/%: $(W)/%
@@ -14,6 +14,8 @@ $(addprefix $(P)/,krs.wasm krs.mjs core.mjs): $(P)/%: $(W)/%
 $(W)/krs.mjs: $(W)/krs.wasm
 $(P)/shaders.mjs: web/picture/flatten.mjs $(wildcard web/picture/*.frag web/picture/*.glsl) $(SHADERS) $(HELPERS) $(wildcard include/krs/*.def)
 	@mkdir -p $(@D) && node $< >$@
+$(P)/albedos.bin: web/picture/albedos.mjs $(B)/albedo_tables.c
+	@mkdir -p $(@D) && node $^ >$@
 $(P)/LICENSE: LICENSE
 	@mkdir -p $(@D) && cp $< $@
 $(PAGE_FONTS:%=$(P)/fonts/%): $(P)/fonts/%: $(FONTS_AT)/%

@@ -115,6 +115,8 @@ export class Picture {
         await this.begun;
         const { gl } = this, previous = this.programs;
         if (this.compiled !== scene.key || !this.programs) {
+            if (scene.about.shaders.layers)
+                this.albedos ??= await fetchAlbedos();
             const programs = await compilePasses(gl, scene.about, scene.text);
             if (this.scene !== scene) { // another came meanwhile
                 Object.values(programs).forEach(program => program.free());
@@ -160,8 +162,8 @@ export class Picture {
     #setInputs(lights) {
         const { gl } = this, rows = lightRowsOf(lights), count = lightsAt + rows.length / 4;
         const all = new Uint32Array(4 * inputWidth * Math.ceil(count / inputWidth));
-        if (this.scene.albedos)
-            all.set(this.scene.albedos);
+        if (this.albedos)
+            all.set(this.albedos);
         all.set(rows, 4 * lightsAt);
         if (this.inputs)
             gl.deleteTexture(this.inputs);
@@ -427,6 +429,12 @@ export class Picture {
     // Gives the memory of the card back until it is needed again.
     release() { if (!this.lost) this.losing?.loseContext(); }
     restore() { if (this.lost) this.losing?.restoreContext(); }
+}
+
+// Tables that materials of several layers need.
+async function fetchAlbedos() {
+    const response = await fetch(new URL('albedos.bin', import.meta.url));
+    return new Uint32Array(await response.arrayBuffer());
 }
 
 // A task of its own, after those that wait.

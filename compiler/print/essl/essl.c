@@ -32,4 +32,5 @@ const Printer essl_printer = {
     .base      = &glsl_printer,
     .helpers   = essl_files,
     .templates = templates,
+    .macros    = true,
 };
