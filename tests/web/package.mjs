@@ -36,12 +36,14 @@ report(await page.evaluate(async () => {
 }), 'parameters are set in their range');
 
 report(await page.evaluate(async () => {
-    const text = scene.text, same = await scene.update(text.replace('1 in [0.5', '1.5 in [0.5'));
+    const text = scene.text, first = await scene.update(text.replace('1 in [0.5', '1.2 in [0.5'));
+    const same = await scene.update(text.replace('1 in [0.5', '1.5 in [0.5'));
     const kept = (await scene.distance([0, 5, 0]))[0], refused = await scene.update('show spere(1);');
     const still = (await scene.distance([0, 5, 0]))[0];
     await scene.reset();
     const now = (await scene.distance([0, 5, 0]))[0];
-    return same.change === 'values' && kept === 3 && !refused.ok && refused.diagnostics[0].data.replacement === 'sphere' &&
+    const comment = await scene.update(`${scene.text} // nothing`);
+    return first.change === 'structure' && same.change === 'values' && comment.change === 'nothing' && kept === 3 && !refused.ok && refused.diagnostics[0].data.replacement === 'sphere' &&
         still === 3 && now === 3.5 && scene.text !== 'show spere(1);';
 }), 'an edit keeps values that were set, and a mistake keeps the scene');
 

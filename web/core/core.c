@@ -42,8 +42,9 @@ static bool progress(void *user, double done)
 static KrsOptions options_of(uint32_t bits)
 {
     return (KrsOptions){.diagnostic = answer_diagnostic,
-                        .specialize = bits & CORE_STRUCTURE ? KRS_SPECIALIZE_STRUCTURE
-                                                            : KRS_SPECIALIZE_NUMBERS,
+                        .specialize = bits & CORE_STRUCTURE   ? KRS_SPECIALIZE_STRUCTURE
+                                      : bits & CORE_AUTOMATIC ? KRS_SPECIALIZE_AUTO
+                                                              : KRS_SPECIALIZE_NUMBERS,
                         .studio     = (bits & CORE_STUDIO) != 0,
                         .pictures   = (bits & CORE_PICTURES) != 0,
                         .gradients  = (bits & CORE_GRADIENTS) != 0,

@@ -15,7 +15,8 @@ typedef enum CoreOption {
     CORE_GRADIENTS = 4,
     CORE_ASSEMBLY  = 8,
     CORE_FIGURES   = 16,
-    CORE_STRUCTURE = 32 /* KRS_SPECIALIZE_STRUCTURE */
+    CORE_STRUCTURE = 32, /* KRS_SPECIALIZE_STRUCTURE */
+    CORE_AUTOMATIC = 64  /* KRS_SPECIALIZE_AUTO */
 } CoreOption;
 
 /* The answer to the last call that has one, an object in JSON; it lives until the next. */

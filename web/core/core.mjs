@@ -7,7 +7,7 @@
 // it is there.  Objects of the core have memory of their own, which `free` gives back.
 import Krs from './krs.mjs';
 
-const options = { studio: 1, pictures: 2, gradients: 4, assembly: 8, figures: 16, structure: 32 };
+const options = { studio: 1, pictures: 2, gradients: 4, assembly: 8, figures: 16, structure: 32, automatic: 64 };
 const textOptions = { stateValues: 1, noEarlyOuts: 2 };
 export const targets = ['glsl', 'essl', 'wgsl'];
 

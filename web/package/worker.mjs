@@ -123,21 +123,22 @@ function isAnimated({ scene, state }) {
 // A text with its options, its scene and the values that were set.
 class Held {
     constructor(options) {
-        Object.assign(this, { options, scene: null, state: null, set: new Map(), tables: null, version: 0, time: 0 });
+        Object.assign(this, { options, scene: null, state: null, set: new Map(), tables: null, version: 0 });
     }
 
     async compile(text) {
         const { name, studio } = this.options;
         const made = await withFiles(this.options, () => this.scene ? this.scene.update(text)
-            : core.compile(text, { name, studio: studio !== false, pictures: true, structure: true }));
+            : core.compile(text, { name, studio: studio !== false, pictures: true, automatic: true }));
         return this.#take(made);
     }
 
     // Takes the scene over, or stays what it was.
     #take({ scene, diagnostics, changes }) {
-        const change = changes?.kind ?? 'structure';
         if (!scene)
             return { ok: false, diagnostics, change: 'nothing', about: null };
+        // Numbers are in the shaders until the first edit, and in parameters from then on (KRS_SPECIALIZE_AUTO).
+        const change = changes?.kind ?? 'structure';
         this.#freeScene();
         this.scene = scene;
         this.state = scene.state();
