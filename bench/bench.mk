@@ -46,6 +46,12 @@ $(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(FIXTURE) $(INTERNAL)
 bench-normals: $(B)/bench/normals/normals
 	@REVISION=$(REVISION) $(B)/bench/normals/normals
 
+# How long an editor waits for answers of `krs lsp` and of pages.
+$(B)/bench/service/service: $(B)/bench/service/service.o $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
+bench-service: $(B)/bench/service/service
+	@$(B)/bench/service/service
+
 # How long first pictures take, with empty and with full caches.
 bench-starts: $(B)/krs
 	@bench/starts.sh $(B)/krs
@@ -136,6 +142,6 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(FIXTURE) $(MINIFY) \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o \
                $(B)/bench/view/view.o $(B)/bench/view/first.o $(TRIAL) $(NUMBER_EDIT) $(B)/bench/edits/edits.o $(ENHANCED)
-.PHONY: bench bench-quick minify iterations inverted bench-enhanced bench-normals bench-textures bench-paths bench-algebraic check-device \
+.PHONY: bench bench-quick minify iterations inverted bench-enhanced bench-normals bench-service bench-textures bench-paths bench-algebraic check-device \
         bench-registers bench-parts bench-large bench-radiosity bench-starts \
         bench-lanes bench-mesh bench-view bench-edits

@@ -32,6 +32,8 @@ static void lex_file(Files *files, File *file)
 static void parse_file(Files *files, File *file)
 {
     file->syntax = parse(&file->tokens, files->diags, files->trees);
+    if (files->tells_uses)
+        return;
     arena_release(files->trees, file->tokens.items,
                   file->tokens.capacity * sizeof *file->tokens.items);
     file->tokens = (Tokens){0};

@@ -13,7 +13,7 @@
 void answer_colors(const Here *here, const ServiceQuestion *about, Json *json)
 {
     static const char *const names[] = {"red", "green", "blue"};
-    const Tokens             tokens  = find_tokens(here);
+    const Tokens             tokens  = here->file->tokens;
     (void)about;
     json_open(json, NULL, "[");
     for (size_t i = 0; i < tokens.count; i++) {
@@ -160,7 +160,7 @@ static const char *purpose(const Here *here, const Way *way)
             return NULL;
         if (outer->name)
             return outer->name;
-        const Tokens tokens = find_tokens(here);
+        const Tokens tokens = here->file->tokens;
         CallHere     call;
         Signature    signature;
         if (find_call(&tokens, node->span.start, &call) &&

@@ -167,13 +167,6 @@ const Syntax *last_of_kind(const Way *way, SyntaxKind kind, size_t *index)
     return NULL;
 }
 
-Tokens find_tokens(const Here *here)
-{
-    Analysis *a     = here->analysis;
-    Diags     diags = {.arena = &here->service->arena, .sources = &a->sources};
-    return lex(here->file->source, &a->sources, &a->names, &diags, &here->service->arena);
-}
-
 size_t find_token(const Tokens *tokens, uint32_t offset)
 {
     size_t low = 0, high = tokens->count;

@@ -73,8 +73,6 @@ Way find_way_to(Arena *arena, const Syntax *tree, const Syntax *node);
 /* The last node of a kind on a way, or NULL; *index is where it is. */
 const Syntax *last_of_kind(const Way *way, SyntaxKind kind, size_t *index);
 
-/* The tokens of the document once more, which trees have not. */
-Tokens find_tokens(const Here *here);
 /* The number of the token at an offset, or else of the one before it. */
 size_t find_token(const Tokens *tokens, uint32_t offset);
 /* The word, number or string at an offset, or just before it; or else what is there; NULL: nothing touches it. */

@@ -2,11 +2,12 @@
  * complete.c: what may stand at a place.
  *
  * What kind of word that is follows from the tokens before it.  For names around the place, and for the value in front of
- * a dot, the text is read once more with a name in the place.
+ * a dot, the statement there is read once more, with a name in the place.
  */
 #include <string.h>
 
 #include "compiler/base/embedded.h"
+#include "compiler/front/parse.h"
 #include "compiler/service/analysis.h"
 
 /* Kinds of items of the protocol. */
@@ -58,12 +59,13 @@ static void add_item(const Completion *c, Item item)
         text_format(&sort, "%c%s", item.order, item.label);
         json_string(json, "sortText", sort.bytes);
     }
-    if (item.insert)
+    if (item.insert) { /* else the word at the place becomes the label */
         json_string(json, "filterText", item.insert);
-    json_open(json, "textEdit", "{");
-    add_range(json, "range", c->here->source, c->start, c->end);
-    json_string(json, "newText", item.insert ? item.insert : item.label);
-    json_close(json, "}");
+        json_open(json, "textEdit", "{");
+        add_range(json, "range", c->here->source, c->start, c->end);
+        json_string(json, "newText", item.insert);
+        json_close(json, "}");
+    }
     json_close(json, "}");
 }
 
@@ -124,9 +126,6 @@ static ItemKind kind_of_item(const Syntax *syntax)
 static void add_name(Completion *c, const Analysis *a, const Syntax *syntax, char order)
 {
     Signature signature = {.label = {.arena = &c->here->service->arena}};
-    if (syntax->name_span.start == c->start &&
-        syntax->name_span.source == a->files.items[0]->source)
-        return; /* what is being written */
     if (!note_name(c, syntax->name))
         return;
     if (syntax_is_function(syntax))
@@ -137,51 +136,47 @@ static void add_name(Completion *c, const Analysis *a, const Syntax *syntax, cha
                     syntax->doc, kind_of_item(syntax), order});
 }
 
-static void add_names_of(Completion *c, const Analysis *a, const File *file, char order)
-{
-    for (uint32_t i = 0; i < file->syntax->count; i++)
-        if (syntax_defines(file->syntax->children[i]) && file->syntax->children[i]->name[0] != '_')
-            add_name(c, a, file->syntax->children[i], order);
-}
-
-/* All names that an expression at the place may use, the nearest first. */
-static void add_names(Completion *c, const Analysis *a)
-{
-    const File *file = a->files.items[0];
-    for (size_t i = file->uses.count; i-- > 0;) {
-        const NameUse *use = &file->uses.items[i];
-        if (use->defines && use->seen.end != UINT32_MAX && use->seen.start <= c->start &&
-            c->start <= use->seen.end)
-            add_name(c, a, use->meaning, 'a');
-    }
-    for (size_t i = 0; i < file->uses.count; i++)
-        if (file->uses.items[i].defines && file->uses.items[i].seen.end == UINT32_MAX)
-            add_name(c, a, file->uses.items[i].meaning, 'b');
-    for (size_t i = 0; i < file->used.count; i++)
-        add_names_of(c, a, file->used.items[i], 'c');
-    for (const BuiltinWord *word = builtin_words; word->name; word++)
-        if (word->parameters && !is_method(word) &&
-            note_name(c, name_intern((Names *)&a->names, word->name, strlen(word->name))))
-            add_item(c, (Item){word->name, NULL, signature_text(c, word), word->meaning,
-                               is_called(word) ? ITEM_FUNCTION : ITEM_CONSTANT, 'd'});
-    for (size_t i = 0; i < a->files.count; i++)
-        if (a->files.items[i]->library)
-            add_names_of(c, a, a->files.items[i], 'd');
-}
-
-/* ---- the text with a name in the place ---- */
+/* ---- the statement at the place, with a name there ---- */
 
 static const char placeholder[] = "krs_here";
 
+/* The statement of the file at a place, read by itself. */
+typedef struct Probe {
+    const Syntax *tree;
+    NameUses      uses;
+    uint32_t      at; /* where the name stands in it */
+    Way           way;
+} Probe;
+
+/* Tells whether a statement of the file begins with a token: a word at the beginning of a line. */
+static bool begins_in_file(const Completion *c, const Token *token)
+{
+    const bool word = (token_is_statement_word(token->kind) && token->kind != TOKEN_KRS) ||
+                      token->kind == TOKEN_FOR || token->kind == TOKEN_IF;
+    return word && (token->span.start == 0 || c->here->source->text[token->span.start - 1] == '\n');
+}
+
+/* The number of the token that begins the statement at the place, and the one behind it. */
+static void find_statement(const Completion *c, size_t *first, size_t *last)
+{
+    *first = 0;
+    for (*last = 0; c->tokens.items[*last].kind != TOKEN_END; ++*last)
+        if (begins_in_file(c, &c->tokens.items[*last])) {
+            if (c->tokens.items[*last].span.start >= c->end)
+                break;
+            *first = *last;
+        }
+}
+
 /* Brackets that close what is open at the place. */
-static void add_closers(const Completion *c, Text *out)
+static void add_closers(const Completion *c, size_t first, Text *out)
 {
     struct {
         TokenKind *items;
         size_t     count, capacity;
     } open       = {0};
     Arena *arena = &c->here->service->arena;
-    for (size_t i = 0; i < c->tokens.count && c->tokens.items[i].span.end <= c->start; i++) {
+    for (size_t i = first; i < c->tokens.count && c->tokens.items[i].span.end <= c->start; i++) {
         const TokenKind kind = c->tokens.items[i].kind;
         if (kind == TOKEN_LEFT_PAREN || kind == TOKEN_LEFT_BRACKET || kind == TOKEN_LEFT_BRACE)
             array_push(arena, &open, kind);
@@ -196,31 +191,81 @@ static void add_closers(const Completion *c, Text *out)
     text_add(out, ";");
 }
 
-/* `closed`: nothing of the line behind the place stays, and what is open is closed. */
-static Analysis *read_probe(const Completion *c, bool closed)
+static void read_text(const Completion *c, const Text *text, Probe *probe)
 {
-    const Source *source = c->here->source;
-    Text          text   = {.arena = &c->here->service->arena};
-    uint32_t      behind = c->end;
-    text_add_bytes(&text, source->text, c->start);
-    text_add(&text, placeholder);
-    if (closed) {
-        add_closers(c, &text);
-        while (behind < source->length && source->text[behind] != '\n')
-            behind++;
-    }
-    text_add_bytes(&text, source->text + behind, source->length - behind);
-    return analyse_instead(c->here->service, c->here->document, text.bytes, text.length);
+    Analysis      *a      = c->here->analysis;
+    Arena         *arena  = &c->here->service->arena;
+    Diags          diags  = {.arena = arena, .sources = &a->sources};
+    const uint32_t source = source_add(&a->sources, "", text->bytes, text->length, false);
+    const Tokens   tokens = lex(source, &a->sources, &a->names, &diags, arena);
+    probe->uses           = (NameUses){0};
+    probe->tree           = parse(&tokens, &diags, arena);
+    probe->way            = find_way(arena, probe->tree, probe->at + 1);
+    names_check(probe->tree, &(NameScope){.incomplete = true}, &diags, arena, &probe->uses, arena);
 }
 
-/* The way to the member that has the place's name. */
-static Way find_member(const Completion *c, const Analysis *probe)
+/* Reads the statement with a name in the place.  Where that is not read, nothing behind the place counts, and what is open
+   is closed. */
+static Probe read_probe(const Completion *c)
 {
-    Way way = find_way(&c->here->service->arena, probe->files.items[0]->syntax, c->start + 1);
-    while (way.count > 0 && (way.items[way.count - 1]->kind != SYNTAX_METHOD ||
-                             way.items[way.count - 1]->name_span.start != c->start))
-        way.count--;
-    return way;
+    const Source *source = c->here->source;
+    Probe         probe  = {0};
+    size_t        first, last;
+    find_statement(c, &first, &last);
+    const uint32_t from = c->tokens.items[first].span.start < c->start
+                              ? c->tokens.items[first].span.start
+                              : c->start;
+    const uint32_t to   = c->tokens.items[last].span.start;
+    for (int closed = 0; closed < 2; closed++) {
+        Text text = {.arena = &c->here->service->arena};
+        text_add_bytes(&text, source->text + from, c->start - from);
+        probe.at = (uint32_t)text.length;
+        text_add(&text, placeholder);
+        if (closed)
+            add_closers(c, first, &text);
+        else if (to > c->end)
+            text_add_bytes(&text, source->text + c->end, to - c->end);
+        read_text(c, &text, &probe);
+        const Syntax *node = probe.way.items[probe.way.count - 1];
+        if (node->name && node->name_span.start == probe.at)
+            break;
+    }
+    return probe;
+}
+
+/* ---- names of the place ---- */
+
+static void add_names_of(Completion *c, const File *file, char order, bool all)
+{
+    for (uint32_t i = 0; i < file->syntax->count; i++) {
+        const Syntax *syntax = file->syntax->children[i];
+        if (syntax_defines(syntax) && (all || syntax->name[0] != '_'))
+            add_name(c, c->here->analysis, syntax, order);
+    }
+}
+
+/* All names that an expression at the place may use, the nearest first. */
+static void add_names(Completion *c)
+{
+    const Analysis *a     = c->here->analysis;
+    const Probe     probe = read_probe(c);
+    for (size_t i = probe.uses.count; i-- > 0;) {
+        const NameUse *use = &probe.uses.items[i];
+        if (use->defines && use->seen.end != UINT32_MAX && use->seen.start <= probe.at &&
+            probe.at <= use->seen.end)
+            add_name(c, a, use->meaning, 'a');
+    }
+    add_names_of(c, c->here->file, 'b', true);
+    for (size_t i = 0; i < c->here->file->used.count; i++)
+        add_names_of(c, c->here->file->used.items[i], 'c', false);
+    for (const BuiltinWord *word = builtin_words; word->name; word++)
+        if (word->parameters && !is_method(word) &&
+            note_name(c, name_intern((Names *)&a->names, word->name, strlen(word->name))))
+            add_item(c, (Item){word->name, NULL, signature_text(c, word), word->meaning,
+                               is_called(word) ? ITEM_FUNCTION : ITEM_CONSTANT, 'd'});
+    for (size_t i = 0; i < a->files.count; i++)
+        if (a->files.items[i]->library)
+            add_names_of(c, a->files.items[i], 'd', false);
 }
 
 /* ---- behind a dot ---- */
@@ -256,21 +301,14 @@ static void add_members_of(const Completion *c, const Asked *asked)
 
 static void complete_member(const Completion *c)
 {
-    Analysis *probe = read_probe(c, false);
-    Way       way   = find_member(c, probe);
-    if (way.count == 0) {
-        probe = read_probe(c, true);
-        way   = find_member(c, probe);
-    }
-    Here there     = *c->here;
-    there.analysis = probe;
-    there.file     = probe->files.items[0];
-    Way receiver   = {0};
-    for (size_t i = 0; i < way.count; i++)
-        array_push(&c->here->service->arena, &receiver, way.items[i]);
-    if (way.count > 0)
-        array_push(&c->here->service->arena, &receiver, way.items[way.count - 1]->children[0]);
-    const Asked asked = value_on(&there, &receiver);
+    const Probe   probe    = read_probe(c);
+    Way           receiver = probe.way;
+    const Syntax *member   = receiver.items[receiver.count - 1];
+    if (member->kind == SYNTAX_METHOD && member->name_span.start == probe.at)
+        array_push(&c->here->service->arena, &receiver, member->children[0]);
+    else
+        receiver.count = 0;
+    const Asked asked = value_on(c->here, &receiver);
     add_members_of(c, &asked);
 }
 
@@ -279,7 +317,6 @@ static void complete_member(const Completion *c)
 static void complete_expression(Completion *c)
 {
     static const char *const words[] = {"if", "let", "krs", "not", "true", "false", NULL};
-    const Analysis          *a       = c->here->analysis;
     CallHere                 call;
     Signature                signature;
     const TokenKind          before = c->before ? c->before->kind : TOKEN_END;
@@ -289,15 +326,7 @@ static void complete_expression(Completion *c)
             add_item(c, (Item){text_with(c, signature.items[i].name, ":"),
                                text_with(c, signature.items[i].name, ": "), signature.label.bytes,
                                NULL, ITEM_PROPERTY, '_'});
-    if (a->diags.errors > 0) { /* names of what cannot be read are not known */
-        Analysis *probe = read_probe(c, false);
-        const Way way   = find_way(&c->here->service->arena, probe->files.items[0]->syntax,
-                                   c->start + 1);
-        if (way.count == 0 || way.items[way.count - 1]->kind != SYNTAX_NAME)
-            probe = read_probe(c, true);
-        a = probe;
-    }
-    add_names(c, a);
+    add_names(c);
     add_words(c, words, ITEM_KEYWORD);
 }
 
@@ -581,7 +610,7 @@ static void complete(Completion *c)
 
 void answer_completion(const Here *here, const ServiceQuestion *about, Json *json)
 {
-    Completion c = {.here = here, .json = json, .tokens = find_tokens(here)};
+    Completion c = {.here = here, .json = json, .tokens = here->file->tokens};
     (void)about;
     set_place(&c);
     json_open(json, NULL, "[");

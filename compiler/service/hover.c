@@ -177,7 +177,7 @@ static bool add_label(const Here *here, Text *out, Span *span)
 
 static bool add_token(const Here *here, Text *out, Span *span)
 {
-    const Tokens tokens = find_tokens(here);
+    const Tokens tokens = here->file->tokens;
     const Token *token  = find_pointed(&tokens, here->offset);
     Meaning      meaning;
     if (!token)

@@ -85,7 +85,7 @@ static uint32_t active_parameter(const Signature *signature, const CallHere *cal
 
 void answer_signature(const Here *here, const ServiceQuestion *about, Json *json)
 {
-    const Tokens tokens = find_tokens(here);
+    const Tokens tokens = here->file->tokens;
     CallHere     call;
     Signature    signature;
     (void)about;

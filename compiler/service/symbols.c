@@ -144,7 +144,7 @@ static void fold_comments(const Source *source, uint32_t from, uint32_t to, Json
 
 void answer_folding(const Here *here, const ServiceQuestion *about, Json *json)
 {
-    const Tokens tokens = find_tokens(here);
+    const Tokens tokens = here->file->tokens;
     uint32_t    *open   = arena_new_array(&here->service->arena, uint32_t, tokens.count + 1);
     size_t       depth  = 0;
     uint32_t     before = 0;

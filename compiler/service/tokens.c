@@ -193,7 +193,7 @@ static TokenType type_of_token(const Token *token, const Token *next)
 
 static void write_tokens(const Here *here, uint32_t from, uint32_t to, Json *json)
 {
-    const Tokens tokens = find_tokens(here);
+    const Tokens tokens = here->file->tokens;
     Colours      c      = {.here = here, .json = json, .from = from, .to = to};
     uint32_t     before = here->source->lines[0];
     c.column_at         = before;

@@ -30,7 +30,7 @@ static bool find_target(const Here *here, Target *target)
             set_target(here, target, use->meaning);
         return use->meaning != NULL;
     }
-    const Tokens tokens = find_tokens(here);
+    const Tokens tokens = here->file->tokens;
     const Token *token  = find_pointed(&tokens, here->offset);
     Meaning      meaning;
     if (!token || token->kind != TOKEN_NAME ||
