@@ -6,15 +6,12 @@ PY           := $(B)/python
 find_python   = $(shell for p in python3 /usr/bin/python3; do $$p -c 'import cffi, numpy' 2>/dev/null && echo $$p && break; done)
 PYTHON       ?= $(or $(find_python),$(error `make python` needs NumPy and cffi: python3-numpy and python3-cffi of Debian))
 PY_SOURCES   := $(wildcard python/krs/*.py) python/krs/view.html python/krs/py.typed
-# What `krs.view` shows scenes by, where `make web` has made it.
-PY_WEB       := $(shell find $(B)/web -type f 2>/dev/null)
-PY_PACKAGE   := $(PY_SOURCES:python/%=$(PY)/%) $(PY)/krs/_declarations.py $(PY)/krs/libkrs.so $(PY_WEB:$(B)/%=$(PY)/krs/%)
+PY_PACKAGE   := $(PY_SOURCES:python/%=$(PY)/%) $(PY)/krs/_declarations.py $(PY)/krs/libkrs.so
 
-python: $(PY)/krs/words.pyi
+# What `krs.view` shows scenes by is taken along as it is, where `make web` has made it, or makes it now.
+python: $(PY)/krs/words.pyi $(filter web,$(MAKECMDGOALS))
+	@[ ! -e $(B)/web/index.mjs ] || { mkdir -p $(PY)/krs/web && cp -ru $(B)/web/. $(PY)/krs/web; }
 $(PY)/krs/%: python/krs/%
-	@mkdir -p $(@D)
-	@cp $< $@
-$(PY)/krs/web/%: $(B)/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 $(PY)/krs/_declarations.py: python/tools/declare.py $(wildcard include/krs/*)
@@ -29,7 +26,9 @@ $(PY)/krs/words.pyi: python/tools/stubs.py $(PY_PACKAGE)
 	@echo "stubs   $@"
 	@PYTHONPATH=$(PY) $(PYTHON) python/tools/stubs.py $@
 wheel: python
-	@cp python/pyproject.toml python/setup.py python/README.md $(PY)
+	@rm -rf $(PY)/build $(PY)/dist $(PY)/krs.egg-info
+	@cp python/pyproject.toml python/setup.py LICENSE $(PY)
+	@cp docs/python.md $(PY)/README.md
 	@cd $(PY) && $(PYTHON) -m build --wheel --no-isolation . >build.log 2>&1 || { cat build.log; exit 1; }
 	@echo "wheel   $$(ls $(PY)/dist/*.whl)"
 .PHONY: python wheel
