@@ -1,0 +1,99 @@
+// pictures.mjs: pictures of a page beside those of `krs render`: all examples are drawn without an error; rays of some hit
+// what its rays hit, and colours differ by little.
+//
+//     node pictures.mjs build/web build/krs [EXAMPLE...]
+import { execFileSync } from 'node:child_process';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { launch, serve } from './browser.mjs';
+import { readExr } from './exr.mjs';
+
+const width = 160, height = 90, samples = 8;
+const [, , built, krs, ...chosen] = process.argv;
+// Depths and components of these are compared; and colours, with the largest mean difference of a channel, of 255.
+const compared = { '01-hello': 1.5, '02-gear': 6, '03-machined-part': 4, '04-school': 4, '05-rock': 3, '09-palm': 4, '14-inversion': 4, '15-town': 5,
+    '22-lattice': 3, '26-gasket': 4, '30-bolt': 6, '31-spring': 3 };
+const names = chosen.length ? chosen : fs.readdirSync('examples').filter(file => file.endsWith('.krs')).map(file => file.slice(0, -4));
+const work = fs.mkdtempSync(path.join(os.tmpdir(), 'krs-pictures-'));
+
+let number = 0, failed = 0;
+const report = (good, what) => {
+    console.log(`${good ? 'ok' : 'not ok'} ${++number} - ${what}`);
+    failed += !good;
+};
+
+const server = await serve({ '/': 'tests/web/pages', '/krs/': built, '/examples/': 'examples', '/work/': work });
+const browser = await launch();
+
+// In the page: shows an example; the last frame tells whether it is there.
+async function show(name, width, height) {
+    Object.assign(view.style, { width: `${width}px`, height: `${height}px` });
+    view.samples = 1;
+    const text = await (await fetch(`/examples/${name}.krs`)).text(), update = await view.update(text, { name: `${name}.krs`, base: '/examples/' });
+    await Promise.race([view.ready, new Promise(resolve => view.addEventListener('krs-error', resolve, { once: true }))]);
+    return { ok: update.ok && frames.at(-1)?.samples >= 1, said: update.diagnostics.map(d => d.message).join('; ') };
+}
+
+// Where rays hit: depth along the view, and the component there, or 0.
+async function hits(width, height) {
+    const { basisOf, rayOf } = await import('/krs/frame.mjs'), rays = await view.rays(width, height), { camera } = view;
+    const { forward } = basisOf(camera), depths = [], points = [], dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
+    for (let i = 0; i < width * height; i++) {
+        const [t, , state] = rays.subarray(4 * i, 4 * i + 3), x = i % width, y = Math.floor(i / width);
+        const { origin, direction } = rayOf(camera, width, height, 2 * (x + 0.5) / width - 1, 1 - 2 * (y + 0.5) / height);
+        const point = origin.map((o, k) => o + t / Math.hypot(...direction) * direction[k]);
+        depths.push(state === 1 ? dot(point.map((p, k) => p - camera.eye[k]), forward) : null);
+        if (state === 1)
+            points.push(point);
+    }
+    const found = points.length ? await view.scene.query(points) : [];
+    let next = 0;
+    return { depths, components: depths.map(depth => (depth === null ? 0 : found[next++].component)) };
+}
+
+// The mean difference of a channel from a picture of `krs render`.
+async function difference(file, width, height, samples) {
+    view.samples = samples;
+    const read = async blob => {
+        const canvas = new OffscreenCanvas(width, height), context = canvas.getContext('2d');
+        context.drawImage(await createImageBitmap(blob), 0, 0);
+        return context.getImageData(0, 0, width, height).data;
+    };
+    const own = await read(await view.snapshot(width, height)), other = await read(await (await fetch(file)).blob());
+    return own.reduce((sum, value, i) => sum + Math.abs(value - other[i]), 0) / (3 * width * height);
+}
+
+async function compare(page, name) {
+    const rendered = path.join(work, name);
+    const options = ['--size', `${width}x${height}`, '--integrator', 'preview', '--quiet'];
+    execFileSync(krs, ['render', `examples/${name}.krs`, ...options, '--samples', '1', '--aov', 'Z,id', '-o', `${rendered}.exr`]);
+    execFileSync(krs, ['render', `examples/${name}.krs`, ...options, '--samples', `${samples}`, '-o', `${rendered}.png`]);
+    const { Z, 'id.component': components } = readExr(fs.readFileSync(`${rendered}.exr`)), own = await page.evaluate(hits, width, height);
+    let same = 0, other = 0;
+    for (let i = 0; i < Z.length; i++) {
+        const near = own.depths[i] === null ? Z[i] === Infinity : Math.abs(own.depths[i] - Z[i]) <= 0.01 * Z[i];
+        same += near;
+        // At silhouettes either may be hit; elsewhere there is no other component.
+        other += near && own.components[i] !== components[i];
+    }
+    report(same >= 0.995 * Z.length, `${name}: ${(100 * same / Z.length).toFixed(2)} % of the depths are those of krs render`);
+    report(other <= 0.001 * Z.length, `${name}: of these ${other} of ${Z.length} are of another component`);
+    const mean = await page.evaluate(difference, `/work/${name}.png`, width, height, samples);
+    report(mean < compared[name], `${name}: colours differ by ${mean.toFixed(2)} of 255 in the mean`);
+}
+
+for (const name of names) {
+    const page = await browser.open(`${server.url}/view.html`);
+    await page.until('window.krs');
+    const { ok, said } = await page.evaluate(show, name, width, height);
+    report(ok && page.errors.length === 0, `${name} is drawn ${said} ${page.errors.join('; ').slice(0, 300)}`);
+    if (ok && name in compared)
+        await compare(page, name);
+    await page.close();
+}
+await browser.close();
+server.close();
+fs.rmSync(work, { recursive: true });
+console.log(`1..${number}`);
+process.exitCode = failed ? 1 : 0;
