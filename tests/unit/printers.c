@@ -153,10 +153,15 @@ static const Printer other_printer = {
 
 /* ---- its texts ---- */
 
-static const char *const words_of_glsl[] = {"float", "vec2",  "vec3",   "vec4", "bool",   "uint",
-                                            "bvec2", "bvec3", "bvec4",  "void", "const",  "uniform",
-                                            "out",   "inout", "mix",    "for",  "switch", "case",
-                                            "break", "?",     "layout", "int",  "precise"};
+/* Those that are no words of WGSL, either. */
+static const char *const no_words_of_wgsl[] = {"float", "bvec2", "bvec3",   "bvec4",
+                                               "void",  "uint",  "out",     "inout",
+                                               "?",     "int",   "precise", NULL};
+
+static const char *const words_of_glsl[] = {
+    "float",  "vec2", "vec3",  "vec4",    "bool",   "uint",  "bvec2",   "bvec3",
+    "bvec4",  "void", "const", "uniform", "out",    "inout", "mix",     "for",
+    "switch", "case", "break", "?",       "layout", "int",   "precise", NULL};
 
 static bool is_of_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
 
@@ -187,13 +192,13 @@ static bool declares_as_glsl(const char *line, size_t length)
 
 static int lines_seen;
 
-static void check_language(const char *text, const char *path)
+static void check_language(const char *text, const char *const *others, const char *path)
 {
     for (const char *line = text; *line; line += *line == '\n') {
         size_t length = strcspn(line, "\n");
-        for (size_t i = 0; i < sizeof words_of_glsl / sizeof *words_of_glsl; i++)
-            if (has_word(line, length, words_of_glsl[i]))
-                fail_msg("%s: `%s` in %.*s", path, words_of_glsl[i], (int)length, line);
+        for (const char *const *word = others; *word; word++)
+            if (has_word(line, length, *word))
+                fail_msg("%s: `%s` in %.*s", path, *word, (int)length, line);
         if (declares_as_glsl(line, length))
             fail_msg("%s: a type before a name in %.*s", path, (int)length, line);
         line += length;
@@ -201,7 +206,8 @@ static void check_language(const char *text, const char *path)
     }
 }
 
-static void print_variant(const KrsScene *scene, const KrsVariant *variant, const char *path)
+static void print_in(const Printer *printer, const char *const *others, const KrsScene *scene,
+                     const KrsVariant *variant, const char *path)
 {
     KrsFunction wanted[KRS_FUNCTION_COUNT];
     size_t      count = 0;
@@ -218,8 +224,8 @@ static void print_variant(const KrsScene *scene, const KrsVariant *variant, cons
         if ((!plane || scene->program.planes) && (!part || scene->program.scene_parts >= 2))
             wanted[count++] = function;
     }
-    module_print(&scene->module, variant, wanted, count, &other_printer, &text);
-    check_language(text.bytes, path);
+    module_print(&scene->module, variant, wanted, count, printer, &text);
+    check_language(text.bytes, others, path);
     arena_free(&arena);
 }
 
@@ -233,7 +239,9 @@ static void print_variants(KrsScene *scene, const char *path)
         {.gathers_noises = true},
     };
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++)
-        print_variant(scene, &variants[i], path);
+        for (int own = 0; own < 2; own++)
+            print_in(own ? &other_printer : printers[KRS_TARGET_WGSL],
+                     own ? words_of_glsl : no_words_of_wgsl, scene, &variants[i], path);
     krs_scene_free(scene);
 }
 

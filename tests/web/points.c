@@ -191,6 +191,27 @@ static void write_functions(const char *kind, const char *begin, const char *end
 
 /* ---- variants ---- */
 
+/* Tells whether a function can be had in a variant (module.h). */
+static bool can_want(const KrsProgram *program, const KrsVariant *v, KrsFunction function)
+{
+    switch (function) {
+    case KRS_FUNCTION_PLANE_T:
+    case KRS_FUNCTION_PLANE_COSINE: return program->planes;
+    case KRS_FUNCTION_ALONG:
+    case KRS_FUNCTION_STEPS:
+    case KRS_FUNCTION_PROBE:
+    case KRS_FUNCTION_DISTANCE_LOD:
+    case KRS_FUNCTION_GRADIENT:
+    case KRS_FUNCTION_TANGENT: return !v->camera_relative;
+    case KRS_FUNCTION_SCENE_PART_DISTANCE:
+    case KRS_FUNCTION_SCENE_PART_BOX: return program->scene_parts >= 2;
+    case KRS_FUNCTION_MEDIUM_AT:
+    case KRS_FUNCTION_GLASS: return program->media;
+    case KRS_FUNCTION_SUBSURFACE: return program->subsurface;
+    default: return true;
+    }
+}
+
 static void write_variant(const KrsScene *scene, const KrsVariant *variant, const char *name)
 {
     KrsFunction wanted[KRS_FUNCTION_COUNT];
@@ -201,14 +222,9 @@ static void write_variant(const KrsScene *scene, const KrsVariant *variant, cons
     Text        text   = {.arena = &arena};
     if (setjmp(exhausted) != 0)
         exit(1);
-    for (KrsFunction function = 0; function < KRS_FUNCTION_COUNT; function++) {
-        const bool plane = function == KRS_FUNCTION_PLANE_T ||
-                           function == KRS_FUNCTION_PLANE_COSINE;
-        const bool part = function == KRS_FUNCTION_SCENE_PART_DISTANCE ||
-                          function == KRS_FUNCTION_SCENE_PART_BOX;
-        if ((!plane || scene->program.planes) && (!part || scene->program.scene_parts >= 2))
+    for (KrsFunction function = 0; function < KRS_FUNCTION_COUNT; function++)
+        if (can_want(&scene->program, variant, function))
             wanted[count++] = function;
-    }
     module_print(&scene->module, variant, wanted, count, printers[KRS_TARGET_WGSL], &text);
     fprintf(list, "%s\n", name);
     write_bytes(name, "wgsl", text.bytes, text.length);
@@ -219,11 +235,16 @@ static const KrsOptions all_there_is = {.gradients = true, .research = true};
 
 static void write_variants(KrsScene *scene, const char *name)
 {
-    const KrsVariant variants[] = {
-        {.many_threads = false, .gathers_noises = true},
-        {.many_threads = true, .values = true, .zones = 2},
-        {.planes = scene->program.planes, .values = true, .shares = true, .tangents = true},
-        {.glass = scene->program.media ? KRS_GLASS_NESTED : KRS_GLASS_SOLID, .many_threads = true},
+    const KrsProgram *program    = &scene->program;
+    const KrsGlass    left_out   = program->media ? KRS_GLASS_LEFT_OUT : 0;
+    const KrsGlass    nested     = program->media ? KRS_GLASS_NESTED : 0;
+    const KrsVariant  variants[] = {
+         {.many_threads = false, .gathers_noises = true},
+         {.many_threads = true, .values = true, .zones = 2},
+         {.planes = program->planes, .values = true, .shares = true, .tangents = program->gradients},
+         {.glass = left_out, .step = KRS_STEP_TAYLOR},
+         {.glass = nested, .zones = 2, .many_threads = true, .step = KRS_STEP_DIRECTIONAL},
+         {.camera_relative = program->camera_relative, .zones = 2, .planes = program->planes},
     };
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
         char own[300];
@@ -296,6 +317,10 @@ static const char *const solids[] = {
     "material house(cell) { color: mix(#6f6a66, #b39a7c, random(cell, 2)) }"
     "def lot(cell) = box([0.7, 0.5 + random(cell), 0.7]).paint(house(cell)); show lot.repeat([1, "
     "0, 1], count: [9, 0, 9]);",
+    "show sphere(1).move([100000, 1, 0]); show plane([0, 1, 0], 0); show box([1, 1, "
+    "1]).move([100003, 1, 0]);"
+    "zone { center: [100000, 1, 1], radius: 0.7 } camera { eye: [100000, 2, 5], target: [100000, "
+    "1, 0] }",
     "material glass { transmission: 1, ior: 1.5, absorption: [1, 0.2, 2] }"
     "show sphere(1).paint(glass); show box([1, 0.4, 3]).paint(glass); show sphere(0.5); zone { "
     "radius: 0.7 }",

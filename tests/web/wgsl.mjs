@@ -2,9 +2,11 @@
 //
 //     node wgsl.mjs FOLDER
 //
-// FOLDER has what points.c has written.  Prints TAP, and what was found of each scene if TIMES is set.
+// FOLDER has what points.c has written.  Prints TAP, and what was found of each scene if TIMES is set.  Where `npm install
+// --no-save web-naga@1.0.1` has been called, or NAGA is its folder, naga reads the texts as well, and what it writes is compared.
 import fs from 'node:fs';
 import path from 'node:path';
+import { pathToFileURL } from 'node:url';
 import { launch, serve } from './browser.mjs';
 
 const folder = process.argv[2];
@@ -39,8 +41,8 @@ const NEAR = 0.004;
 // What is wrong of a scene, or nothing.  Distances differ by a ten-thousandth at most of the numbers that are added, and both
 // functions have the same sign.  Colors are compared near surfaces; where solids touch, and where they jump, single precision may choose
 // the other.
-async function difference(name, edit) {
-    const answer = await page.evaluate((scene, change) => run(scene, change), name, edit ?? null);
+async function difference(name, text) {
+    const answer = await page.evaluate((scene, own) => run(scene, own), name, text ?? null);
     if (answer.error)
         return answer.error;
     const points = numbers(Float32Array, name, 'points'), wanted = numbers(Float64Array, name, 'distances');
@@ -70,10 +72,11 @@ const kinds = { field: 'functions of fields', color: 'functions of colors', soli
 
 // ---- faults are found ----
 
-report(/[0-9]{2,} of 1024 distances/.test(await difference('csg.krs', ['max(', 'min(']) ?? ''), 'a wrong phrase is found');
-report(/distances differ/.test(await difference('field-3', ['0.5 - 0.5', '0.5 - 0.49']) ?? ''), 'so is a wrong number in a helper');
-report(/colors differ/.test(await difference('color-1', ['select(0.0, 1.0', 'select(1.0, 0.0']) ?? ''), 'and a choice of colors the other way round');
-report(/expected|unresolved/.test(await difference('csg.krs', ['let ', 'float ']) ?? ''), 'and what is no WGSL');
+const edited = async (name, from, to) => await difference(name, await page.evaluate((...edit) => whole(edit[0], edit.slice(1)), name, from, to)) ?? '';
+report(/[0-9]{2,} of 1024 distances/.test(await edited('csg.krs', 'max(', 'min(')), 'a wrong phrase is found');
+report(/distances differ/.test(await edited('field-3', '0.5 - 0.5', '0.5 - 0.49')), 'so is a wrong number in a helper');
+report(/colors differ/.test(await edited('color-1', 'select(0.0, 1.0', 'select(1.0, 0.0')), 'and a choice of colors the other way round');
+report(/expected|unresolved/.test(await edited('csg.krs', 'let ', 'float ')), 'and what is no WGSL');
 
 // ---- scenes ----
 
@@ -99,6 +102,24 @@ for (const name of of('variant')) {
         refused.push(`${name}: ${error}`);
 }
 report(refused.length === 0 && of('variant').length > 10, `${of('variant').length} variants are WGSL ${refused[0] ?? ''}`);
+
+// ---- naga reads the same ----
+
+const nagaFolder = path.resolve(process.env.NAGA ?? 'node_modules/web-naga');
+if (fs.existsSync(nagaFolder)) {
+    const naga = await import(pathToFileURL(path.join(nagaFolder, 'web_naga.js')));
+    naga.initSync({ module: fs.readFileSync(path.join(nagaFolder, 'web_naga_bg.wasm')) });
+    const read = [...of('field'), ...of('color'), ...of('solid'), ...of('random')], others = [];
+    for (const name of read) {
+        const text = await page.evaluate(scene => whole(scene), name);
+        const what = await difference(name, naga.WgslFrontend.new().parse(text).to_wgsl());
+        if (what)
+            others.push(`${name}: ${what}`);
+    }
+    report(others.length === 0 && read.length > 60, `what naga makes of ${read.length} texts is the same ${others[0] ?? ''}`);
+} else {
+    report(true, `naga reads the same # SKIP ${nagaFolder} is not here`);
+}
 
 // ---- each helper is in some text ----
 
