@@ -577,7 +577,8 @@ class Scene:
         return render(self, size, **options)
 
     def _repr_png_(self) -> bytes:
-        return self.render((480, 320)).png()
+        """What notebooks show: a preview, which takes seconds whatever the scene's `image` block asks for."""
+        return self.render((480, 320), samples=4, integrator="preview").png()
 
 
 def _restore(text: bytes, name: str, options: dict[str, Any], values: dict[str, np.ndarray], time: float,
