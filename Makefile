@@ -41,7 +41,7 @@ ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite grap
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Clients of the compiler: it knows nothing of them.
-CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays,$(call sources,$(room)))
+CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays export,$(call sources,$(room)))
 # What the system is asked for.
 PLATFORM := $(call sources,platform/linux)
 # Points and rays side by side, once for each instruction set.
@@ -66,6 +66,7 @@ VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
 ESSL     := $(sort $(wildcard compiler/print/essl/*.glsl))
+EXPORTS  := $(sort $(wildcard export/templates/*))
 SHADERS  := $(sort $(wildcard $(addprefix runtime/shaders/,*.comp *.glsl research/*.comp research/*.glsl) runtime/shared/*.h)) \
             include/krs/surface.def include/krs/light_types.def
 # Shaders without a scene are compiled here and now, not on every machine again; what is optimized
@@ -100,7 +101,7 @@ HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(PLATFORM:%.c=$(B)/%.o) $(CLIENTS:%.c=$(B)/%.o) $(BRIDGE:%.cpp=$(B)/%.o) $(B)/library_files.o \
-            $(B)/helper_files.o $(B)/essl_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o \
+            $(B)/helper_files.o $(B)/essl_files.o $(B)/export_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o \
             $(B)/albedo_tables.o $(B)/fingerprints.o
 
 # Programs of this project are linked with the library's parts; others with the library, which shows its API alone.
@@ -188,6 +189,8 @@ $(B)/helper_files.c: $(B)/embed $(HELPERS)
 	@$(B)/embed helper_files compiler/print/glsl/ -- $(HELPERS) >$@
 $(B)/essl_files.c: $(B)/embed $(ESSL)
 	@$(B)/embed essl_files compiler/print/essl/ -- $(ESSL) >$@
+$(B)/export_files.c: $(B)/embed $(EXPORTS)
+	@$(B)/embed export_files export/templates/ -- $(EXPORTS) >$@
 $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ include/ -- $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)

@@ -60,7 +60,7 @@ BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/se
 # else, and `make test-all` both (docs/building.md says what costs what).  The sanitizers, clang and the fuzzers belong
 # to it, as they compile everything once more, the judge of meshes, whose headers take a minute, and what
 # compares switches of `krs help render --all` with each other.
-LONG        := $(addprefix tests/, web/many.sh web/pictures.sh web/wgsl_many.sh web/playground_long.sh web/python.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
+LONG        := $(addprefix tests/, web/many.sh web/pictures.sh web/wgsl_many.sh web/exports.sh web/playground_long.sh web/python.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
                $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_csg.sh mesh_judges.sh outputs.sh \
                pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
                $(addprefix unit/, arguments compiled instance_grid drivers film light_groups memory mesh_proofs methods noise paths \
@@ -72,8 +72,8 @@ LONG        := $(addprefix tests/, web/many.sh web/pictures.sh web/wgsl_many.sh 
 # What a set has of scripts, of programs, and of programs under the sanitizers.
 scripts_short    = $(filter-out $(LONG), $(1))
 scripts_long     = $(filter $(LONG), $(1))
-# many.sh is core.sh with more scenes, wgsl_many.sh wgsl.sh.
-scripts_all      = $(filter-out tests/web/core.sh tests/web/wgsl.sh, $(1))
+# many.sh is core.sh with more scenes, wgsl_many.sh wgsl.sh, exports.sh export.sh.
+scripts_all      = $(filter-out tests/web/core.sh tests/web/wgsl.sh tests/web/export.sh, $(1))
 programs_short  := $(filter-out $(LONG), $(PROGRAMS))
 programs_long   := $(filter $(LONG), $(PLAIN))
 programs_all    := $(PLAIN)
@@ -191,7 +191,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format -i $$(find api bench cli compiler examples grid import include live measure mesh platform rays runtime slice tests web -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find api bench cli compiler examples export grid import include live measure mesh platform rays runtime slice tests web -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

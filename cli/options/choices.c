@@ -64,6 +64,10 @@ const Choice language_choices[] = {
 #define KRS_TARGET(id, name, about) {#name, about},
 #include "krs/targets.def"
     LAST};
+const Choice export_choices[] = {
+#define EXPORT_TARGET(id, name, template, ending, tables, longest, about) {name, about},
+#include "export/targets.def"
+    LAST};
 const Choice stereo_choices[] = {
     {"side-by-side", "the left eye's to the left"}, {"over-under", "the left eye's above"}, LAST};
 const Choice specialize_choices[] = {

@@ -12,6 +12,7 @@
 #define ON_ALL          ((1u << COMMAND_COUNT) - 1)
 #define ON_PICTURES     (ON(RENDER) | ON(WATCH))
 #define ON_SHOWN        (ON_PICTURES | ON(VIEW))
+#define ON_LIT          (ON_SHOWN | ON(EXPORT))
 #define ON_SCENE        (ON_SHOWN | ON(VALIDATE) | ON(QUERY))
 #define ON_SOLID        (ON(MESH) | ON(SLICE) | ON(GRID) | ON(INFO))
 #define ON_READING      (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(HELP)))

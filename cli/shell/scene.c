@@ -63,7 +63,8 @@ static KrsSpecialize find_specialize(const Options *options)
 static bool shows_pictures(const Options *options)
 {
     return options->command == COMMAND_RENDER || options->command == COMMAND_WATCH ||
-           options->command == COMMAND_VIEW || (options->command == COMMAND_INFO && options->cost);
+           options->command == COMMAND_VIEW || options->command == COMMAND_EXPORT ||
+           (options->command == COMMAND_INFO && options->cost);
 }
 
 /* Those that say something of a figure, or write it. */

@@ -17,6 +17,7 @@ typedef struct EmbeddedFile {
 extern const EmbeddedFile library_files[];
 extern const EmbeddedFile helper_files[]; /* "sines.glsl": used by scenes and shaders */
 extern const EmbeddedFile essl_files[];   /* what of these is other in ESSL */
+extern const EmbeddedFile export_files[]; /* "shadertoy.glsl": templates */
 extern const EmbeddedFile shader_files[];
 extern const EmbeddedFile module_files[]; /* "fill.comp.spv" */
 
