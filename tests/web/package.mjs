@@ -53,6 +53,15 @@ report(await page.evaluate(async () => {
 }), 'of edits that come at once the last counts');
 
 report(await page.evaluate(async () => {
+    const kept = await krs.compile('param radius = 1 in [0.5, 2]; show sphere(radius);');
+    await kept.set('radius', 2);
+    const long = 'def f(n) = if n < 2 then n else f(n - 1) + f(n - 2); show sphere(f(40));';
+    const ended = kept.update(long).then(() => 'was compiled', error => error.message);
+    setTimeout(krs.stop, 100);
+    return /ended/.test(await ended) && (await kept.distance([0, 5, 0]))[0] === 3 && (await kept.update('show sphere(1);')).ok;
+}), 'a compilation is ended, and its scene is there again');
+
+report(await page.evaluate(async () => {
     const text = 'param radius = 1;\nshow sph', position = { line: 1, character: 8 };
     const offered = await krs.ask('textDocument/completion', text, { position });
     const { contents } = await krs.ask('textDocument/hover', text, { position: { line: 0, character: 8 } });

@@ -222,7 +222,31 @@ const parts = {
         await start('#1.broken');
         report(/broken/.test(await page.evaluate(() => document.querySelector('#said').textContent)), 'a broken link is told');
         report(await text() === BALL, 'what was there last comes instead');
+        await start('#example=02-gear');
+        report((await text()).startsWith('// Functions, figures and time'), 'a link to an example opens it');
         quiet('links are opened');
+        const refused = await page.evaluate(() => new Promise(resolve => {
+            addEventListener('securitypolicyviolation', event => resolve(event.effectiveDirective));
+            fetch('http://127.0.0.1:9/').catch(() => {});
+        }));
+        report(refused === 'connect-src', 'the page may ask no other host');
+        page.errors.length = 0;
+    },
+
+    async stop() {
+        await start();
+        await write(BALL);
+        await page.evaluate(() => document.querySelector('.cm-content').focus());
+        await key('a', 2, 'KeyA');
+        await page.type('def f(n) = if n < 2 then n else f(n - 1) + f(n - 2); show sphere(f(40));');
+        await page.until('!document.querySelector("#busy").hidden');
+        await shot('busy');
+        await click('#stop');
+        await answered();
+        report(/ended/.test(await page.evaluate(() => document.querySelector('#said').textContent)), 'a compilation is stopped');
+        await write(BALL.replace('= 1', '= 2'));
+        report(await page.evaluate(() => document.querySelector('krs-view').scene.parameters[0].value[0]) === 2, 'and others go on');
+        quiet('that is done');
     },
 
     async downloads() {

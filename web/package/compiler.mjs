@@ -67,7 +67,14 @@ class Calls {
 }
 
 let shared, answering;
-const ask = (call, args) => (shared ??= new Calls()).call(call, args);
+const worker = () => (shared ??= new Calls());
+const ask = (call, args) => worker().call(call, args);
+
+// Scenes find that their worker is another, and are compiled again.
+export function stop() {
+    shared?.end(new Error('the compilation was ended'));
+    shared = undefined;
+}
 
 // ---- scenes ----
 
@@ -85,6 +92,9 @@ const nothing = { parameters: [], components: [], cameras: [], image: { width: 0
 export class Scene extends EventTarget {
     #options;
     #number;
+    #worker;           // that has the scene
+    #there;            // when it has
+    #unseen = false;   // it is another one, whose tables nobody has seen
     #about = nothing;
     #values = new Map();
     #compiling = null; // what is compiled now
@@ -122,7 +132,27 @@ export class Scene extends EventTarget {
         return this.#next.promise;
     }
 
+    // The worker has the scene of the last text that was accepted, with its values.
+    #ready() {
+        if (this.#worker !== worker()) {
+            this.#worker = worker();
+            this.#there = this.#compileAgain();
+        }
+        return this.#there;
+    }
+
+    async #compileAgain() {
+        this.#number = undefined;
+        if (!this.ok)
+            return;
+        this.#unseen = true;
+        const { number } = await ask('compile', { text: this.text, options: this.#options });
+        this.#number = number;
+        await Promise.all(Array.from(this.#values, ([name, value]) => ask('set', { scene: number, name, value })));
+    }
+
     async #compile(text) {
+        await this.#ready();
         const made = this.#number === undefined ? await ask('compile', { text, options: this.#options })
                                                 : await ask('update', { scene: this.#number, text });
         this.#number ??= made.number;
@@ -171,7 +201,12 @@ export class Scene extends EventTarget {
     }
 
     // What a picture reads at a time; of tables, what it has not seen.
-    state(time, tables) { return this.#ask('state', { time, tables }); }
+    async state(time, tables) {
+        await this.#ready();
+        const seen = this.#unseen ? undefined : tables;
+        this.#unseen = false;
+        return this.#ask('state', { time, tables: seen });
+    }
 
     camerasAt(time) { return this.#ask('cameras', { time }); }
 
@@ -190,11 +225,14 @@ export class Scene extends EventTarget {
     }
 
     free() {
-        if (this.#number !== undefined)
+        if (this.#number !== undefined && this.#worker === shared)
             ask('free', { scene: this.#number });
     }
 
-    #ask(call, args) { return ask(call, { scene: this.#number, ...args }); }
+    async #ask(call, args) {
+        await this.#ready();
+        return ask(call, { scene: this.#number, ...args });
+    }
 }
 
 function newPromise() {

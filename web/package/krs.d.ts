@@ -225,6 +225,12 @@ export function check(text: string, options?: CompileOptions): Promise<Diagnosti
  */
 export function ask(question: string, text: string, params: object, options?: CompileOptions): Promise<any>;
 
+/**
+ * Ends what the compiler does, however long it would take: promises that wait for it are rejected.  Scenes stay; each is compiled
+ * again when it is asked next.
+ */
+export function stop(): void;
+
 /** The version of the compiler. */
 export function version(): Promise<string>;
 

@@ -198,6 +198,8 @@ $('share').addEventListener('click', async () => {
 });
 $('copy').addEventListener('click', copy);
 
+$('stop').addEventListener('click', () => krs.stop());
+
 addEventListener('keydown', event => {
     if (event.altKey && event.shiftKey && event.code === 'KeyF') {
         event.preventDefault();
@@ -236,9 +238,11 @@ view.addEventListener('krs-frame', ({ detail }) => {
 
 // ---- the beginning ----
 
+// `#example=02-gear` opens an example.
 async function openLink() {
+    const example = examples.find(/^#example=(.*)$/.exec(location.hash)?.[1]);
     try {
-        return await unpack(location.hash);
+        return example ? { text: example.text } : await unpack(location.hash);
     } catch (error) {
         say(error.message);
         return null;
