@@ -16,7 +16,7 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_fixture.c queried.c \
                cache_folder.c compiled_files.c crossings.c instance_scene.c closed_forms.c)
 PROPERTY_SHARED := $(addprefix tests/property/, instance_parts.c garden.c op_trial.c reach_instances.c)
-UNIT        := specks texts watchdog front service synonyms arguments visibility diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
+UNIT        := specks texts watchdog front service service_random synonyms arguments visibility diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute state state_floor framing query zones surroundings cache cache_limits \
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid instance_grid instances \
                instance_shaders instance_ends instance_pictures few_parts tables device_tables table_files printing printers elementary gathered_noises answers structure update coordinates reload live saved_texts camera_text resolution painter saver profile profiler edits values lane_math mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly
@@ -37,7 +37,7 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers (drivers leak by design).  `make test-all` runs it only
 # there, but for BOTH, whose machine code depends on the compiler's options.
-SANITIZED   := $(addprefix tests/, unit/texts unit/watchdog unit/front unit/service unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
+SANITIZED   := $(addprefix tests/, unit/texts unit/watchdog unit/front unit/service unit/service_random unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
                unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/instance_grid unit/instances unit/few_parts unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/state unit/state_floor unit/framing unit/query \
                unit/zones unit/printers unit/elementary unit/gathered_noises unit/structure unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/profile unit/values unit/lane_math unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/mesh_handles unit/mesh_sides unit/mesh_flat_proofs unit/assembly property/ops property/noise property/textures property/graph property/simplify \
@@ -121,6 +121,9 @@ $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B
 $(B)/tests/oracle/essl: %: %.o $(B)/tests/oracle/oracle.a $(LINKED)
 	@$(LINK) -lEGL -lGLESv2
 $(B)/tests/unit/watcher: $(B)/live.a
+# A reader of JSON that is not ours.
+$(B)/tests/unit/service_random: %: %.o $(B)/tests/unit/unit.a $(LINKED)
+	@$(LINK) $(JSON_LIBS)
 $(addprefix $(B)/tests/unit/, live saved_texts camera_text resolution painter saver profile profiler): $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/live.a $(LINKED)
 	@$(LINK)
 # What CGAL finds of meshes, where it is installed: without it, tests say so.  At -O2 and with names for a
