@@ -203,22 +203,44 @@ Value ask_definition(Asking *a, size_t file, const Syntax *const *nodes, size_t 
 
 /* ---- words ---- */
 
+/* Six digits: a box is for orientation. */
+static void add_corner(Text *out, const Shape *shape, bool high)
+{
+    for (int i = 0; i < 3; i++)
+        text_format(out, "%s%.6g", i ? ", " : "[",
+                    high ? shape->box.axis[i].high : shape->box.axis[i].low);
+    text_add(out, "]");
+}
+
+static void add_shape(Text *out, const Shape *shape)
+{
+    text_add(out, shape->figure ? "a plane figure" : "a shape");
+    if (box_is_empty(shape->box)) {
+        text_add(out, ", empty");
+        return;
+    }
+    text_add(out, " from ");
+    add_corner(out, shape, false);
+    text_add(out, " to ");
+    add_corner(out, shape, true);
+    text_add(out, shape->exact ? "; its distance is exact" : "; its distance is a bound");
+    if (isfinite(shape->derived) && shape->derived > 1)
+        text_format(out, ", of a field that rises %.3g times as fast", shape->derived);
+}
+
 void ask_text(Asking *a, Value value, Text *out)
 {
     enum { MOST = 200 }; /* bytes, of what has many elements */
     if (value.type == VALUE_ERROR || value.type == VALUE_FUNCTION)
         return;
+    if (value.type == VALUE_SHAPE) {
+        add_shape(out, value.shape);
+        return;
+    }
     const size_t before = out->length;
     value_text(&a->e, value, out, before + MOST);
     if (out->length > before + MOST)
         text_add(out, " ...");
-    if (value.type != VALUE_SHAPE || box_is_empty(value.shape->box))
-        return;
-    text_add(out, value.shape->exact ? "; its distance is exact" : "; its distance is a bound");
-    if (isfinite(value.shape->derived) && value.shape->derived > 1) {
-        text_add(out, ", of a field that rises ");
-        text_format(out, "%.3g times as fast", value.shape->derived);
-    }
 }
 
 uint32_t ask_size(Asking *a, Value value) { return value_size(&a->e, value); }

@@ -87,6 +87,14 @@ static void add_head(const Here *here, const Syntax *syntax, Text *out)
     add_code(head.bytes, out);
 }
 
+/* Tells whether a definition is its own value: a number or a text. */
+static bool is_literal(const Syntax *syntax)
+{
+    const SyntaxKind value = syntax->count > 0 ? syntax->children[0]->kind : SYNTAX_ERROR;
+    return syntax->kind == SYNTAX_LET &&
+           (value == SYNTAX_NUMBER || value == SYNTAX_STRING || value == SYNTAX_BOOLEAN);
+}
+
 static void add_definition(const Here *here, const Syntax *syntax, Text *out)
 {
     uint32_t rgb;
@@ -97,7 +105,7 @@ static void add_definition(const Here *here, const Syntax *syntax, Text *out)
         text_format(out, "\nof `%s`\n", source->name);
     if (find_colour(here, syntax, &rgb))
         add_swatch(rgb, out);
-    else if (!syntax_is_function(syntax))
+    else if (!syntax_is_function(syntax) && !is_literal(syntax))
         add_value(value_of(here, syntax), out);
 }
 

@@ -34,7 +34,7 @@ has() { grep -qF -- "$1" out; }
 file=file://$work/a%20b.krs
 {
     begin
-    open_text "$file" 'let a = 2;\nshow sphere(a);\n'
+    open_text "$file" 'let a = 1 + 1;\nshow sphere(a);\n'
     ask 2 hover "$file" 1 12
     ask 3 definition "$file" 1 7
     end

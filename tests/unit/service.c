@@ -194,6 +194,7 @@ static void hover_tells_documentation_and_value(void **state)
 {
     static const char question[] = "textDocument/hover";
     (void)state;
+    expect_no_answer(question, "let n = 3;\nlet m = n@;\n", "\\n= 3");
     expect_answer(question, "let n = 3 * 6;\nlet m = n@;\n", "= 18");
     expect_answer(question, "/// How wide.\nparam w = 0.5 in [0, 1];\nlet a = w@;\n", "How wide.");
     expect_answer(question, "/// How wide.\nparam w = 0.5 in [0, 1];\nlet a = w@;\n",
