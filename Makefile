@@ -13,6 +13,7 @@
 # make bench-registers  registers, waves and spills of each shader on a graphics card
 # make bench-view       how fast the viewer follows edits, sliders and the camera
 # make bench-edits      how long a saved number takes to its picture, by krs watch and by krs render
+# make bench-web        how large the package for pages is, and how fast a page follows edits
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (20)
 # make golden     pictures under every option, bit for bit as they were: after changes that nobody should see

@@ -56,6 +56,10 @@ bench-service: $(B)/bench/service/service
 bench-starts: $(B)/krs
 	@bench/starts.sh $(B)/krs
 
+# How large the package for pages is, and how fast a page follows edits, in Chromium.
+bench-web: web
+	@node bench/web/web.mjs $(P)
+
 # What textures and patterns cost beside a plain material.
 bench-textures: $(B)/krs
 	@bench/textures/textures.sh $(B)/krs

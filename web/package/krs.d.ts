@@ -263,7 +263,7 @@ export interface Frame {
  * A text that is refused leaves the last picture.  What it cannot show is said in the corner, with the command that can.
  *
  * Events: `krs-diagnostics` (a text was compiled: `detail` is an `Update`), `krs-frame` (a picture is there: `detail` is
- * a `Frame`), `krs-camera` (`detail` is the `Camera`, moved by the user).
+ * a `Frame`), `krs-camera` (`detail` is the `Camera`, moved by the user), `krs-error` (nothing can be drawn: `detail` says why).
  */
 export class KrsViewElement extends HTMLElement {
     src: string | null;
@@ -284,6 +284,9 @@ export class KrsViewElement extends HTMLElement {
     update(text: string, options?: CompileOptions): Promise<Update>;
     /** A picture of so many pixels, with `samples`, at the present camera and time. */
     snapshot(width?: number, height?: number, type?: string): Promise<Blob>;
+    /** Where rays of pixels end, rows from the top: length along the ray, side (1: from outside), 1 for a hit and 2 for none,
+        and steps, for each. */
+    rays(width: number, height: number): Promise<Float32Array>;
     /** The point of the scene under a place of the page (`event.clientX`, `event.clientY`); null: none. */
     pick(x: number, y: number): Promise<Hit | null>;
     /** Resolves when the picture has all its samples. */
@@ -296,5 +299,6 @@ declare global {
         'krs-diagnostics': CustomEvent<Update>;
         'krs-frame': CustomEvent<Frame>;
         'krs-camera': CustomEvent<Camera>;
+        'krs-error': CustomEvent<string>;
     }
 }

@@ -21,6 +21,8 @@ function notes({ about, image, camera, name }) {
         missing.push('glass is opaque');
     if (image.integrator === 'path' || image.integrator === 'direct')
         missing.push(`the light of the integrator "${image.integrator}"`);
+    if (shaders.mirrors && !shaders.media && image.integrator === null)
+        missing.push('what mirrors show beside the sky');
     if (shaders.sky_map)
         missing.push('the picture of the sky');
     if (camera?.shutter?.[0] !== camera?.shutter?.[1])
