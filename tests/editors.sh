@@ -1,6 +1,6 @@
 #!/bin/sh
 # editors.sh: the syntax colouring for editors knows exactly the words of token.def, each in the
-# group of its class.
+# group of its class; and the extension for VS Code starts the language server.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 failed=0
@@ -30,4 +30,9 @@ for class in STATEMENT CONTROL OPERATOR_WORD CONSTANT; do
         "$(sed -n "s/.*\"keyword\.$lower\.krs\", \"match\": \"[^(]*(\([^)]*\)).*/\1/p" \
             grammar/editors/krs.tmLanguage.json | sorted)"
 done
+if command -v node >/dev/null; then
+    node tests/lsp/extension.cjs "${KRS:-build/krs}" || failed=1
+else
+    echo "ok - the extension for VS Code # SKIP no node"
+fi
 exit $failed
