@@ -45,8 +45,8 @@ typedef struct Files {
     Diags        *diags;
     Names        *names;
     Sources      *sources;
-    const Loader *loader;     /* reads the files that a scene names */
-    bool          tells_uses; /* names_check tells what the names of each file mean, and tokens stay */
+    const Loader *loader; /* reads the files that a scene names */
+    bool tells_uses;      /* names_check tells what the names of each file mean, and tokens stay */
     struct {
         DataFile *items;
         size_t    count, capacity;
