@@ -280,6 +280,52 @@ static void texts_are_in_the_language_of_their_printer(void **state)
     assert_true(lines_seen > 10000);
 }
 
+/* ---- GLSL in WGSL ---- */
+
+static const struct {
+    GraphType   type; /* of operands */
+    const char *glsl, *wgsl;
+} spelled[] = {
+    {TYPE_FLOAT, "max($a, 0.0)", "max($a, 0.0)"},
+    {TYPE_VEC3, "(max($a, 0.0) + log(1.0 + exp(-abs($a))))",
+     "(max($a, vec3f(0.0)) + log(1.0 + exp(-abs($a))))"},
+    {TYPE_FLOAT, "float $t = inversesqrt($a); mix($a, $t, $c > 0.0)",
+     "let $t: f32 = inverseSqrt($a); select($a, $t, $c > 0.0)"},
+    {TYPE_FLOAT, "mix($a, $b, $c)", "mix($a, $b, $c)"},
+    {TYPE_FLOAT, "mix($a, $b, all(bvec2($c > 0.0, $d > 0.0)))",
+     "select($a, $b, all(vec2<bool>($c > 0.0, $d > 0.0)))"},
+    {TYPE_FLOAT, "a > b ? c : d == e ? -f : f", "select(select(f, -f, d == e), c, a > b)"},
+    {TYPE_FLOAT, "uvec2 a; vec2 b = uintBitsToFloat(a) * floatBitsToUint(c);",
+     "var a: vec2u; var b: vec2f = bitcast<vec2f>(a) * bitcast<u32>(c);"},
+    {TYPE_FLOAT, "    float a = 1.0, b[4];", "    var a: f32 = 1.0;\n    var b: array<f32, 4>;"},
+    {TYPE_FLOAT, "if (a == b)\n    a = b <= c ? b : c;\nelse\n    a += 1.0; // so",
+     "if (a == b) {\n    a = select(c, b, b <= c);\n} else {\n    a += 1.0;\n} // so"},
+    {TYPE_FLOAT,
+     "// One.\nint krs_f(bool a, KrsTable b)\n{\n    for (int i = 0; i < 4; i++) {\n        a = "
+     "!a;\n"
+     "    }\n    return mix(1, int(b.width), a);\n}\n",
+     "// One.\nfn krs_f(a: bool, b: KrsTable) -> i32\n{\n    for (var i: i32 = 0; i < 4; i++) {\n  "
+     "      a = !a;\n"
+     "    }\n    return select(1, i32(b.width), a);\n}\n"},
+};
+
+static void glsl_is_spelled_in_wgsl(void **state)
+{
+    Memory  memory;
+    jmp_buf exhausted;
+    (void)state;
+    memory = (Memory){.exhausted = &exhausted};
+    assert_int_equal(setjmp(exhausted), 0);
+    Arena arena = {.memory = &memory};
+    for (size_t i = 0; i < sizeof spelled / sizeof *spelled; i++) {
+        Text text = {.arena = &arena};
+        printers[KRS_TARGET_WGSL]->spell(spelled[i].glsl, strlen(spelled[i].glsl), spelled[i].type,
+                                         &text);
+        assert_string_equal(text.bytes, spelled[i].wgsl);
+    }
+    arena_free(&arena);
+}
+
 /* A comment ends with its line, in WGSL by each character of Unicode that ends one, and texts are UTF-8. */
 static void names_of_files_end_no_comment(void **state)
 {
@@ -314,6 +360,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(glsl_has_words_for_all_templates),
         cmocka_unit_test(texts_are_in_the_language_of_their_printer),
+        cmocka_unit_test(glsl_is_spelled_in_wgsl),
         cmocka_unit_test(names_of_files_end_no_comment),
         cmocka_unit_test(words_of_glsl_are_found),
     };

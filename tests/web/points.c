@@ -173,6 +173,7 @@ static const char *const colors[] = {
     "if x > 0 and not (y < 0.3 or z == 7) then 1 else 0, 0.5 + 0.5 * sin(9 * x), fract(y)",
     "0.2 * floor(2 * x), 0.2 * ceil(3 * y), 0.3 * round(5 * z)",
     "step(0.1, x), sign(y), mod(z, 0.4)",
+    "0.5 + 0.5 * sin(4096 * x), 0.5 + 0.5 * cos(16384 * y), 0.5 + 0.1 * tan(64 * z)",
 };
 
 /* Scenes with one after the other in their midst. */
@@ -326,7 +327,8 @@ static const char *const solids[] = {
     "radius: 0.7 }",
 };
 
-static void write_solids(void)
+/* Parts that are alike take long to compile: with few random scenes only those that join in all ways. */
+static void write_solids(int random_scenes)
 {
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
         char      name[40];
@@ -337,7 +339,8 @@ static void write_solids(void)
         expect(krs_compile_text(solids[i], strlen(solids[i]), "scene.krs", &all_there_is, &scene));
         write_variants(scene, name);
     }
-    for (size_t i = 0; i < instance_text_count; i++) {
+    const size_t groups = random_scenes < 100 ? PICTURED_GROUPS : instance_text_count;
+    for (size_t i = 0; i < groups; i++) {
         char      name[40], *text = instance_text(&instance_texts[i], 1, 1);
         KrsScene *scene;
         snprintf(name, sizeof name, "instances-%zu", i + 1);
@@ -373,7 +376,7 @@ int main(int count, char **arguments)
     write_functions("color", "material m { color: [", "] } show sphere(2).paint(m);", colors,
                     sizeof colors / sizeof *colors);
     write_operations();
-    write_solids();
+    write_solids(atoi(arguments[2]));
     for (int i = 0; i < atoi(arguments[2]); i++)
         write_random(i);
     return fclose(list) != 0;

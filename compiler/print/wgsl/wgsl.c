@@ -22,8 +22,8 @@ static const char *operation(Op op, GraphType type)
     return op == OP_select ? "select($c, $b, $A)" : NULL;
 }
 
-/* krs_reduce of sines.glsl.  WGSL has no `precise`, but nobody takes an fma apart; as n times each part of pi is
-   exact, it does not matter whether one rounds the product. */
+/* krs_reduce of sines.glsl.  WGSL has no `precise`, but what is an fma stays one.  As n times a part of pi is exact,
+   it does not matter whether an fma rounds the product. */
 static const EmbeddedFile helpers[] = {
     {.name = "reduce.wgsl",
      .text = "fn krs_reduce(a: f32, n: f32) -> f32\n{\n"
