@@ -69,18 +69,13 @@ float find_widening(HitPoint hit, vec4 facing, bool refracts, float eta)
     return (refracts ? abs(1.0 - 1.0 / eta) : 2.0) * min(turned, MAX_TURNED);
 }
 
-// Stores the path that goes on, and lists it.
-void follow_onward(HitPoint hit, uint index, Onward onward, vec4 facing, vec3 weight, float spread)
+// How much wider a ray gets with each unit of its way beyond a rough mirror, relative to the width of
+// the mirror's lobe.  So what it shows is as blurred as the mirror would make it, without noise.
+const float LOBE = 2.0;
+float find_lobe(KrsSurface surface)
 {
-    bool leaves = dot(onward.direction, facing.xyz) * onward.side > 0.0;
-    if (leaves && largest(weight) >= MIN_WEIGHT) {
-        vec3 direction = normalize(onward.direction);
-        vec3 start = find_start(hit, direction, facing, onward.side, 0.0);
-        store_path(PATH_ORIGIN, index, vec4(start, hit.width));
-        store_path(PATH_DIRECTION, index, vec4(direction, spread));
-        store_path(PATH_WEIGHT, index, vec4(min(weight, 1e30), 1.0));
-        store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, onward.code));
-        store_path(PATH_SURFACE, index, vec4(hit.position, onward.code));
-        tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;
-    }
+    float roughness = clamp(surface.roughness, 0.0, 1.0);
+    if (surface.coat > 0.0)
+        roughness = min(roughness, clamp(surface.coat_roughness, 0.0, 1.0));
+    return LOBE * roughness * roughness;
 }

@@ -9,6 +9,7 @@ const tileTime = 20, firstTime = 40;   // milliseconds: of a tile, and of a pict
 const levels = [1, 2, 4, 8, 16];       // sides of the pixels
 const lightsAt = 5120, inputWidth = 64; // the row of the first light (blocks.h); the width of that texture
 const textureWidth = 4096;
+const mirroredSurfaces = [1, 5];          // that rays are followed to: while pixels are large, and then
 const toneMaps = ['neutral', 'aces', 'agx', 'none'];
 
 // ---- textures and what is drawn to ----
@@ -28,11 +29,11 @@ function textureOf(gl, format, width, height, data = null) {
     return texture;
 }
 
-// Textures that are drawn to together.
+// Textures that are drawn to together: new ones, or those of other layers.
 class Layer {
     constructor(gl, formats, width, height) {
         Object.assign(this, { gl, width, height });
-        this.textures = formats.map(format => textureOf(gl, format, width, height));
+        this.textures = formats.map(format => (typeof format === 'string' ? textureOf(gl, format, width, height) : format));
         this.framebuffer = gl.createFramebuffer();
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.framebuffer);
         this.textures.forEach((texture, i) =>
@@ -62,20 +63,25 @@ class Layer {
 // The offset of a ray within its pixel (place_ray in runtime/tracer/plan.c).
 const placeRay = ray => [0.75487766624669276, 0.56984029099805327].map(step => (0.5 + step * ray) % 1);
 
-// Sums of samples at one size of pixels, and what the passes of a sample leave.
+// Sums of samples at one size of pixels, and what the passes of a sample leave: of the camera's rays, and of those that go
+// on from mirrors and glass, which read one of two layers of paths and write the other.
 class Sums {
-    constructor(gl, width, height, sumFormat) {
+    constructor(gl, width, height, sumFormat, mirrors) {
         Object.assign(this, { gl, width, height });
         const layer = (...formats) => new Layer(gl, formats, width, height);
-        this.ends = layer('floats');
-        this.facings = layer('floats');
-        this.secondaries = layer('words');
+        const found = () => ({ march: layer('floats'), normal: layer('floats'), secondary: layer('words') });
         this.sums = layer(...Array(4).fill(sumFormat));
         this.shown = layer('bytes');
-        this.targets = { march: this.ends, normal: this.facings, secondary: this.secondaries, shade: this.sums };
+        this.first = found();
+        this.further = mirrors ? found() : null;
+        this.paths = mirrors ? [0, 1].map(() => layer('floats', 'floats', 'floats')) : [];
+        this.shaded = mirrors ? this.paths.map(({ textures }) => layer(...this.sums.textures, ...textures)) : [this.sums];
     }
 
-    free() { [this.ends, this.facings, this.secondaries, this.sums, this.shown].forEach(layer => layer.free()); }
+    free() {
+        const layers = [this.sums, this.shown, ...this.paths, ...this.shaded, ...[this.first, this.further ?? {}].flatMap(Object.values)];
+        layers.forEach(layer => layer.free());
+    }
 }
 
 // ---- the picture ----
@@ -119,14 +125,15 @@ export class Picture {
                 this.albedos ??= await fetchAlbedos();
             const programs = await compilePasses(gl, scene.about, scene.text);
             if (this.scene !== scene) { // another came meanwhile
-                Object.values(programs).forEach(program => program.free());
+                freePasses(programs);
                 return;
             }
             this.compiled = scene.key;
             this.programs = programs;
             this.warm = false;
             if (previous)
-                Object.values(previous).forEach(program => program.free());
+                freePasses(previous);
+            this.job = null;
         }
         if (this.state)
             this.setState(this.state);
@@ -237,9 +244,9 @@ export class Picture {
     }
 
     #sumsOf(width, height) {
-        const key = `${width} ${height}`;
+        const key = `${width} ${height} ${this.programs.mirrors}`;
         if (!this.sums.has(key))
-            this.sums.set(key, new Sums(this.gl, width, height, this.sumFormat));
+            this.sums.set(key, new Sums(this.gl, width, height, this.sumFormat, this.programs.mirrors));
         return this.sums.get(key);
     }
 
@@ -333,30 +340,37 @@ export class Picture {
     #drawPasses(job, x, y, width, height) {
         const { gl } = this, { sums, state, level, sample, frame } = job;
         const common = { ray_number: sample, light_count: state.view.lights.length, projection: projections.indexOf(state.camera.projection),
-            from_middles: level > 1 ? 1 : 0, input_rows: 0, krs_rows: 1, krs_cells: 2, ends: 3, facings: 4, secondaries: 5 };
+            from_middles: level > 1 ? 1 : 0, input_rows: 0, krs_rows: 1, krs_cells: 2, ends: 3, facings: 4, secondaries: 5,
+            path_origins: 6, path_directions: 7, path_weights: 8 };
         gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.parameters);
         [this.inputs, ...this.tables].forEach((texture, unit) => this.#bindTexture(unit, texture));
         gl.enable(gl.SCISSOR_TEST);
         gl.scissor(x, y, width, height);
-        const found = [sums.ends, sums.facings, sums.secondaries];
-        passes.forEach((pass, number) => {
-            const program = this.programs[pass];
-            gl.useProgram(program.program);
-            if (program.frame !== frame || program.sample !== sample) { // else it has them
-                Object.assign(program, { frame, sample });
-                program.set(common);
-                program.set(frame, 'frame.');
-                program.set({ corner: [0, 0], extent: [sums.width, sums.height], offset: placeRay(sample) }, 'work.');
-            }
-            found.forEach((layer, unit) => this.#bindTexture(3 + unit, unit < number ? layer.textures[0] : null));
-            sums.targets[pass].bind();
-            if (pass === 'shade') {
-                gl.enable(gl.BLEND);
-                gl.blendFunc(gl.ONE, gl.ONE);
-            }
-            gl.drawArrays(gl.TRIANGLES, 0, 3);
-        });
-        gl.disable(gl.BLEND);
+        for (let bounce = 0; bounce <= (sums.further ? mirroredSurfaces[level > 1 ? 0 : 1] : 0); bounce++) {
+            const found = bounce ? sums.further : sums.first, shaded = sums.shaded[bounce % sums.shaded.length];
+            sums.paths[(bounce + 1) % 2]?.textures.forEach((texture, i) => this.#bindTexture(6 + i, bounce ? texture : null));
+            passes.forEach((pass, number) => {
+                const program = this.programs[pass];
+                gl.useProgram(program.program);
+                if (program.frame !== frame || program.sample !== sample) { // else it has them
+                    Object.assign(program, { frame, sample });
+                    program.set(common);
+                    program.set(frame, 'frame.');
+                    program.set({ corner: [0, 0], extent: [sums.width, sums.height], offset: placeRay(sample) }, 'work.');
+                }
+                program.set({ bounce });
+                Object.values(found).forEach((layer, unit) => this.#bindTexture(3 + unit, unit < number ? layer.textures[0] : null));
+                (found[pass] ?? shaded).bind();
+                if (pass === 'shade') {
+                    for (let i = 4; i < shaded.textures.length; i++)
+                        gl.clearBufferfv(gl.COLOR, i, [0, 0, 0, 0]);
+                    gl.enable(gl.BLEND);
+                    gl.blendFunc(gl.ONE, gl.ONE);
+                }
+                gl.drawArrays(gl.TRIANGLES, 0, 3);
+                gl.disable(gl.BLEND);
+            });
+        }
     }
 
     #bindTexture(unit, texture) {
@@ -369,7 +383,7 @@ export class Picture {
     #drawResolved(job) {
         const { gl, resolve } = this, { sums, sample } = job, { image } = this.scene.about;
         gl.useProgram(resolve.program);
-        [...sums.sums.textures, sums.ends.textures[0]].forEach((texture, unit) => this.#bindTexture(unit, texture));
+        [...sums.sums.textures, sums.first.march.textures[0]].forEach((texture, unit) => this.#bindTexture(unit, texture));
         const reach = sample < 4 ? 2 : sample < 16 ? 1 : 0;
         resolve.set({ direct_sums: 0, scattered_sums: 1, mirrored_sums: 2, own_sums: 3, ends: 4, sums_size: [sums.width, sums.height],
             exposure: 2 ** image.exposure, tone_map: Math.max(toneMaps.indexOf(image.tone_map), 0), reach });
@@ -396,7 +410,7 @@ export class Picture {
     #continueShot() {
         const [shot] = this.shots, { gl } = this, { width, height, samples } = shot;
         if (!shot.job) {
-            const sums = new Sums(gl, width, height, this.sumFormat), { state, scene } = this;
+            const sums = new Sums(gl, width, height, this.sumFormat, this.programs.mirrors), { state, scene } = this;
             shot.job = { ...this.#jobOf(width, height, samples, 1), sums, at: { x: 0, y: 0, height: 0 },
                 frame: frameOf(state.camera, state.view, scene.about.shaders, width, height, samples) };
             sums.sums.clear();
@@ -421,7 +435,7 @@ export class Picture {
     // t, side, state and steps of each pixel's first ray.
     #readRays({ sums }) {
         const { gl } = this, rays = new Float32Array(4 * sums.width * sums.height);
-        sums.ends.bind();
+        sums.first.march.bind();
         gl.readPixels(0, 0, sums.width, sums.height, gl.RGBA, gl.FLOAT, rays);
         return rays;
     }
@@ -430,6 +444,8 @@ export class Picture {
     release() { if (!this.lost) this.losing?.loseContext(); }
     restore() { if (this.lost) this.losing?.restoreContext(); }
 }
+
+const freePasses = programs => passes.forEach(pass => programs[pass].free());
 
 // Tables that materials of several layers need.
 async function fetchAlbedos() {

@@ -7,10 +7,10 @@ const precision = ['float', 'int', 'sampler2D', 'usampler2D', 'isampler2D'].map(
 export const passes = ['march', 'normal', 'secondary', 'shade'];
 
 // What the passes are told of a scene, as macros.
-function definesOf({ shaders: has }, text, pass) {
+function definesOf({ shaders: has }, text, pass, mirrors) {
     const chosen = {
         OPEN_SURFACES: has.open_surfaces, GRADIENT: pass === 'normal' && (has.open_surfaces || has.algebraic), PLAIN: pass === 'normal' && has.plain,
-        LAYERS: has.layers, FILM: has.films, ANISOTROPIC: has.anisotropic, SUBSURFACE: has.subsurface,
+        MIRRORS: mirrors, LAYERS: has.layers, FILM: has.films, ANISOTROPIC: has.anisotropic, SUBSURFACE: has.subsurface,
         KRS_VIEW: has.views, PANORAMIC: has.panoramas, LENS: has.lenses,
         EARLY_OUTS: /\bfloat krs_distance_lod\(/.test(text),
     };
@@ -87,9 +87,11 @@ export class Program {
 
 // The programs of a scene; they are compiled side by side.
 export function compilePasses(gl, about, text) {
+    // Rays that go on are three textures more.
+    const mirrors = about.shaders.mirrors && gl.getParameter(gl.MAX_DRAW_BUFFERS) >= 7;
     const made = Object.fromEntries(passes.map(pass =>
-        [pass, new Program(gl, `#version 300 es\n${precision}${definesOf(about, text, pass)}${text}\n${shaders[pass]}`)]));
-    return Promise.all(Object.values(made).map(program => program.ready())).then(() => made);
+        [pass, new Program(gl, `#version 300 es\n${precision}${definesOf(about, text, pass, mirrors)}${text}\n${shaders[pass]}`)]));
+    return Promise.all(Object.values(made).map(program => program.ready())).then(() => ({ ...made, mirrors }));
 }
 
 export const compileResolve = gl => new Program(gl, `#version 300 es\n${precision}${shaders.resolve}`).ready();

@@ -18,11 +18,9 @@ function notes({ about, image, camera, name }) {
     if (about.too_large)
         missing.push('no shader is made of so large a scene');
     if (shaders.media && image.integrator !== 'path')
-        missing.push('glass is opaque');
+        missing.push('what is inside of glass, and light through it');
     if (image.integrator === 'path' || image.integrator === 'direct')
         missing.push(`the light of the integrator "${image.integrator}"`);
-    if (shaders.mirrors && !shaders.media && image.integrator === null)
-        missing.push('what mirrors show beside the sky');
     if (shaders.sky_map)
         missing.push('the picture of the sky');
     if (camera?.shutter?.[0] !== camera?.shutter?.[1])

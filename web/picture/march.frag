@@ -42,6 +42,11 @@ void main()
     end = range.y;
     ends_at_walls = end < frame.farthest;
     begin_march(0u, range.x, true);
+    if (are_of_paths()) { // it begins at a surface, whose side is known
+        march.side = sign(load_path(PATH_WEIGHT, 0u).w);
+        march.state = has_ray() ? march.state : STATE_MISS;
+    }
+    width = march.side < 0.0 ? inside_width() : width;
     while (goes_on() && march.steps < frame.max_steps)
         take_distance(item_distance(item_position()));
     // A ray from inside of a solid that reaches the box around all solids hits a wall there.

@@ -10,6 +10,9 @@ uniform Frame frame;
 uniform Work work;
 // The number of the ray within its pixel, of lights, the projection; and whether light comes from the middle of a light
 // alone, as while something moves.
+// The ray is the camera's, or that of a path: that of the mirror or glass that the last has met.
+uniform uint bounce;
+uniform highp sampler2D path_origins, path_directions, path_weights;
 uniform uint ray_number, light_count, projection, from_middles;
 // Tables of albedos, and behind them the lights, as in the runtime.
 uniform highp usampler2D input_rows;
@@ -34,11 +37,36 @@ uint bitfieldReverse(uint bits)
 #include "sines.glsl"
 #include "rays.glsl"
 
-bool are_of_paths() { return false; }
+bool are_of_paths()
+{
+#ifdef MIRRORS
+    return bounce != 0u;
+#else
+    return false;
+#endif
+}
+
+vec4 load_path(uint row, uint index)
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    return row == PATH_ORIGIN      ? texelFetch(path_origins, pixel, 0)
+           : row == PATH_DIRECTION ? texelFetch(path_directions, pixel, 0)
+                                   : texelFetch(path_weights, pixel, 0);
+}
+
+// Whether the pixel has such a ray.
+bool has_ray() { return !are_of_paths() || largest(load_path(PATH_WEIGHT, 0u).xyz) > 0.0; }
 
 void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base, out float slope)
 {
     find_ray_of_picture(image_point, origin, direction, base, slope);
+    if (are_of_paths()) {
+        vec4 start = load_path(PATH_ORIGIN, 0u), ahead = load_path(PATH_DIRECTION, 0u);
+        origin = start.xyz;
+        base = start.w;
+        direction = ahead.xyz;
+        slope = ahead.w;
+    }
 }
 
 void load_frame()

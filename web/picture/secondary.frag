@@ -42,7 +42,8 @@ void main()
     if (!find_own_hit(hit))
         return;
     vec4 facing = texelFetch(facings, ivec2(gl_FragCoord.xy), 0);
-    for (uint number = 0u; number <= control.lights; number++) {
+    uint count = are_of_paths() ? control.lights : control.lights + 1u; // there the sky is open
+    for (uint number = 0u; number < count; number++) {
         begin_item(number, facing);
         while (item_needs_step())
             take_distance(krs_distance(item_position()));
