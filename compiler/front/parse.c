@@ -352,8 +352,7 @@ static Syntax *parse_file(Parser *p)
         Level       level     = p->here;
         const char *doc       = token_here(p)->doc;
         Syntax     *statement = parse_statement(p);
-        if (statement->kind == SYNTAX_DEF || statement->kind == SYNTAX_SHAPE ||
-            statement->kind == SYNTAX_PARAM)
+        if (syntax_defines(statement))
             statement->doc = doc;
         add_child(p, statement);
         if (p->failed)

@@ -5,7 +5,7 @@
 # where it is built, must give the same answers.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 21
+plan 22
 LC_ALL=C
 export LC_ALL XDG_CACHE_HOME="$work/cache"
 
@@ -184,7 +184,16 @@ else
     skip "a storm of messages" "no python3"
 fi
 
-# ---- an editor's own library ----
+# ---- an editor, and the library of another ----
+
+if command -v nvim >/dev/null; then
+    printf '/// How large.\nlet size = 1 + 1;\nshow sphere(size) + 1;\nshow sphere(1).mo\n' >edited.krs
+    HOME=$work KRS=$krs timeout 60 nvim --headless -u NONE edited.krs -c "luafile $root/tests/lsp/neovim.lua" -c 'qa!' >out 2>&1
+    grep -q 'all is well' out
+    result $? "Neovim edits a scene"
+else
+    skip "Neovim edits a scene" "no nvim"
+fi
 
 npm=$root/${B:-build}/lsp-npm
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then

@@ -199,6 +199,10 @@ static void hover_tells_documentation_and_value(void **state)
     expect_answer(question, "/// How wide.\nparam w = 0.5 in [0, 1];\nlet a = w@;\n", "How wide.");
     expect_answer(question, "/// How wide.\nparam w = 0.5 in [0, 1];\nlet a = w@;\n",
                   "a number from 0 to 1, known in frames");
+    expect_answer(question,
+                  "/// Of steel.\nmaterial m { roughness: 0.2 }\nshow sphere(1).paint(m@);\n",
+                  "Of steel.");
+    expect_answer(question, "/// All parts.\nlet n = 2 * 3;\nlet m = n@;\n", "All parts.");
     expect_answer(question, "let ball@ = sphere(2);\n", "from [-2, -2, -2] to [2, 2, 2]");
     expect_answer(question, "show sphere(2).mo@ve([1, 0, 0]);\n", "moves by a vector");
     expect_answer(question, "show sphere(2).mo@ve([1, 0, 0]);\n", "from [-1, -2, -2] to [3, 2, 2]");
