@@ -1,7 +1,8 @@
 // build.mjs: examples with their pictures, and the service worker, for the folder of the playground.
 //
 //     node build.mjs examples ROOT FOLDER     FOLDER/examples.json, and FOLDER/examples/ with texts, what they use, and pictures
-//     node build.mjs service FOLDER           FOLDER/service.js, which knows all other files of the folder
+//     node build.mjs licenses FOLDER          FOLDER/licenses.txt, of the packages that are in the bundle
+//     node build.mjs service FOLDER SCRIPT    FOLDER/service.js, which knows all other files of the folder
 //
 // It is run where packages of npm are found (playground.mk).
 import crypto from 'node:crypto';
@@ -61,6 +62,17 @@ function examples(root, folder) {
     fs.writeFileSync(path.join(folder, 'examples.json'), JSON.stringify(list));
 }
 
+// ---- licenses ----
+
+function licenses(folder) {
+    const { packages } = JSON.parse(fs.readFileSync('package-lock.json', 'utf8'));
+    const bundled = Object.entries(packages).filter(([place, { dev }]) => place !== '' && !dev).map(([place, { version }]) => {
+        const file = fs.readdirSync(place).find(name => /^licen[cs]e/i.test(name));
+        return `${place.replace('node_modules/', '')} ${version}\n\n${fs.readFileSync(path.join(place, file), 'utf8').trim()}\n`;
+    });
+    fs.writeFileSync(path.join(folder, 'licenses.txt'), bundled.join('\n----\n\n'));
+}
+
 // ---- the service worker ----
 
 function service(folder, script) {
@@ -73,4 +85,4 @@ function service(folder, script) {
         `const VERSION = '${hash.digest('hex').slice(0, 16)}', FILES = ${JSON.stringify(wanted)};\n${fs.readFileSync(script, 'utf8')}`);
 }
 
-({ examples, service })[task](...args);
+({ examples, licenses, service })[task](...args);

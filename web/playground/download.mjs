@@ -1,6 +1,7 @@
 // download.mjs: the text, a picture or a mesh as a file.
 import { glb, middles, stl } from './files.mjs';
 
+const MOST_POINTS = 4096;
 const isFinite = ({ low, high }) => [...low, ...high].every(Number.isFinite);
 
 function offer(blob, name) {
@@ -92,7 +93,17 @@ export class Downloads {
     #mesh(component, signal, part, parts) {
         return this.view.scene.mesh({
             component, signal, error: Number(this.form.error.value), simplify: this.form.simplify.checked,
-            time: this.view.time, progress: done => this.#progress((part + done) / parts) });
+            draft: this.form.quality.value === 'draft', time: this.view.time, progress: done => this.#progress((part + done) / parts) });
+    }
+
+    // What is known at points, some of them at a time: an answer is long.
+    async #hits(points, signal) {
+        const hits = [];
+        for (let i = 0; i < points.length; i += 3 * MOST_POINTS) {
+            hits.push(...await this.view.scene.query(points.subarray(i, i + 3 * MOST_POINTS), this.view.time));
+            signal.throwIfAborted();
+        }
+        return hits;
     }
 
     // Components that are chosen, by number.
@@ -118,8 +129,7 @@ export class Downloads {
         const parts = [], wanted = this.#chosen();
         for (const { number, name } of wanted) {
             const mesh = await this.#mesh(number, signal, parts.length, wanted.length);
-            const hits = await this.view.scene.query(mesh.steps ? middles(mesh) : mesh.vertices, this.view.time);
-            parts.push({ name, mesh, hits });
+            parts.push({ name, mesh, hits: await this.#hits(mesh.steps ? middles(mesh) : mesh.vertices, signal) });
         }
         return glb(parts);
     }

@@ -30,6 +30,7 @@ $(Y)/examples.json: $(PLAY)/build.mjs tools/pictures.txt $(EXAMPLES) $(wildcard 
 $(Y)/service.js: $(PLAY)/service.mjs $(PAGES) $(Y)/app.js $(Y)/examples.json web
 	@cp $(PAGES) $(Y)
 	@rm -rf $(Y)/krs && cp -r $(P) $(Y)/krs && rm -f $(Y)/krs/*.md $(Y)/krs/*.ts
+	@cd $(NPM) && node $(abspath $(PLAY)/build.mjs) licenses $(abspath $(Y))
 	@cd $(NPM) && node $(abspath $(PLAY)/build.mjs) service $(abspath $(Y)) $(abspath $<)
 serve: playground
 	@node $(PLAY)/serve.mjs $(Y) $(PORT)
