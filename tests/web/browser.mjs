@@ -18,10 +18,10 @@ export const findChromium = () => [process.env.CHROMIUM, 'chromium', 'chromium-b
 // ---- files ----
 
 const types = { html: 'text/html', mjs: 'text/javascript', js: 'text/javascript', css: 'text/css', json: 'application/json',
-    wasm: 'application/wasm', png: 'image/png', svg: 'image/svg+xml', krs: 'text/plain', ttf: 'font/ttf' };
+    wasm: 'application/wasm', png: 'image/png', svg: 'image/svg+xml', jpg: 'image/jpeg', webmanifest: 'application/manifest+json', krs: 'text/plain', ttf: 'font/ttf' };
 
-// Serves folders on a port of this machine: `{ '/': 'build/web', '/examples/': 'examples' }`, or one folder for '/'.
-export async function serve(folders) {
+// Serves folders on a port of this machine, a free one by default: `{ '/': 'build/web', '/examples/': 'examples' }`, or one folder for '/'.
+export async function serve(folders, port = 0) {
     const places = Object.entries(typeof folders === 'string' ? { '/': folders } : folders).sort((a, b) => b[0].length - a[0].length);
     const server = http.createServer((request, response) => {
         const name = decodeURIComponent(new URL(request.url, 'http://here').pathname);
@@ -31,7 +31,7 @@ export async function serve(folders) {
         response.writeHead(found ? 200 : 404, { 'Content-Type': `${types[path.extname(found ?? '').slice(1)] ?? 'text/plain'}; charset=utf-8` });
         response.end(found ? fs.readFileSync(found) : '');
     });
-    await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
+    await new Promise(resolve => server.listen(port, '127.0.0.1', resolve));
     return { url: `http://127.0.0.1:${server.address().port}`, close: () => { server.closeAllConnections?.(); server.close(); } };
 }
 

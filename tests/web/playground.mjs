@@ -443,6 +443,8 @@ const parts = {
         report(await page.evaluate(() => document.querySelector('#problems').hidden), 'examples with files and fonts, too');
         page.errors.length = 0;
         server = await serve(site, Number(port));
+        await page.go(`${server.url}/service.js`);
+        report(server.url.endsWith(`:${port}`) && await page.evaluate(() => document.body.textContent.includes('VERSION')), 'a server comes back at its port');
     },
 
     // Whatever comes to mind, in any order.
