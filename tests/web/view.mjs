@@ -91,6 +91,9 @@ report(await page.evaluate(async () => {
 report(await page.evaluate(async () => {
     const parent = view.parentNode;
     view.remove();
+    parent.prepend(view);
+    await new Promise(resolve => view.addEventListener('krs-frame', resolve, { once: true }));
+    view.remove();
     await new Promise(resolve => setTimeout(resolve, 200));
     frames.length = 0;
     parent.prepend(view);

@@ -94,6 +94,8 @@ export class Picture {
             event.preventDefault();
             this.lost = true;
             this.job = null;
+            if (this.ours && !this.released) // it is wanted again already
+                setTimeout(() => this.losing.restoreContext());
         });
         canvas.addEventListener('webglcontextrestored', () => this.#begin().then(() => this.scene && this.setScene(this.scene)));
         this.begun = this.#begin();
@@ -103,7 +105,7 @@ export class Picture {
         const gl = this.gl = this.canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, powerPreference: 'high-performance' });
         if (!gl || !gl.getExtension('EXT_color_buffer_float'))
             throw new Error('this browser has no WebGL2 with pixels of floats');
-        this.lost = false;
+        this.lost = this.ours = false;
         this.losing = gl.getExtension('WEBGL_lose_context');
         this.sumFormat = gl.getExtension('EXT_float_blend') ? 'floats' : 'halves';
         gl.getExtension('KHR_parallel_shader_compile');
@@ -218,7 +220,7 @@ export class Picture {
     }
 
     // Whether the job goes on although something newer has come: its first, coarse picture is soon over.
-    #mayEnd(job) { return job.level === job.first && job.sample === 0 && performance.now() - job.begun < 150; }
+    #isSoonOver(job) { return job.level === job.first && job.sample === 0 && performance.now() - job.begun < 150; }
 
     async #wake() {
         if (this.running)
@@ -226,7 +228,7 @@ export class Picture {
         this.running = true;
         try {
             while (!this.lost && (this.next || this.job || this.shots.length)) {
-                if (this.next && !(this.job && this.#mayEnd(this.job))) {
+                if (this.next && !(this.job && this.#isSoonOver(this.job))) {
                     this.next = null;
                     this.job = this.#jobOf(this.width, this.height, this.wanted, this.#firstLevel());
                 }
@@ -287,7 +289,7 @@ export class Picture {
         if (over || now - job.last > (job.level < job.first || job.sample > 0 ? 100 : 500)) {
             job.last = now;
             this.#show(job);
-            this.tell({ kind: 'frame', samples: job.level > 1 ? 1 / job.level ** 2 : job.sample, wanted: job.wanted,
+            this.tell({ kind: 'frame', samples: job.level > 1 ? 1 / job.level ** 2 : job.sample || 0.25, wanted: job.wanted,
                 elapsed: now - job.begun, width: job.width, height: job.height, time: job.state.time, done, number: job.state.number });
         }
         if (over && job.level > 1) {
@@ -441,8 +443,19 @@ export class Picture {
     }
 
     // Gives the memory of the card back until it is needed again.
-    release() { if (!this.lost) this.losing?.loseContext(); }
-    restore() { if (this.lost) this.losing?.restoreContext(); }
+    release() {
+        this.released = true;
+        if (!this.lost && this.losing) {
+            this.ours = true;
+            this.losing.loseContext();
+        }
+    }
+
+    restore() {
+        this.released = false;
+        if (this.lost && this.ours)
+            this.losing.restoreContext();
+    }
 }
 
 const freePasses = programs => passes.forEach(pass => programs[pass].free());
