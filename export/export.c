@@ -10,11 +10,12 @@
 #include <string.h>
 
 #include "compiler/base/embedded.h"
+#include "compiler/base/visible.h"
 #include "compiler/scene/program.h"
 
 const ExportTarget export_targets[EXPORT_COUNT] = {
-#define EXPORT_TARGET(id, name, template, ending, tables, longest, about) \
-    [EXPORT_##id] = {name, template, ending, tables, longest},
+#define EXPORT_TARGET(id, name, template, ending, tables, cameras, longest, about) \
+    [EXPORT_##id] = {name, template, ending, tables, cameras, longest},
 #include "export/targets.def"
 };
 
@@ -90,6 +91,30 @@ static double find_farthest(const Export *export)
     return corner < enough ? corner : enough;
 }
 
+/* What is up in the picture; of a camera that looks along its own, another axis. */
+typedef struct Upright {
+    double v[3];
+} Upright;
+
+static Upright find_upright(const KrsCamera *camera)
+{
+    double  ahead[3], across[3];
+    Upright upright;
+    memcpy(upright.v, camera->up, sizeof upright.v);
+    for (int k = 0; k < 3; k++)
+        ahead[k] = camera->target[k] - camera->eye[k];
+    for (int k = 0; k < 3; k++)
+        across[k] = ahead[(k + 1) % 3] * upright.v[(k + 2) % 3] -
+                    ahead[(k + 2) % 3] * upright.v[(k + 1) % 3];
+    static const double nowhere[3] = {0};
+    const double        parallel   = distance_between(across, nowhere) /
+                            (distance_between(ahead, nowhere) *
+                             distance_between(upright.v, nowhere));
+    return parallel > 1e-6 ? upright
+                           : (Upright){{0, fabs(ahead[2]) > fabs(ahead[1]),
+                                        fabs(ahead[2]) <= fabs(ahead[1]) ? -1 : 0}};
+}
+
 /* Half the height of the picture at distance 1. */
 static double find_rise(const KrsCamera *camera)
 {
@@ -153,7 +178,7 @@ static void add_constants(Text *to, const Export *export)
     const KrsView *view = &export->view;
     add_vector_constant(to, "KRS_EYE", view->camera.eye);
     add_vector_constant(to, "KRS_TARGET", view->camera.target);
-    add_vector_constant(to, "KRS_UP", view->camera.up);
+    add_vector_constant(to, "KRS_UP", find_upright(&view->camera).v);
     add_number_constant(to, "KRS_RISE", find_rise(&view->camera));
     add_number_constant(to, "KRS_FARTHEST", find_farthest(export));
     add_number_constant(to, "KRS_OPEN_REACH",
@@ -181,6 +206,22 @@ static KrsParameter parameter_of(const Export *export, size_t index)
     return parameter;
 }
 
+/* A name of GLSL, which has no two underscores side by side, and is not too long: what is other has its slot in it. */
+static void add_parameter_name(Text *to, const char *name, size_t slot)
+{
+    enum { LONGEST = 100 };
+    const size_t length = strlen(name);
+    text_add(to, "PARAM_");
+    if (name[0] != '_' && !strstr(name, "__") && length <= LONGEST) {
+        text_add(to, name);
+        return;
+    }
+    text_format(to, "%zu", slot);
+    for (size_t i = 0; i < length && i < LONGEST; i++)
+        if (name[i] != '_' || name[i + 1] != '_')
+            text_add_bytes(to, name + i, 1);
+}
+
 /* Lines, each a constant with its range behind it. */
 static void add_parameters(Text *to, const Export *export)
 {
@@ -190,10 +231,14 @@ static void add_parameters(Text *to, const Export *export)
         for (int k = 0; k < 4; k++)
             value[k] = (double)export->block[1 + i][k];
         if (parameter.components == 1) {
-            text_format(to, "const float PARAM_%s = ", parameter.name);
+            text_add(to, "const float ");
+            add_parameter_name(to, parameter.name, 1 + i);
+            text_add(to, " = ");
             add_float(to, value[0]);
         } else {
-            text_format(to, "const vec%u  PARAM_%s = ", parameter.components, parameter.name);
+            text_format(to, "const vec%u  ", parameter.components);
+            add_parameter_name(to, parameter.name, 1 + i);
+            text_add(to, " = ");
             add_vector(to, value, (int)parameter.components);
         }
         text_add(to, ";");
@@ -214,8 +259,9 @@ static void set_parameters(Text *to, const Export *export)
     const size_t             count     = krs_parameter_count(export->scene);
     for (size_t i = 0; i < count; i++) {
         const KrsParameter parameter = parameter_of(export, i);
-        text_format(to, "    krs_parameter[%zu] = vec4(PARAM_%s%s);\n", 1 + i, parameter.name,
-                    padding[parameter.components]);
+        text_format(to, "    krs_parameter[%zu] = vec4(", 1 + i);
+        add_parameter_name(to, parameter.name, 1 + i);
+        text_format(to, "%s);\n", padding[parameter.components]);
     }
     for (size_t i = 1 + count; i < krs_parameter_slots(export->scene); i++) {
         double value[4];
@@ -277,7 +323,15 @@ static void add_tables(Text *to, const Export *export, bool rows)
 
 static void fill(Text *to, const Export *export, const char *template);
 
-static void add_name(Text *to, const Export *export) { text_add(to, export->name); }
+/* The name stands in comments, so it has no end of a line. */
+static void add_name(Text *to, const Export *export)
+{
+    for (const char *from = export->name; *from;) {
+        const Visible visible = visible_next(from, strlen(from));
+        text_add_bytes(to, visible.text, visible.length);
+        from += visible.used;
+    }
+}
 static void add_version(Text *to, const Export *export)
 {
     (void)export;
@@ -393,8 +447,8 @@ static bool refuse(const Export *export, Text *why)
             slope.location);
     else if (export->view.sky.map)
         text_add(why, "its sky is a picture");
-    else if (export->view.camera.projection == KRS_PANORAMA)
-        text_add(why, "its camera is a panorama; --camera chooses another one");
+    else if (!export->target->cameras && export->view.camera.projection != KRS_PERSPECTIVE)
+        text_add(why, "its camera is no perspective one; --camera chooses another");
     return why->length > 0;
 }
 

@@ -8,7 +8,7 @@
 #include "krs/krs.h"
 
 typedef enum ExportId {
-#define EXPORT_TARGET(id, name, template, ending, tables, longest, about) EXPORT_##id,
+#define EXPORT_TARGET(id, name, template, ending, tables, cameras, longest, about) EXPORT_##id,
 #include "export/targets.def"
     EXPORT_COUNT
 } ExportId;
@@ -16,7 +16,7 @@ typedef enum ExportId {
 /* What is said of a target in its row. */
 typedef struct ExportTarget {
     const char *name, *template, *ending;
-    bool        tables;
+    bool        tables, cameras;
     size_t      longest;
 } ExportTarget;
 extern const ExportTarget export_targets[EXPORT_COUNT];

@@ -1,7 +1,7 @@
 #!/bin/sh
 # export.sh: `krs export`: files are complete shaders, numbers of the scene are in them, and what cannot be is refused.
 . "$(dirname "$0")/common.sh"
-plan 12
+plan 16
 
 cat >ball.krs <<'END'
 param radius = 0.5 in [0.1, 1];
@@ -50,6 +50,25 @@ result $? "what Shadertoy cannot have is told, and nothing is written"
 run export letters.krs --to three
 grep -q "cells = '[A-Za-z0-9+/]" letters.three.mjs
 result $? "three.js has its tables"
+cat >odd.krs <<'END'
+param _r = 0.5 in [0.1, 1];
+param a__b = 0.5;
+show sphere(_r).move([a__b, 0, 0]);
+camera { eye: [0, 8, 0] }
+camera flat { eye: [0, 0, 4], projection: "orthographic", height: 3 }
+END
+run export odd.krs --to shadertoy
+[ "$status" -eq 0 ] && ! grep -q '__' odd.shadertoy.glsl && grep -q 'PARAM_1_r = 0.5' odd.shadertoy.glsl && grep -q 'PARAM_2a_b' odd.shadertoy.glsl
+result $? "no name has two underscores side by side, which WebGL reserves"
+grep -q 'KRS_UP = vec3(0.0, 0.0, -1.0)' odd.shadertoy.glsl
+result $? "a camera that looks down has something that is up"
+run export odd.krs --to shadertoy --camera flat
+said 1 "its camera is no perspective one" "a projection that it has not is told"
+cp ball.krs "a$(printf '\nb').krs"
+run export "a$(printf '\nb').krs" --to three -o lines.mjs
+[ "$status" -eq 0 ] && head -n 1 lines.mjs | grep -q 'for three.js'
+result $? "a name with a line's end stays in its comment"
+
 run export ball.krs
 said 2 "--to shadertoy" "what for must be said"
 run export ball.krs --to blender
