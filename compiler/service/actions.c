@@ -239,7 +239,7 @@ typedef struct Locals {
     size_t         count, capacity;
 } Locals;
 
-/* The names of the expression that are defined around it, and not in the whole file. */
+/* The names of the expression that are defined around it, and not in the whole file: a loop defines its own in itself. */
 static Locals locals_of(const Here *here, const Syntax *node)
 {
     Locals found = {0};
@@ -251,7 +251,8 @@ static Locals locals_of(const Here *here, const Syntax *node)
         const Span name = use->meaning->name_span;
         bool       skip = name.start >= node->span.start && name.end <= node->span.end;
         for (uint32_t k = 0; !skip && k < here->file->syntax->count; k++)
-            skip = here->file->syntax->children[k] == use->meaning;
+            skip = here->file->syntax->children[k] == use->meaning &&
+                   use->meaning->kind != SYNTAX_FOR;
         for (size_t k = 0; !skip && k < found.count; k++)
             skip = found.items[k] == use->meaning;
         /* The name of an argument means a parameter of what is called. */

@@ -373,6 +373,8 @@ static void expressions_become_definitions(void **state)
     expect_answer(question, "let a = 2;\nlet l = [@sphere(i * a)@ for i in 0..3];\n",
                   "\"newText\":\"def part(i) = sphere(i * a);\\n\"},{\"range\":" RANGE(
                       1, 9, 22) ",\"newText\":\"part(i)\"}");
+    expect_answer(question, "for i in 0..3 { show sphere(1).move(@[i, 0, 0]@); }\n",
+                  "\"newText\":\"def part(i) = [i, 0, 0];\\n\"");
     expect_answer(question, "show @sphere(1) |@ box([1, 1, 1]);\n", "[]");
 }
 
