@@ -8,7 +8,7 @@ import path from 'node:path';
 import { launch, serve } from './browser.mjs';
 
 const folder = process.argv[2];
-fs.writeFileSync(path.join(folder, 'index.html'), '<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,"><script type="module" src="app.js"></script>');
+fs.writeFileSync(path.join(folder, 'index.html'), '<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,"><script type="module" src="app.js"></script><krs-view style="width: 96px; height: 54px"></krs-view>');
 const server = await serve(folder), browser = await launch(), page = await browser.open(`${server.url}/index.html`);
 const [middle, corner] = await page.until('window.shown', { seconds: 60 }).catch(error => [error.message]);
 const good = middle[0] > 2 * middle[2] && corner[2] >= corner[0] && page.errors.length === 0;

@@ -22,10 +22,8 @@ report $? 1 "the package is packed and installed"
 cat >app.mjs <<'END'
 import * as krs from 'krs';
 krs.locate('krs/');
-const view = document.createElement('krs-view');
-view.style.cssText = 'width: 96px; height: 54px';
+const view = document.querySelector('krs-view'); // it was there before this program
 view.samples = 1;
-document.body.append(view);
 await view.update('material red { color: #e01010 }\nshow sphere(1).paint(red);\nsky { zenith: #80a0ff, horizon: #80a0ff, ground: #80a0ff }\n' +
     'camera { eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg }\nlight { direction: [0, 0, 1] }', { name: 'ball.krs' });
 await view.ready;

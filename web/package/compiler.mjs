@@ -11,6 +11,10 @@ export function locate(place) {
 // A file of this package.
 export const placeOf = name => new URL(name, folder);
 
+// Elements of a page begin while a bundle with this file is read, before its program says by `locate` where the files are:
+// they wait for the end of that.
+export const located = new Promise(resolve => { setTimeout(resolve); });
+
 // ---- the worker ----
 
 // A worker from another host is not started: a small one of this host imports it.

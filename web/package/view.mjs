@@ -1,5 +1,5 @@
 // view.mjs: <krs-view> (krs.d.ts): a canvas, a camera that a user moves, and a worker that draws (painter.mjs).
-import { Scene, compile, startWorker } from './compiler.mjs';
+import { Scene, compile, located, startWorker } from './compiler.mjs';
 import { basisOf, rayOf } from './frame.mjs';
 
 const style = `
@@ -64,7 +64,13 @@ export class KrsViewElement extends HTMLElement {
 
     // ---- the life of the element ----
 
-    connectedCallback() {
+    async connectedCallback() {
+        await located;
+        if (this.isConnected)
+            this.#connect();
+    }
+
+    #connect() {
         if (!this.#painter)
             this.#start();
         else
