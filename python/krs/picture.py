@@ -160,9 +160,11 @@ class Picture:
                 + chunk(b"IDAT", zlib.compress(lines.tobytes(), 6)) + chunk(b"IEND", b""))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a PNG file, or all AOVs as an .npz of NumPy."""
+        """Writes a .png file, or all AOVs as an .npz of NumPy."""
         if os.fspath(path).endswith(".npz"):
             np.savez_compressed(path, **self.arrays)
+        elif not os.fspath(path).endswith(".png"):
+            raise ValueError(f"{os.fspath(path)!r}: a picture is saved as .png or .npz; `krs render` writes .exr")
         else:
             with open(path, "wb") as file:
                 file.write(self.png())

@@ -144,6 +144,11 @@ class Pictures(unittest.TestCase):
         pointer = int(native.ffi.cast("uintptr_t", self.picture._handle.pointer.depth))
         self.assertEqual(self.picture.depth.ctypes.data, pointer)
 
+    def test_formats(self):
+        """a file that would be no PNG is not written"""
+        with self.assertRaisesRegex(ValueError, "krs render"):
+            self.picture.save("picture.exr")
+
     def test_questions(self):
         """a device answers as the host does, in single precision"""
         points = np.random.default_rng(5).uniform(-3, 3, (5000, 3)).astype(np.float32)
