@@ -40,8 +40,8 @@ done
 for scene in examples/*.krs; do
     grep -qF " $scene " "$build/commands" || echo "$scene"
 done >"$build/said"
-[ "$(cat "$build/said")" = examples/01-hello.krs ]
-report "the gallery has every example but the first" $?
+[ ! -s "$build/said" ]
+report "the gallery has every example" $?
 sed 's/^/# /' "$build/said"
 files=$(made "$build/demo")
 [ "$(echo "$files" | grep -c 'png$')" -eq 12 ] && [ "$(echo "$files" | grep -c 'stl$')" -eq 2 ] &&
