@@ -15,6 +15,8 @@
 /* From so many on, shaders of march groups take longer to compile than they save in a hundred small
    pictures with mirrors. */
 #define FLOPS_WORTH_MIXED_RAYS 1200
+/* Scenes whose mirrors lanes of the host follow cost no more than this. */
+#define MAX_FLOPS_OF_MIRRORS 5000
 /* So many march groups take longer to compile than they save in a single small picture. */
 #define GROUPS_FOR_LARGE_PICTURES 3
 
@@ -85,9 +87,18 @@ bool rendering_light_meets_planes(const KrsRendering *rendering, KrsIntegrator i
            (integrator != KRS_INTEGRATOR_PREVIEW || (!program->mirrors && !program->media));
 }
 
+/* What is mirrored by something round goes everywhere, and few parts of a scene are far from it: its tapes stay as long as
+   the scene is, and shaders are faster. */
+static bool follows_mirrors(const KrsRendering *rendering)
+{
+    const KrsProgram *program = rendering->program;
+    return !program->mirrors || program->flops <= MAX_FLOPS_OF_MIRRORS;
+}
+
 bool rendering_lanes_find_surfaces(const KrsRendering *rendering)
 {
-    return rendering->renderer->gpu.texels && surface_field_suits(rendering->scene);
+    return rendering->renderer->gpu.texels && surface_field_suits(rendering->scene) &&
+           follows_mirrors(rendering);
 }
 
 /* The rays of mirrors need shaders for the whole scene.  If those are for the picture, too, the first
