@@ -59,7 +59,7 @@ typedef struct RayRule {
     uint32_t max_steps;
     float    normal_reach; /* of the differences for normals, in pixels; 0: none are wanted */
     bool     plain;        /* nothing is finer than a pixel but edges (KrsProgram.plain) */
-    bool from_surfaces; /* rays begin at hits, on the `side` that is given; pixels are wide there */
+    bool from_surfaces; /* rays begin at hits, on the `side` that is given, and may be wide there */
 } RayRule;
 
 /* Rays of hits are blocked where they are inside of a solid, cones where they are not empty (secondary.comp). */

@@ -47,7 +47,7 @@ typedef struct SurfaceField SurfaceField;
 /* NULL: memory has run out.  The state stays as it is while the field is in use. */
 SurfaceField *surface_field_new(KrsState *state, bool layers);
 void          surface_field_free(SurfaceField *field);
-/* Tells whether surfaces can be found: not where there are glass or open surfaces, where
+/* Tells whether surfaces can be found: not where light goes through something or surfaces are open, where
    there is nothing, or where numbers of copies are too large for single precision. */
 bool surface_field_suits(const KrsScene *scene);
 
