@@ -261,7 +261,8 @@ static bool wait_for_shaders(Job *job)
 static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
 {
     KrsRendering *rendering = job->rendering;
-    if (rendering->resident.film != film || plan->surface_rows > rendering->band.surface_rows) {
+    if (rendering->resident.film != film || plan->surface_rows > rendering->band.surface_rows ||
+        plan_path_rows(plan) > rendering->band.path_rows) {
         if (!resident_store(rendering))
             return false;
         rendering->resident = (ResidentBand){0};
