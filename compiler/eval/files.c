@@ -93,6 +93,8 @@ static void note_font(Elaboration *e, const FileBytes *bytes)
 
 static bool keep_font(Elaboration *e, const char *path, Loaded loaded, int face, FileBytes *bytes)
 {
+    if (loaded.reason == source_no_memory)
+        arena_exhausted(e->arena);
     const bool read = loaded.text && loaded.length <= MAX_FILE_BYTES;
     if (read) {
         keep_bytes(e, path, &loaded, face, bytes);

@@ -5,6 +5,7 @@
 
 #include <ft2build.h>
 #include FT_FREETYPE_H
+#include FT_MODULE_H
 #include FT_OUTLINE_H
 #include <hb.h>
 #include <stdlib.h>
@@ -14,14 +15,17 @@
 
 /* One text that is drawn. */
 typedef struct Drawing {
-    Path            *path;
-    const Lettering *lettering;
-    FT_Library       library;
-    FT_Face          face;
-    hb_font_t       *shaper;
-    double           unit;      /* of the font's coordinates */
-    double           origin[2]; /* of the glyph at hand */
-    uint32_t         missing;
+    Path                *path;
+    const Lettering     *lettering;
+    struct FT_MemoryRec_ memory;
+    bool                 scarce; /* FreeType could not allocate something */
+    FT_Library           library;
+    FT_Face              face;
+    hb_font_t           *shaper;
+    hb_buffer_t         *line;
+    double               unit;      /* of the font's coordinates */
+    double               origin[2]; /* of the glyph at hand */
+    uint32_t             missing;
 } Drawing;
 
 /* Points are whole numbers to FreeType.  At as many pixels per em as the em has units, a unit is 64 of them;
@@ -110,14 +114,23 @@ static void note_missing(Drawing *drawing, const char *line, const hb_glyph_info
     drawing->missing = character;
 }
 
+/* The libraries say that there is no memory by what they return. */
+static void require(const Drawing *drawing, bool enough_memory)
+{
+    if (!enough_memory)
+        arena_exhausted(drawing->path->arena);
+}
+
 static void draw_line(Drawing *drawing, const char *line, size_t length, double baseline)
 {
     static const double shares[] = {[ALIGN_LEFT] = 0, [ALIGN_CENTER] = 0.5, [ALIGN_RIGHT] = 1};
-    hb_buffer_t        *buffer   = hb_buffer_create();
+    hb_buffer_t        *buffer   = drawing->line;
     unsigned            count    = 0;
+    hb_buffer_clear_contents(buffer);
     hb_buffer_add_utf8(buffer, line, (int)length, 0, (int)length);
     hb_buffer_guess_segment_properties(buffer);
-    hb_shape(drawing->shaper, buffer, NULL, 0);
+    require(drawing, hb_shape_full(drawing->shaper, buffer, NULL, 0, NULL) &&
+                         hb_buffer_allocation_successful(buffer));
     const hb_glyph_info_t     *glyphs = hb_buffer_get_glyph_infos(buffer, &count);
     const hb_glyph_position_t *places = hb_buffer_get_glyph_positions(buffer, &count);
     double pen = -shares[drawing->lettering->align] * line_width(drawing, places, count);
@@ -128,7 +141,6 @@ static void draw_line(Drawing *drawing, const char *line, size_t length, double 
         draw_glyph(drawing, glyphs[i].codepoint);
         pen += advance_of(drawing, &places[i]);
     }
-    hb_buffer_destroy(buffer);
 }
 
 static void draw_lines(Drawing *drawing, const char *text)
@@ -149,53 +161,94 @@ static void draw_lines(Drawing *drawing, const char *text)
 
 static bool open_face(Drawing *drawing, const Font *font)
 {
-    if (FT_Init_FreeType(&drawing->library) != 0)
-        return false;
-    if (FT_New_Memory_Face(drawing->library, font->bytes, (FT_Long)font->length, font->face,
-                           &drawing->face) == 0 &&
-        FT_IS_SCALABLE(drawing->face) && drawing->face->units_per_EM > 0 &&
-        FT_Set_Pixel_Sizes(drawing->face, 0, drawing->face->units_per_EM) == 0)
-        return true;
-    FT_Done_FreeType(drawing->library); /* with its faces */
-    return false;
+    return FT_New_Memory_Face(drawing->library, font->bytes, (FT_Long)font->length, font->face,
+                              &drawing->face) == 0 &&
+           FT_IS_SCALABLE(drawing->face) && drawing->face->units_per_EM > 0 &&
+           FT_Set_Pixel_Sizes(drawing->face, 0, drawing->face->units_per_EM) == 0;
 }
 
-/* What the libraries hold is freed also where memory runs out: so contours are in memory that unwinds
-   to here. */
-static bool draw_all(Drawing *drawing, const Font *font, const char *text, Memory *memory)
+static void draw_text(Drawing *drawing, const Font *font, const char *text)
 {
-    jmp_buf    unwind;
     const int  em   = drawing->face->units_per_EM;
     hb_blob_t *blob = hb_blob_create((const char *)font->bytes, (unsigned)font->length,
                                      HB_MEMORY_MODE_READONLY, NULL, NULL);
     hb_face_t *face = hb_face_create(blob, (unsigned)font->face & 0xFFFF);
     drawing->shaper = hb_font_create(face);
     drawing->unit   = drawing->lettering->size / em;
-    hb_font_set_scale(drawing->shaper, em, em);
-    memory->exhausted = &unwind;
-    bool drawn        = setjmp(unwind) == 0;
-    if (drawn)
-        draw_lines(drawing, text);
-    hb_font_destroy(drawing->shaper);
+    hb_blob_destroy(blob); /* The face and the shaper hold what they need. */
     hb_face_destroy(face);
-    hb_blob_destroy(blob);
-    return drawn;
+    require(drawing, blob != hb_blob_get_empty() && face != hb_face_get_empty() &&
+                         drawing->shaper != hb_font_get_empty());
+    hb_font_set_scale(drawing->shaper, em, em);
+    drawing->line = hb_buffer_create();
+    draw_lines(drawing, text);
+}
+
+/* FreeType goes on without what it has no memory for, such as a reader of fonts, so its memory comes from here. */
+static void *take(FT_Memory memory, long size)
+{
+    Drawing *drawing = memory->user;
+    void    *block   = malloc((size_t)size);
+    drawing->scarce |= !block;
+    return block;
+}
+
+static void give(FT_Memory memory, void *block)
+{
+    (void)memory;
+    free(block);
+}
+
+static void *resize(FT_Memory memory, long before, long size, void *block)
+{
+    Drawing *drawing = memory->user;
+    void    *moved   = realloc(block, (size_t)size);
+    (void)before;
+    drawing->scarce |= !moved;
+    return moved;
+}
+
+/* Returns false where the file is no font with outlines. */
+static bool draw(Drawing *drawing, const Font *font, const char *text)
+{
+    require(drawing, FT_New_Library(&drawing->memory, &drawing->library) == 0);
+    FT_Add_Default_Modules(drawing->library);
+    bool is_font = open_face(drawing, font);
+    require(drawing, !drawing->scarce);
+    if (is_font)
+        draw_text(drawing, font, text);
+    require(drawing, !drawing->scarce);
+    return is_font;
+}
+
+/* Lets memory that runs out unwind to here, and says whether it did, so that the libraries' memory is freed. */
+static bool draw_guarded(Drawing *drawing, const Font *font, const char *text, bool *is_font)
+{
+    Memory  *memory = drawing->path->arena->memory;
+    jmp_buf *outer  = memory->exhausted;
+    jmp_buf  unwind;
+    memory->exhausted = &unwind;
+    bool enough       = setjmp(unwind) == 0;
+    if (enough)
+        *is_font = draw(drawing, font, text);
+    memory->exhausted = outer;
+    return enough;
 }
 
 bool letters_draw(Path *path, const Font *font, const char *text, const Lettering *lettering,
                   uint32_t *missing)
 {
-    Memory  memory  = {0};
-    Arena   arena   = {.memory = &memory};
-    Path    own     = {.arena = &arena, .tolerance = path->tolerance};
-    Drawing drawing = {.path = &own, .lettering = lettering};
-    if (font->length > UINT32_MAX / 2 || !open_face(&drawing, font))
+    Drawing drawing = {
+        .path = path, .lettering = lettering, .memory = {&drawing, take, give, resize}};
+    bool is_font = false;
+    if (font->length > UINT32_MAX / 2)
         return false;
-    bool drawn = draw_all(&drawing, font, text, &memory);
-    FT_Done_FreeType(drawing.library);
-    if (drawn)
-        path_take(path, &own);
-    arena_free(&arena);
+    bool enough = draw_guarded(&drawing, font, text, &is_font);
+    hb_buffer_destroy(drawing.line);
+    hb_font_destroy(drawing.shaper);
+    FT_Done_Library(drawing.library); /* with its faces */
+    if (!enough)
+        arena_exhausted(path->arena);
     *missing = drawing.missing;
-    return drawn;
+    return is_font;
 }

@@ -28,8 +28,8 @@ typedef struct Lettering {
     LineAlign align;       /* of lines, at x = 0 */
 } Lettering;
 
-/* Draws lines of UTF-8, the first on y = 0.  False: this is no font.  *missing is the first
-   character that the font does not have, or 0. */
+/* Draws lines of UTF-8, the first on y = 0, and returns false where this is no font with outlines.
+   *missing is the first character that the font does not have, or 0. */
 bool letters_draw(Path *path, const Font *font, const char *text, const Lettering *lettering,
                   uint32_t *missing);
 

@@ -135,17 +135,6 @@ void path_cubic(Path *path, const double first[2], const double second[2], const
     }
 }
 
-void path_take(Path *path, const Path *other)
-{
-    size_t count = path->curves.count + other->curves.count;
-    Curve *all   = arena_new_array(path->arena, Curve, count + 1);
-    if (path->curves.count)
-        memcpy(all, path->curves.items, path->curves.count * sizeof *all);
-    if (other->curves.count)
-        memcpy(all + path->curves.count, other->curves.items, other->curves.count * sizeof *all);
-    path->curves = (Curves){all, count, count + 1};
-}
-
 /* ---- one curve ---- */
 
 /* Returns the weight of `via` among the control points. */

@@ -42,9 +42,6 @@ void path_cubic(Path *path, const double first[2], const double second[2], const
 void path_arc(Path *path, const double to[2], double bulge);
 void path_close(Path *path);
 
-/* Copies all that is drawn in another path, whose arena may then be freed. */
-void path_take(Path *path, const Path *other);
-
 Curve line_between(const double from[2], const double to[2]);
 /* The point and half of the derivative at t. */
 void curve_point(const Curve *curve, double t, double point[2]);

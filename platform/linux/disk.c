@@ -36,7 +36,7 @@ static char *read_stream(FILE *file, size_t *length, const char **reason)
         size_t count = fread(text + *length, 1, capacity - *length, file);
         *length += count;
         if (count == 0) {
-            *reason = ferror(file) ? strerror(errno) : NULL;
+            *reason = !ferror(file) ? NULL : errno == ENOMEM ? source_no_memory : strerror(errno);
             break;
         }
     }

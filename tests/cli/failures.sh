@@ -159,10 +159,7 @@ scarce() { # what is tested; how many times; arguments of krs
     while [ $tried -lt "$times" ]; do
         tried=$((tried + 1))
         rm -f scarce.3mf scarce.glb
-        case $1 in
-            mesh) at=$((made - made * (times - tried) * (times - tried) / (times * times))) ;; # more at the end
-            *) at=$((made * tried / times)) ;;
-        esac
+        at=$((made - made * (times - tried) * (times - tried) / (times * times))) # more at the end
         SCARCE_AT=$at LD_PRELOAD=./scarce.so "$krs" "$@" >out 2>err
         status=$?
         [ $status -eq 0 ] || { [ $status -eq 71 ] && tail -n 1 err | grep -q '^krs: .*memory' &&

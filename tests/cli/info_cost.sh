@@ -33,8 +33,8 @@ json "'knot' == p[0]['name'] or p[0]['line'] == 5"
 result $? 'the heavy part comes first'
 json "p[0]['line'] in (4, 5) and p[0]['source'].endswith('scene.krs') and p[0]['share'] > 0.4"
 result $? 'with its line'
-json "sum(r['share'] for r in p if r['line'] in (4, 5)) > 10 * sum(r['share'] for r in p if r['line'] in (3, 8, 11))"
-result $? 'and ten times as much as the light ones'
+json "sum(r['flops'] for r in p if r['line'] in (4, 5)) > 10 * sum(r['flops'] for r in p if r['line'] in (3, 8, 11))"
+result $? 'and ten times the operations of the light ones'
 json "abs(sum(r['share'] for r in p) + c['others']['share'] - 1) < 1e-9 and all(r['ms'] >= 0.02 * c['frame_ms'] for r in p)"
 result $? 'shares are the whole frame; the least is 2 %'
 json "c['width'] == 160 and c['height'] == 90 and c['frame_ms'] > 0 and c['untimed'] == 0 and c['device']"
