@@ -32,7 +32,7 @@ typedef struct SizedArray {
     size_t size, own_size;
 } SizedArray;
 
-/* False: memory has run out. */
+/* Returns false if memory has run out. */
 bool sized_open(SizedArray *array, void *given, size_t size, size_t own_size, size_t count);
 /* Hands out as many elements as there are now, and frees the library's array. */
 void sized_close(SizedArray *array, size_t count);

@@ -43,7 +43,7 @@ static KrsStatus write_table(const Options *options, const char *base, const Tab
     return write_output_file(options, base, file->ending, bytes, size);
 }
 
-/* The contents of the texel buffers, where there are any. */
+/* Writes the contents of the texel buffers, where there are any. */
 static KrsStatus write_tables(const Options *options, const KrsScene *scene, const char *base)
 {
     size_t    rows_size  = krs_table_rows(scene) * sizeof(float[4]);
@@ -135,7 +135,7 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
     return write_output_file(options, base, ".json", json.bytes, json.length);
 }
 
-/* The entry points, and what they call. */
+/* Writes the entry points, and what they call. */
 static KrsStatus write_text(const Options *options, const KrsScene *scene, const char *base)
 {
     const KrsVariant     variant = compiled_variant(options);

@@ -20,7 +20,7 @@ static bool is_path(const OptionInfo *option)
 
 static bool may_repeat(const OptionInfo *option) { return strstr(option->help, "may repeat"); }
 
-/* The endings of the files that a command takes, a blank between two. */
+/* Returns the endings of the files that a command takes, a blank between two. */
 static const char *find_endings(CommandId command)
 {
     if (command == COMMAND_IMPORT)
@@ -29,7 +29,7 @@ static const char *find_endings(CommandId command)
     return files == 0 || files == MAYBE_A_WORD ? "" : ".krs";
 }
 
-/* What stands between single quotes: characters of `special` get a backslash. */
+/* Prints a text as it stands between single quotes, where characters of `special` get a backslash. */
 static void print_inside(FILE *out, const char *text, const char *special, const char *quote)
 {
     for (; *text; text++) {
@@ -42,7 +42,7 @@ static void print_inside(FILE *out, const char *text, const char *special, const
     }
 }
 
-/* The words, a blank between two, of which the command takes one. */
+/* Prints the words, a blank between two, of which the command takes one. */
 static void print_words(FILE *out, CommandId command)
 {
     for (size_t i = 0; command == COMMAND_EXPLAIN && i < DIAG_CODE_COUNT; i++)

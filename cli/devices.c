@@ -74,8 +74,8 @@ KrsStatus command_devices(Options *options)
     return KRS_OK;
 }
 
-/* As the XDG Base Directory Specification has it, a folder that is not absolute is as good as
-   none. */
+/* Returns the folder of caches.  The XDG Base Directory Specification treats a folder that is not
+   absolute as missing. */
 const char *cache_folder(const Options *options)
 {
     if (options->cache)

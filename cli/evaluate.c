@@ -9,7 +9,7 @@
 #include "cli/options/values.h"
 #include "compiler/base/text.h"
 
-/* The first mistake in a value. */
+/* Keeps the first mistake in a value. */
 static void listen(void *user, const KrsDiagnostic *diagnostic)
 {
     Text *said = user;

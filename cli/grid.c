@@ -125,7 +125,7 @@ static KrsStatus say_failure(const Gridding *gridding, KrsStatus status)
                                      : say_status(status, gridding->options->files.items[0]);
 }
 
-/* A length of two digits, not below this one. */
+/* Returns a length of two digits, not below this one. */
 static double round_up(double length)
 {
     double unit = pow(10, floor(log10(length)) - 1);
@@ -205,7 +205,7 @@ static KrsStatus check_size(const Gridding *gridding, const KrsGridShape *shape,
     return KRS_OK;
 }
 
-/* What is near the surface grows with its area. */
+/* Refuses grids that need too much memory, which grows with the area of the surface. */
 static KrsStatus check_memory(Gridding *gridding, GridGroup *group)
 {
     GridSheet *sheet  = &group->sheet;
@@ -294,7 +294,7 @@ static bool add_brick(void *user, const KrsGridBrick *brick)
     return true;
 }
 
-/* What went wrong with a file is told with it. */
+/* Samples a grid; errors of its files are reported with these. */
 static KrsStatus sample(Target *target)
 {
     const GridGroup *group  = target->group;

@@ -42,7 +42,7 @@ void passes_print(CommandId command, FILE *out)
 /* Columns of a page, and where texts of options begin. */
 enum { PAGE_WIDTH = 80, TEXT_COLUMN = 33 };
 
-/* Words of a text, in lines that begin at TEXT_COLUMN; `column` is where the first begins. */
+/* Prints words in lines that begin at TEXT_COLUMN; `column` is where the first begins. */
 static void print_wrapped(const char *text, size_t column, FILE *out)
 {
     for (size_t length; *text; text += length) {

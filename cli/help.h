@@ -8,13 +8,13 @@
 
 #include "cli/options/options.h"
 
-/* What each exit status means, in a sentence of several lines. */
+/* A sentence of several lines for each exit status. */
 extern const char exit_statuses[];
 
-/* `krs --help`, `krs COMMAND --help`; `all`: also the options of GROUP_RESEARCH. */
+/* Prints `krs --help` or `krs COMMAND --help`; `all`: also the options of GROUP_RESEARCH. */
 void help_print(FILE *out);
 void help_print_command(CommandId command, bool all, FILE *out);
-/* The passes of the compiler, a line each, on the page of `dump`; else nothing. */
+/* Prints the passes of the compiler, a line each, on the page of `dump`; else nothing. */
 void passes_print(CommandId command, FILE *out);
 
 /* manual.c: the same as a page for man, of a command or, with COMMAND_COUNT, of `krs` itself. */

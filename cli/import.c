@@ -22,7 +22,7 @@ static KrsStatus refuse_reading(const Import *import, const Loaded *loaded)
     return loaded->outside ? KRS_BAD_SCENE : KRS_IO_ERROR;
 }
 
-/* The text with a NUL behind it. */
+/* Takes the text, and puts a NUL behind it. */
 static KrsStatus take_text(Import *import, const Loaded *loaded)
 {
     if (loaded->length > MAX_SOURCE_BYTES) {
@@ -64,7 +64,7 @@ static KrsStatus write_scene(const Options *options, const Text *scene)
     return KRS_OK; /* the end of every command looks at the output */
 }
 
-/* What others make may be near to what can be read. */
+/* Returns a hint about a file of another program. */
 static const char *other_way(const char *path)
 {
     static const char *const meshes[] = {".stl", ".ply", ".obj", ".glb", ".gltf", ".3mf", ".step"};
@@ -77,7 +77,7 @@ static const char *other_way(const char *path)
     return "";
 }
 
-/* What the head of the scene says is said here, too; what is left out was said before. */
+/* Prints the notes of the head of the scene; what is left out was reported before. */
 static void say_notes(const Import *import)
 {
     for (size_t i = 0; i < import->notes.count; i++)

@@ -15,7 +15,7 @@ static void print_vector(const double *values, size_t count)
     fputs(count > 1 ? "]" : "", stdout);
 }
 
-/* So many bounds of a component, and components of a loop, are printed; JSON has all. */
+/* Bounds of a component, and components of a loop, that are printed at most; JSON has all. */
 enum { MAX_LINES = 48, MAX_ALIKE = 50 };
 
 static bool is_box(const KrsBound *bound)
@@ -26,7 +26,7 @@ static bool is_box(const KrsBound *bound)
     return true;
 }
 
-/* "torus  ring.krs:4:6  exact, by claim; box [..] to [..]" */
+/* Prints a line such as "torus ring.krs:4:6 exact, by claim; box [..] to [..]". */
 static void print_bound(const KrsBound *bound, size_t number)
 {
     printf("    %3zu  %*s%s", number, 2 * (int)bound->depth, "", bound->name);
@@ -206,7 +206,7 @@ static void add_bound(Text *json, const KrsBound *bound)
     text_format(json, ", \"similar\": %u, \"same\": %zu}", bound->similar, bound->same);
 }
 
-/* The tree of a component as a list, parents first; `same` counts its entries from 1. */
+/* Adds the tree of a component as a list, parents first; `same` counts its entries from 1. */
 static void add_bounds(Text *json, const KrsScene *scene, size_t component)
 {
     size_t more, count = krs_bound_count(scene, component, &more);
@@ -267,7 +267,7 @@ static void add_parameters(Text *json, const KrsScene *scene)
     text_add(json, "]");
 }
 
-/* What the host finds for each frame, and in which slot the GLSL has it. */
+/* Adds the slopes that the host finds for each frame, each with its slot in the GLSL. */
 static void add_slopes(Text *json, const KrsScene *scene)
 {
     text_add(json, "\"frame_slopes\": [");
@@ -285,7 +285,7 @@ static void add_slopes(Text *json, const KrsScene *scene)
     text_add(json, "]");
 }
 
-/* The members that `krs info --json` and the NAME.json of `krs compile` have in common. */
+/* Adds the members that `krs info --json` and the NAME.json of `krs compile` have in common. */
 void info_add_json(Text *json, const KrsScene *scene)
 {
     const KrsProgram *program = krs_scene_program(scene);

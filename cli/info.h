@@ -12,7 +12,7 @@
 KrsStatus info_check_options(const Options *options);
 /* Measures what the scene shows, and prints that. */
 KrsStatus info_print(const Options *options, const KrsScene *scene);
-/* Times what the parts of the scene cost, and prints that. */
+/* Times the parts of the scene, and prints what each costs. */
 KrsStatus info_cost(const Options *options, const KrsScene *scene);
 
 #endif

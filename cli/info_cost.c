@@ -34,7 +34,7 @@ static bool goes_on(void *user, double fraction)
     return !*interrupted();
 }
 
-/* All has been said of the scene. */
+/* Compiles without diagnostics: all were printed when the scene was compiled. */
 static KrsStatus compile_without(void *user, const KrsLocation *without, KrsScene **scene)
 {
     const Costing *costing = user;
@@ -55,7 +55,7 @@ static KrsStatus make_state(void *user, const KrsScene *scene, KrsState **state)
 
 /* ---- text ---- */
 
-/* "gear.krs:14:5" */
+/* Returns text such as "gear.krs:14:5". */
 static const char *place_of(const Costing *costing, const Part *part)
 {
     Text               text     = {.arena = costing->options->arena};
@@ -64,7 +64,7 @@ static const char *place_of(const Costing *costing, const Part *part)
     return text.bytes;
 }
 
-/* "rest of union, 12 times" */
+/* Returns text such as "rest of union, 12 times". */
 static const char *name_of(const Costing *costing, const ProfileRow *row)
 {
     enum { LENGTH = 48 };

@@ -264,7 +264,7 @@ static KrsMeasureOptions measure_options(Printing *printing, const KrsMeshOption
     how.up[options->axis]     = 1;
     memcpy(how.low, meshed->low, sizeof how.low);
     memcpy(how.high, meshed->high, sizeof how.high);
-    /* What may be missing is then too thin for the nozzle. */
+    /* Parts of the solid that may be missing are then too thin for the nozzle. */
     if (how.error == 0 && options->nozzle > 0)
         how.error = fmin(longest / 200, options->nozzle);
     return how;

@@ -86,7 +86,7 @@ static bool print_installed(int argc, char **argv, int *status)
     return true;
 }
 
-/* The work as the child does it: out of memory in any arena of the command ends here. */
+/* Does the work of the child: out of memory in any arena of the command ends here. */
 static KrsStatus work_with_memory(Options *options)
 {
     jmp_buf exhausted;

@@ -9,7 +9,7 @@
 
 #include "cli/help.h"
 
-/* Text in which nothing is a request of troff, line by line. */
+/* Prints text in which nothing is a request of troff, line by line. */
 static void print_plain(FILE *out, const char *text)
 {
     for (bool begin = true; *text; begin = *text++ == '\n') {
@@ -40,8 +40,7 @@ static void print_title(FILE *out, const char *name, const char *summary)
     fputs("\n", out);
 }
 
-/* What the words mean, where more is to be said of them; what holds without the option is in
-   italics. */
+/* Prints what the words mean, if more is to be said of them; the default is in italics. */
 static void print_choices(FILE *out, const Choice *choices)
 {
     if (!choices || !choices->about[0])

@@ -35,7 +35,7 @@ static KrsStatus make_merged(Meshing *meshing, Body *body)
     return krs_mesh(meshing->state, &meshing->how, &body->mesh);
 }
 
-/* Where nothing can be taken apart, the meshes are those that are merged. */
+/* Makes the meshes of an assembly, which are the merged ones if nothing can be separated. */
 static KrsStatus make_assembled(Meshing *meshing, Body *body)
 {
     KrsMeshOptions whole  = meshing->how;
@@ -87,7 +87,7 @@ static void drop_bodies(Bodies *bodies)
     bodies->count = 0;
 }
 
-/* One of all, or one for each component; many that are alike may be one. */
+/* Makes one body of all components, or one for each; many alike may share one. */
 static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies, double goal)
 {
     size_t    asked  = meshing->how.component;
@@ -216,7 +216,7 @@ static KrsStatus make_all(Meshing *meshing)
     return status;
 }
 
-/* Those of a file. */
+/* Returns the bodies of a file. */
 static const Bodies *bodies_of(const Meshing *meshing, const MeshFormat *format)
 {
     bool merged = copies_in(meshing->options, format) == COPIES_MERGED;
@@ -306,7 +306,7 @@ static KrsStatus check_size(const Meshing *meshing, const char *path, const Mesh
                                                 : "a larger --error needs fewer");
 }
 
-/* The largest error, that of levels of detail as well. */
+/* Returns the largest error, that of levels of detail as well. */
 static double farthest(const Bodies *bodies)
 {
     double error = summarize(bodies).error;
@@ -355,7 +355,7 @@ static KrsStatus write_files(Meshing *meshing)
     return status;
 }
 
-/* Far from the origin the numbers of a file are coarser than a mesh is near to the surface. */
+/* Warns where the numbers of a file, far from the origin, are coarser than the error of a mesh. */
 static void warn_of_rounding(const Meshing *meshing, const Summary *all)
 {
     static const double SMALL   = 0.1; /* parts of the error that go without saying */
@@ -373,7 +373,7 @@ static void warn_of_rounding(const Meshing *meshing, const Summary *all)
     }
 }
 
-/* Rounding is no distance. */
+/* Reports how far the motion errs, if that is more than rounding. */
 static void report_motion(const Meshing *meshing, double error)
 {
     static const double ROUNDING = 1e-6; /* of the error */

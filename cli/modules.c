@@ -90,7 +90,7 @@ void modules_free(Modules *modules)
     *modules = (Modules){0};
 }
 
-/* What a module says about one of its ids. */
+/* The properties of an id of a module. */
 typedef struct IdInfo {
     const char *name;
     uint32_t    set, binding, type;

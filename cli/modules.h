@@ -18,7 +18,7 @@ typedef struct Modules {
     size_t       count, capacity;
 } Modules;
 
-/* What suits graphics cards, unless the options differ. */
+/* Returns the variant that suits graphics cards, unless the options differ. */
 KrsVariant compiled_variant(const Options *options);
 
 /* Compiles and validates every shader for the scene; when one is refused, a bug of ours, its

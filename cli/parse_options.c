@@ -15,7 +15,7 @@
 #include "cli/options/values.h"
 #include "compiler/base/text.h"
 
-/* `-` is standard output. */
+/* Adds a file that is written; `-` is standard output. */
 static bool add_output(Options *options, const char *file)
 {
     if (strcmp(file, "-") == 0)
@@ -24,7 +24,7 @@ static bool add_output(Options *options, const char *file)
     return true;
 }
 
-/* What its row takes, and yet cannot be. */
+/* Refuses numbers that the type of a row permits, but not its range. */
 static KrsStatus check_number(const Options *options, OptionId id)
 {
     if (id == OPTION_ZONE && options->zone_count == KRS_MAX_ZONES)
@@ -79,7 +79,7 @@ static OptionId option_find(const Options *options, OptionId id, const char *nam
     return id;
 }
 
-/* False: nothing is changed. */
+/* Sets an option; false: the row does not take the value, and nothing is changed. */
 static bool row_takes(Options *options, OptionId id, const char *value)
 {
     const Options     before = *options;
@@ -110,7 +110,7 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
                      value);
 }
 
-/* An option of the command that is about what it does not write. */
+/* Refuses an option of the command about what it does not write. */
 static KrsStatus refuse_unwanted(const Options *options, const char *name)
 {
     const bool watches = options->command == COMMAND_WATCH;
@@ -152,7 +152,7 @@ static OptionId option_find_letter(const Options *options, char letter)
     return OPTION_COUNT;
 }
 
-/* The argument of an option: what is glued to it, or the next word. */
+/* Takes the argument of an option: what is glued to it, or the next word. */
 static KrsStatus take_with_argument(Options *options, OptionId id, const char *glued, int *next)
 {
     const OptionInfo *info = &option_info[id];
@@ -193,7 +193,7 @@ static KrsStatus take_option(Options *options, int *next)
     return take_with_argument(options, id, word[2] ? word + 2 : NULL, next);
 }
 
-/* `krs --help` is `krs help`, as programs of either habit have it. */
+/* Takes the word of a command; `krs --help` is `krs help`, as programs of either habit have it. */
 static KrsStatus take_command(Options *options, const char *word)
 {
     bool asks        = strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
@@ -201,7 +201,7 @@ static KrsStatus take_command(Options *options, const char *word)
     return options->command < COMMAND_COUNT ? KRS_OK : say_no_command(word);
 }
 
-/* What an untrusted scene may, unless options say otherwise. */
+/* Sets the limits of an untrusted scene, unless options do. */
 static void limit_untrusted(Limits *limits)
 {
     static const Limits most = {60, (uint64_t)2 << 30, (uint64_t)1 << 26, 4096};
@@ -211,7 +211,7 @@ static void limit_untrusted(Limits *limits)
     limits->samples          = limits->samples ? limits->samples : most.samples;
 }
 
-/* What no single option can see. */
+/* Refuses options that exclude each other. */
 static KrsStatus check_combinations(Options *options)
 {
     const CommandInfo *info  = &command_table[options->command];
@@ -252,7 +252,8 @@ static KrsStatus check_combinations(Options *options)
     return KRS_OK;
 }
 
-/* What is written, by the endings of all words: outputs may stand behind the options of them. */
+/* Finds what is written by the endings of all words: outputs may stand behind the options for
+   them. */
 static void find_written(Options *options)
 {
     bool pictures   = false;

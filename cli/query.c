@@ -112,7 +112,7 @@ static void print_binary(bool is_ray, const KrsHit *hit)
     }
 }
 
-/* Nothing more is answered after a failure. */
+/* Answers the questions of a batch in order, up to the first failure. */
 static void answer_batch(Query *query)
 {
     if (query->status == KRS_OK)
@@ -127,7 +127,7 @@ static void answer_batch(Query *query)
     query->count = 0;
 }
 
-/* False when the numbers cannot be a point or a ray. */
+/* Adds a question; false: the numbers cannot be a point or a ray. */
 static bool add_question(Query *query, const double *numbers, bool is_ray)
 {
     for (int i = 0; i < (is_ray ? 6 : 3); i++)
@@ -143,7 +143,7 @@ static bool add_question(Query *query, const double *numbers, bool is_ray)
     return true;
 }
 
-/* One line, NUL-terminated.  Blank lines are skipped. */
+/* Reads one line, NUL-terminated, and skips blank ones. */
 static bool read_line(Query *query, const char *line)
 {
     double numbers[6] = {0};
@@ -204,7 +204,7 @@ static KrsStatus refuse_input(const Query *query)
     return KRS_BAD_ARGUMENT;
 }
 
-/* The rest after the last newline, or behind the last whole record. */
+/* Answers the rest after the last newline, or behind the last whole record. */
 static KrsStatus finish_input(Query *query, char *input, size_t length)
 {
     bool good = true;

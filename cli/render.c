@@ -28,8 +28,8 @@ static bool show_progress(void *user, double done)
     return !*interrupted() && !(render->outdated && render->outdated(render->user));
 }
 
-/* What --limit allows beats what the scene asks for; what the command line asks for beyond it makes no
-   sense. */
+/* Refuses more than --limit permits if the scene asks for it, and as wrong usage if the command
+   line does. */
 static KrsStatus check_limit(const Options *options, const char *name, uint64_t asked,
                              uint64_t most, bool by_scene)
 {
@@ -57,14 +57,14 @@ static KrsIntegrator find_integrator(KrsIntegrator asked, const char *scene)
     return found > 0 ? (KrsIntegrator)found : KRS_INTEGRATOR_PREVIEW;
 }
 
-/* All AOVs but the noise, unless that is asked for by its name: samples must not be compared for
-   nothing. */
+/* Returns all AOVs but the noise, which needs samples to be compared, unless it is asked for by its
+   name. */
 static uint32_t known_aovs(const Options *options)
 {
     return options->aovs == KRS_AOV_ALL ? KRS_AOV_ALL & ~KRS_AOV_NOISE : KRS_AOV_ALL;
 }
 
-/* The size of the picture and its samples, which --limit may be too few for. */
+/* Chooses the size of the picture and its samples, which --limit may be too few for. */
 static KrsStatus choose_size(Render *render, const KrsImage *image)
 {
     const Options    *options = render->options;
@@ -82,7 +82,7 @@ static KrsStatus choose_size(Render *render, const KrsImage *image)
     return status;
 }
 
-/* What does not go together; the size and the AOVs are chosen. */
+/* Refuses options that exclude each other, when the size and the AOVs are chosen. */
 static KrsStatus check_how(const Render *render)
 {
     const Options          *options = render->options;
@@ -108,7 +108,7 @@ static bool writes_exr(const Render *render)
     return false;
 }
 
-/* Size, crop and what else the options and the scene's image block say together. */
+/* Chooses size, crop and the rest from the options and the scene's image block. */
 static KrsStatus choose_how(Render *render)
 {
     const Options    *options = render->options;
@@ -283,9 +283,10 @@ static double pixels_of_window(const KrsRenderOptions *how)
     return crop->width > 0 ? (double)crop->width * crop->height : (double)how->width * how->height;
 }
 
-/* With more samples, shaders that take longer to compile are better even if they are new.  What compilation takes
-   less, frames take more after ten pictures of 640x360 of examples/05-rock.krs and 06-temple.krs, after one and a half
-   of 08-reef.krs and 29-logo.krs, and at once of 07-grove.krs (bench/measurements.md). */
+/* Samples of all pixels from which shaders that take longer to compile are better even if they are
+   new.  Their faster frames repay the compilation after ten pictures of 640x360 of
+   examples/05-rock.krs and 06-temple.krs, after one and a half of 08-reef.krs and 29-logo.krs, and
+   at once of 07-grove.krs (bench/measurements.md). */
 #define SAMPLES_OF_SMALL_PICTURES (1.0 * 640 * 360)
 
 /* A crop has the shaders of the picture that it is a part of, so its pixels are the same.  `krs watch` will
@@ -369,7 +370,7 @@ static bool is_there(const Render *render, uint32_t frame)
     return there;
 }
 
-/* Those that are there are left out, if that is asked for. */
+/* Renders the frames, except for those that are there if options say so. */
 KrsStatus render_frames(Render *render)
 {
     const Options *options = render->options;

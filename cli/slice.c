@@ -58,7 +58,8 @@ static const char *output_name(const Slicing *slicing, size_t index)
     return path.bytes;
 }
 
-/* A `%` that looks like the place for a number, as in other programs, and is none; NULL: there is none. */
+/* Returns a `%` that looks like the place for a number, as in other programs, and is none; NULL:
+   there is none. */
 static const char *foreign_place(const char *path)
 {
     for (const char *percent = path; (percent = strchr(percent, '%')); percent++) {
@@ -125,7 +126,7 @@ static KrsStatus check_options(Slicing *slicing)
     return status;
 }
 
-/* Plane figures are sections already. */
+/* Refuses solids beside plane figures, and layers of these, which are sections already. */
 static KrsStatus check_figures(Slicing *slicing)
 {
     const Options *options = slicing->options;
@@ -156,7 +157,7 @@ static KrsSectionPlane plane_of(const Slicing *slicing, double at)
     return plane;
 }
 
-/* One layer that is thicker than all is cut in the middle of what there is. */
+/* Returns a layer.  One that is thicker than all is cut in the middle of what there is. */
 static Layer layer_of(const Slicing *slicing, uint32_t index)
 {
     const SliceSheet *sheet = &slicing->sheet;
@@ -165,7 +166,7 @@ static Layer layer_of(const Slicing *slicing, uint32_t index)
     return (Layer){NULL, index + 1, low, at, high};
 }
 
-/* What has its middle in the solid is a layer. */
+/* Finds the layers: those whose middle is in the solid. */
 static KrsStatus find_layers(Slicing *slicing, const double low[3], const double high[3])
 {
     const Options *options = slicing->options;
@@ -193,7 +194,7 @@ static KrsStatus find_layers(Slicing *slicing, const double low[3], const double
     return KRS_OK;
 }
 
-/* The box of the scene as the plane shows it. */
+/* Finds the box of the scene as the plane shows it. */
 static void find_sides(Slicing *slicing, const double low[3], const double high[3])
 {
     SliceSheet *sheet = &slicing->sheet;
@@ -398,7 +399,7 @@ static KrsStatus write_layer(const Slicing *slicing, Layer layer, const KrsSecti
     return status;
 }
 
-/* Nothing is written before it is known that there is something to write. */
+/* Takes a section.  The file begins with the first one that is not empty. */
 static KrsStatus take_layer(Slicing *slicing, uint32_t index, const KrsSection *section)
 {
     static const KrsSection nothing = {.contour_count = 0};

@@ -17,7 +17,7 @@
 #include "cli/shell/supervise.h"
 #include "runtime/device/cache.h"
 
-/* With more samples, literals are better even if they are new.  At 640x360, 16 samples of
+/* Samples from which literals are better even if they are new.  At 640x360, 16 samples of
    examples/09-palm.krs save as much time as the compilation of its literals takes (`krs render
    --stats` with each --specialize, lavapipe); scenes that are faster compiled save more. */
 #define SAMPLES_THAT_REPAY_LITERALS (16.0 * 640 * 360)
@@ -30,7 +30,7 @@ typedef struct SeenStructure {
 
 _Static_assert(sizeof(SeenStructure) == sizeof(CacheKey) + 1, "each byte of an entry has a value");
 
-/* False: without memory. */
+/* Returns false if without memory. */
 static bool hash_text(const KrsScene *scene, const char *maker, CacheKey *key)
 {
     char *text = krs_scene_plain_text(scene, NULL);
@@ -79,7 +79,7 @@ static bool is_edited(const Options *options, const KrsScene *literals, const Kr
     return edited;
 }
 
-/* Diagnostics were heard when the literals were compiled. */
+/* Compiles the structure without diagnostics, which were printed when the literals were compiled. */
 static KrsScene *compile_structure(const Options *options)
 {
     const char    *path = options->files.items[0];

@@ -27,7 +27,7 @@
 
 enum { BATCH = 1024, PROBES = 8, MARCH_STEPS = 64, MEASURE_STEPS = 96 };
 
-/* How much of the ball must be empty: the rest is left to the rounding of the sum. */
+/* The part of the ball that must be empty: the rest is left to the rounding of the sum. */
 static const double BALL = 0.999;
 /* The size of a scene that has no bounds of its own, in world units. */
 static const double UNBOUNDED = 10;
@@ -59,8 +59,8 @@ static void random_direction(uint64_t *state, double direction[3])
     direction[2]  = z;
 }
 
-/* The box around the scene, half as large again; where the scene goes on for ever, a cut; around
-   nothing, any. */
+/* Chooses the box around the scene, half as large again; where the scene goes on for ever, a cut;
+   around nothing, any. */
 static void choose_box(Validation *v)
 {
     const KrsProgram *program = krs_scene_program(v->scene);
@@ -106,7 +106,8 @@ static void choose_points(Validation *v)
             v->points[i][axis] = v->low[axis] +
                                  splitmix_unit(&v->random) * (v->high[axis] - v->low[axis]);
     march_to_surface(v);
-    /* Rays that missed are far away, where nothing can be learned: back into the box. */
+    /* Moves points outside of the box into it: rays that missed are far away, where nothing can be
+       learned. */
     for (size_t i = 1; i < BATCH; i += 2)
         for (int axis = 0; axis < 3; axis++)
             if (!(v->points[i][axis] >= v->low[axis] && v->points[i][axis] <= v->high[axis]))
@@ -123,7 +124,7 @@ static void print_point(const char *words, const double point[3])
     }
 }
 
-/* " of component 2 (`ring`)" at the place of a counter-example. */
+/* Prints " of component 2 (`ring`)" at the place of a counter-example. */
 static void print_component(const Validation *v, const double point[3])
 {
     KrsHit       hit;
@@ -147,7 +148,7 @@ static KrsStatus report_ball(const Validation *v, const double center[3], double
     return KRS_BAD_SCENE;
 }
 
-/* A place in the ball around hit->point: the first probe goes straight to the surface, the
+/* Chooses a place in the ball around hit->point: the first probe goes straight to the surface, the
    others half to the edge of the ball and half anywhere in it. */
 static void choose_inside(Validation *v, const KrsHit *hit, int probe, double inside[3])
 {
@@ -162,7 +163,7 @@ static void choose_inside(Validation *v, const KrsHit *hit, int probe, double in
         inside[axis] = hit->point[axis] + radius * direction[axis];
 }
 
-/* Distances that rounding may have made are nothing to judge by. */
+/* Tells whether a distance is more than rounding. */
 static bool is_worth_trying(const Validation *v, double distance)
 {
     return isfinite(distance) && fabs(distance) > 1e-9 * v->size;
@@ -207,7 +208,7 @@ static void measure_estimates(Validation *v, const KrsHit *hits, bool straight)
     }
 }
 
-/* How long an estimate may be found, of the way: the rest is rounding. */
+/* The part of the way over which an estimate may be too long: the rest is rounding. */
 static const double ALL_OF_THE_WAY = 1.001;
 
 static KrsStatus report_estimate(const Validation *v)
@@ -304,7 +305,7 @@ static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *
     return KRS_OK;
 }
 
-/* All points, in batches; `rendering` is NULL without a device. */
+/* Tries all points, in batches; `rendering` is NULL without a device. */
 static KrsStatus try_points(Validation *v, KrsRenderer *renderer, KrsRendering *rendering)
 {
     Progress  progress;
@@ -407,7 +408,7 @@ static KrsStatus try_search(Validation *v)
     return report_search(v, status, &result);
 }
 
-/* `renderer` is NULL without a device. */
+/* Validates a scene; `renderer` is NULL without a device. */
 static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
 {
     KrsRendering *rendering = NULL;

@@ -18,7 +18,7 @@ static void lose_display(void)
     _exit(KRS_NO_DEVICE);
 }
 
-/* With a window that says itself what takes long, there is no deadline. */
+/* Notes that a scene is read.  A window says itself what takes long, so there is no deadline. */
 static void note_reading(void *user, bool begins)
 {
     if (begins)
@@ -33,7 +33,7 @@ static bool is_stopped(void *user)
     return *interrupted();
 }
 
-/* Wrong settings are said before there is a window; the scene is compiled once more for them. */
+/* Refuses wrong settings before there is a window; the scene is compiled once more for them. */
 static KrsStatus check_settings(const Options *options)
 {
     KrsScene *scene;

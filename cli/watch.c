@@ -17,7 +17,7 @@
 #include "cli/shell/supervise.h"
 #include "live/text/document.h"
 
-/* How long a signal may go unnoticed where the system does not end the wait for it. */
+/* The time that a signal may go unnoticed if the system does not end the wait for it. */
 #define LONGEST_WAIT 3600.0
 
 typedef struct Watch {
@@ -270,7 +270,7 @@ static KrsStatus check_outputs(Watch *watch)
     return status;
 }
 
-/* False, and words: the system does not let files be watched. */
+/* Opens the documents; false, and words: the system does not let files be watched. */
 static bool open_documents(Watch *watch)
 {
     watch->sink.options    = watch->draws ? &watch->pictures : &watch->meshes;

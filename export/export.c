@@ -31,7 +31,7 @@ typedef struct Export {
 
 /* ---- numbers ---- */
 
-/* A number as GLSL has it, with a point. */
+/* Adds a number as GLSL has it, with a point. */
 static void add_float(Text *to, double number)
 {
     const float rounded = (float)fmin(fmax(number, -FLT_MAX), FLT_MAX);
@@ -77,7 +77,7 @@ static double distance_between(const double a[3], const double b[3])
                 (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-/* How far from the eye there may be something. */
+/* Returns how far from the eye there may be something. */
 static double find_farthest(const Export *export)
 {
     const KrsCamera  *camera  = &export->view.camera;
@@ -91,7 +91,7 @@ static double find_farthest(const Export *export)
     return corner < enough ? corner : enough;
 }
 
-/* What is up in the picture; of a camera that looks along its own, another axis. */
+/* The direction that is up in the picture; of a camera that looks along its own, another axis. */
 typedef struct Upright {
     double v[3];
 } Upright;
@@ -115,7 +115,7 @@ static Upright find_upright(const KrsCamera *camera)
                                         fabs(ahead[2]) <= fabs(ahead[1]) ? -1 : 0}};
 }
 
-/* Half the height of the picture at distance 1. */
+/* Returns half the height of the picture at distance 1. */
 static double find_rise(const KrsCamera *camera)
 {
     return camera->projection == KRS_PERSPECTIVE
@@ -132,14 +132,15 @@ static void place_of(const KrsLight *light, double numbers[4])
     numbers[3] = light->positional;
 }
 
-/* The light's colour, and the radius of the disc that stands for it: of a direction, at distance 1. */
+/* Finds the light's colour, and the radius of the disc that stands for it: of a direction, at
+   distance 1. */
 static void color_of(const KrsLight *light, double numbers[4])
 {
     memcpy(numbers, light->color, sizeof light->color);
     numbers[3] = fmax(light->positional ? light->softness : 0.5 * light->softness, 1e-3);
 }
 
-/* Where it shines, and the cosine at the edge of its cone; -2: everywhere. */
+/* Finds where a light shines, and the cosine at the edge of its cone; -2: everywhere. */
 static void cone_of(const KrsLight *light, double numbers[4])
 {
     memcpy(numbers, light->axis, sizeof light->axis);
@@ -206,7 +207,8 @@ static KrsParameter parameter_of(const Export *export, size_t index)
     return parameter;
 }
 
-/* A name of GLSL, which has no two underscores side by side, and is not too long: what is other has its slot in it. */
+/* Adds a name of GLSL, which has no two underscores side by side, and is not too long: what is
+   other has its slot in it. */
 static void add_parameter_name(Text *to, const char *name, size_t slot)
 {
     enum { LONGEST = 100 };
@@ -252,7 +254,8 @@ static void add_parameters(Text *to, const Export *export)
     }
 }
 
-/* Statements that put them into their slots; those behind have what the scene was exported with. */
+/* Writes statements that put parameters into their slots; those behind have what the scene was
+   exported with. */
 static void set_parameters(Text *to, const Export *export)
 {
     static const char *const padding[] = {"", ", 0.0, 0.0, 0.0", ", 0.0, 0.0", ", 0.0", ""};
@@ -376,7 +379,8 @@ static void add_block(Text *to, const Export *export)
 static void add_rows(Text *to, const Export *export) { add_tables(to, export, true); }
 static void add_cells(Text *to, const Export *export) { add_tables(to, export, false); }
 
-/* What `word` in `@`s stands for.  A target with a block of its own has parameters as a list. */
+/* The pieces that stand for words in `@`s.  A target with a block of its own has parameters as a
+   list. */
 static const struct Piece {
     const char *word;
     void (*add)(Text *to, const Export *export);
@@ -428,7 +432,8 @@ static void fill(Text *to, const Export *export, const char *template)
 
 /* ---- what a target cannot have ---- */
 
-/* Why, in words of the author of the scene; false: it can have all. */
+/* Refuses a scene that the target cannot have, with a reason in words of the author of the scene;
+   false: it can have all. */
 static bool refuse(const Export *export, Text *why)
 {
     const KrsDiagnostic *large = krs_scene_too_large(export->scene);

@@ -13,7 +13,7 @@ typedef enum ExportId {
     EXPORT_COUNT
 } ExportId;
 
-/* What is said of a target in its row. */
+/* The properties of a target, as its row says them. */
 typedef struct ExportTarget {
     const char *name, *template, *ending;
     bool        tables, cameras;

@@ -9,8 +9,8 @@
 #include "compiler/base/vec.h"
 
 enum { SIDE = 4, PARTS = SIDE * SIDE * SIDE, AROUND = 26, POINTS = PARTS + AROUND };
-/* How often parts of a cube are divided at most; how many parts are few, so that their parts are
-   divided, too, as along rods; and how many of these are divided. */
+/* The limits of dividing: how often parts of a cube are divided at most; how many parts are few, so
+   that their parts are divided, too, as along rods; and how many of these are divided. */
 enum { DEEPEST = 2, FEW = 20, MAX_DIVIDED = 150 };
 /* Half the diagonal of a part, and how far from linear its distance may be, in its sides. */
 static const double HALF_DIAGONAL = 0.8661, STRAIGHT = 0.3;

@@ -16,7 +16,8 @@ enum { MARGIN = 3 };
 static const double MAX_BAND = 1e6;
 /* The default error, in cells. */
 static const double USUAL_ERROR = 0.1;
-/* How far solids may reach beyond the box that is found, as a part of its side (narrow_box). */
+/* The length by which solids may reach beyond the box that is found, as a part of its side
+   (narrow_box). */
 static const double BEYOND = 0.0021;
 
 /* ---- what is sampled ---- */

@@ -44,7 +44,7 @@ static inline double grid_coordinate(const KrsGrid *grid, int axis, size_t index
     return (double)(grid->shape.first[axis] + (int64_t)index) * grid->shape.cell;
 }
 
-/* Fill the samples of a brick that begins at `at`, and their materials; the field is in their box
+/* Fills the samples of a brick that begins at `at`, and their materials; the field is in their box
    (samples.c). */
 void      fill_brick(const KrsGrid *grid, MeshField *field, const size_t at[3], uint32_t *triangle,
                      Brick *brick);

@@ -7,7 +7,7 @@
 #include "import/common/text.h"
 #include "krs/krs.h"
 
-/* Those that are known, a blank between two. */
+/* Returns the endings that are known, a blank between two. */
 const char *import_endings(void);
 /* Tells whether the name has one of these endings. */
 bool import_knows(const char *path);

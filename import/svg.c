@@ -16,7 +16,7 @@ static size_t folder_length(const char *path)
     return slash ? (size_t)(slash - path + 1) : 0;
 }
 
-/* The file as seen from the folder of the scene; where that is another one, from everywhere. */
+/* Adds the file as seen from the folder of the scene; where that is another one, from everywhere. */
 static void add_file_name(const Import *import, Text *name)
 {
     const char *output = import->output ? import->output : "";

@@ -14,7 +14,8 @@
 
 enum { MAX_LINES = 100000, MAX_ARGUMENTS = 2 };
 
-/* How the language says it; $a and $b are the arguments.  `blame`: why its slope may have no bound. */
+/* An operation in the words of the language; $a and $b are the arguments.  `blame`: why its slope
+   may have no bound. */
 typedef struct Operation {
     const char *name;
     int         arguments;
@@ -70,7 +71,7 @@ typedef struct Instruction {
     unsigned         line;
 } Instruction;
 
-/* Which step a name stands for at the moment; names are interned. */
+/* The step that a name stands for at the moment; names are interned. */
 typedef struct WordMeaning {
     const char *name;
     size_t      instruction;
@@ -225,7 +226,7 @@ static bool read_tape(ImportedTape *tape)
 
 /* ---- writing ---- */
 
-/* What a step is called where it is used. */
+/* Writes what a step is called where it is used. */
 static void write_name(const ImportedTape *tape, size_t index)
 {
     const Instruction *instruction = &tape->instructions.items[index];

@@ -18,7 +18,7 @@
 #define DRAG_ORBIT M_PI
 #define STEP_ORBIT (M_PI / 24)
 #define STEP_MOVE  0.05
-/* What a step of the wheel leaves of the distance. */
+/* The part of the distance that a step of the wheel leaves. */
 #define WHEEL_FACTOR 0.88
 /* Flying passes this part of the distance to the target in a second. */
 #define FLY_SPEED 0.8
@@ -58,7 +58,7 @@ static void act_frame(Viewing *viewing)
     changed(viewing);
 }
 
-/* The component, or what is around the point where it has no end. */
+/* Frames the component, or what is around the point where it has no end. */
 static void act_frame_part(Viewing *viewing)
 {
     const Found  found  = viewing_find(viewing);
@@ -244,7 +244,7 @@ static void act_write_values(Viewing *viewing)
         viewing_notice(viewing, "%zu value%s written", written, written == 1 ? "" : "s");
 }
 
-/* The first mistake of the text; if there is none, what is under the mouse. */
+/* Opens the editor at the first mistake of the text; if there is none, at what is under the mouse. */
 static void act_edit(Viewing *viewing)
 {
     char        place[300];
@@ -282,7 +282,7 @@ static void act_costs(Viewing *viewing)
     }
 }
 
-/* The size of what is seen, for a scene without an end as well. */
+/* Measures the size of what is seen, for a scene without an end as well. */
 static void measure_scene(Viewing *viewing)
 {
     const KrsCamera *camera = &viewing->view.camera;
@@ -415,7 +415,7 @@ void act_drag(void *user, int button, int modifiers, double right, double down)
     }
 }
 
-/* What is clicked is edited, or in focus. */
+/* Edits what is clicked, or focuses on it. */
 void act_click(void *user, int button, int modifiers)
 {
     Viewing    *viewing = user;
@@ -445,7 +445,7 @@ bool act_fly_step(Viewing *viewing, int key)
     return true;
 }
 
-/* -1, 0 or 1 by two keys that are held. */
+/* Returns -1, 0 or 1 by two keys that are held. */
 static double held(const Viewing *viewing, int less, int more)
 {
     if (!viewing->window)

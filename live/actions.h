@@ -11,7 +11,7 @@ typedef struct Action {
     const char *keys, *does; /* NULL: not in the help */
     void (*act)(Viewing *viewing);
 } Action;
-/* What act_key gets for a modifier, and for a key without a letter. */
+/* The numbers that act_key gets for a modifier, and for a key without a letter. */
 #define ACT_CONTROL 2
 #define ACT_F12     301
 extern const Action actions[];

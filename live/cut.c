@@ -22,7 +22,7 @@ void cut_face(Cut *cut, const KrsCamera *camera, const double point[3])
     cut->plane = true;
 }
 
-/* The height of the picture where a point is. */
+/* Returns the height of the picture where a point is. */
 static double height_at(const KrsCamera *camera, const double forward[3], const double point[3])
 {
     double depth = 0;

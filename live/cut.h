@@ -19,7 +19,7 @@ typedef struct Cut {
     double size;                /* of the scene: its diagonal */
 } Cut;
 
-/* A plane through a point that faces a camera. */
+/* Cuts by a plane through a point that faces a camera. */
 void cut_face(Cut *cut, const KrsCamera *camera, const double point[3]);
 /* Moves the ball with the mouse, or where there is none the plane along its normal; in parts of the
    picture's height, to the right and upwards. */

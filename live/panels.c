@@ -60,7 +60,7 @@ static bool draw_numbers(const KrsParameter *parameter, double *value)
     return changed;
 }
 
-/* `in 0..2`: the whole numbers 0 and 1. */
+/* Tells whether a parameter is the whole numbers 0 and 1, as `in 0..2`. */
 static bool is_switch(const KrsParameter *parameter)
 {
     return parameter->whole && parameter->components == 1 && parameter->low[0] == 0 &&
@@ -161,7 +161,7 @@ static void draw_camera(Viewing *viewing)
         act_key(viewing, 'P', 0);
 }
 
-/* A whole number; 0 is written as what it stands for. */
+/* Draws a whole number; 0 is written as what it stands for. */
 static void draw_count(const char *label, uint32_t *count, uint32_t least, uint32_t most,
                        uint32_t stands_for)
 {
@@ -222,7 +222,7 @@ static GuiPlace place_of_controls(const Viewing *viewing)
     return place;
 }
 
-/* False: there is no place. */
+/* Finds the place of a panel; false: there is none. */
 static bool place_found(const Viewing *viewing, GuiPlace *place)
 {
     const bool  beside = window_has_room_beside(viewing->window);
@@ -280,7 +280,7 @@ static void draw_controls(Viewing *viewing)
 
 /* ---- what is going on ---- */
 
-/* What is shown where there are no shaders of what is wanted. */
+/* Returns what is shown where there are no shaders of what is wanted. */
 static const char *words_for_shown(const Viewing *viewing, bool lanes)
 {
     return lanes                     ? "lanes of the processor draw"
@@ -352,7 +352,7 @@ static void draw_status(Viewing *viewing)
     viewing->heights.status = gui_panel_end();
 }
 
-/* Below the status: the costliest parts; a click opens the editor there. */
+/* Draws the costliest parts below the status; a click opens the editor there. */
 static void draw_costs(Viewing *viewing)
 {
     const Costs *costs     = &viewing->costs;
@@ -382,7 +382,7 @@ static void draw_costs(Viewing *viewing)
     viewing->heights.costs = gui_panel_end();
 }
 
-/* What must be known even where there is no other panel. */
+/* Draws what must be known even where there is no other panel. */
 static void draw_notice(Viewing *viewing)
 {
     gui_panel("notice", (GuiPlace){.corner = GUI_TOP_LEFT}, true);
@@ -390,7 +390,7 @@ static void draw_notice(Viewing *viewing)
     gui_panel_end();
 }
 
-/* What is under the mouse. */
+/* Draws what is under the mouse. */
 static void draw_found(Viewing *viewing)
 {
     char         line[400], place[300];
@@ -442,7 +442,7 @@ static void draw_diagnostics(Viewing *viewing)
     viewing->heights.diagnostics = gui_panel_end();
 }
 
-/* Two columns, so that all of it is seen in a small window. */
+/* Draws help in two columns, so that all of it is seen in a small window. */
 static void draw_help(Viewing *viewing)
 {
     gui_panel("help", (GuiPlace){.corner = GUI_CENTER}, false);

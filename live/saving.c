@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-/* The first name of a kind that is free, without its ending. */
+/* Chooses the first name of a kind that is free, without its ending. */
 static void choose_name(const char *kind, const char *ending, char name[200])
 {
     char path[260];
@@ -34,7 +34,7 @@ void saving_keep_shot(Viewing *viewing)
         viewing_notice(viewing, "%s cannot be written", path);
 }
 
-/* What the panel says, from where the view's camera is. */
+/* Makes the order that the panel describes, from where the view's camera is. */
 static SaveOrder make_order(const Viewing *viewing)
 {
     SaveOrder order = {.view   = viewing->view,

@@ -6,7 +6,7 @@
 
 #include "live/viewing.h"
 
-/* The picture that is seen, as a PNG in the current folder. */
+/* Keeps the picture that is seen, as a PNG in the current folder. */
 void saving_keep_shot(Viewing *viewing);
 /* Begins to save in the background what the panel says; if it is being saved, gives that up. */
 void saving_start_or_stop(Viewing *viewing);

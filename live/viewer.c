@@ -23,7 +23,7 @@
 #define SETTLE_SECONDS 0.1
 /* A text that takes longer to compile is said to be slow. */
 #define SLOW_SECONDS 3.0
-/* How long a signal may go unnoticed. */
+/* The time that a signal may go unnoticed. */
 #define LONGEST_WAIT 1.0
 
 static void tell_reading(const Viewing *viewing, bool begins)
@@ -71,7 +71,7 @@ static void take_document(Viewing *viewing)
     version_release(version);
 }
 
-/* What was found of a text that has changed since is of no use. */
+/* Takes the costs, unless they are of a text that has changed since. */
 static void take_costs(Viewing *viewing)
 {
     const ProfilerState state = profiler_state(viewing->profiler);
@@ -149,7 +149,7 @@ static void draw(Viewing *viewing)
     window_end(viewing->window);
 }
 
-/* While nothing happens: makes ready what the first edit of a number will need. */
+/* Makes ready, while nothing happens, what the first edit of a number will need. */
 static void prepare_edits(Viewing *viewing)
 {
     if (viewing->painting.busy || viewing->painting.compiling ||
@@ -247,7 +247,8 @@ static void draw_help_lines(Viewing *viewing)
     terminal_show(viewing->terminal, NULL, 0, 0, lines, count);
 }
 
-/* Below the picture: what it is, and what goes on; the first mistake of the text comes first. */
+/* Draws the line below the picture: what it is, and what goes on; the first mistake of the text
+   comes first. */
 static void draw_terminal(Viewing *viewing)
 {
     const Shot         *shot     = &viewing->shot;

@@ -69,7 +69,7 @@ const char *viewing_place(const Viewing *viewing, uint32_t component, char place
     return place;
 }
 
-/* Entries come before their parts. */
+/* Returns the shape of a component, from entries that come before their parts. */
 const char *viewing_shape(const Viewing *viewing, uint32_t component)
 {
     const KrsScene *scene = version_scene(viewing->view.version);
@@ -229,7 +229,7 @@ void viewing_drop_costs(Viewing *viewing)
     viewing_show(viewing);
 }
 
-/* Values that were set stay; others become the new defaults. */
+/* Keeps values that were set; others become the new defaults. */
 static void keep_values(Viewing *viewing, const View *before)
 {
     const KrsScene *scene = version_scene(before->version);
@@ -252,7 +252,7 @@ static void take_settings(Viewing *viewing)
     viewing->presets = presets_read(options->path, options->scene.root);
 }
 
-/* What the first version decides about. */
+/* Sets what the first version decides about. */
 static void begin_view(Viewing *viewing)
 {
     const ViewerOptions *options = viewing->options;

@@ -84,9 +84,9 @@ typedef struct Viewing {
 /* Says for a moment what was done. */
 void viewing_notice(Viewing *viewing, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/* There is something new to show; for any thread. */
+/* Says that there is something new to show; for any thread. */
 void viewing_wake(Viewing *viewing);
-/* What is under the mouse; in the middle, if there is none over the picture. */
+/* Finds what is under the mouse; in the middle, if there is none over the picture. */
 Found viewing_find(Viewing *viewing);
 /* Finds where the text has the component of this number, from 1; NULL: nowhere.  "a.krs:3" */
 const char *viewing_place(const Viewing *viewing, uint32_t component, char place[300]);
@@ -95,27 +95,28 @@ const char *viewing_place(const Viewing *viewing, uint32_t component, char place
 const char *viewing_shape(const Viewing *viewing, uint32_t component);
 /* Opens $KRS_EDITOR at a place. */
 void viewing_open_editor(Viewing *viewing, const char *place);
-/* Seconds of a clock that only goes forward. */
+/* Returns the seconds of a clock that only goes forward. */
 double viewing_now(void);
-/* What is to be seen has changed. */
+/* Says that what is to be seen has changed. */
 void viewing_show(Viewing *viewing);
 void viewing_set_time(Viewing *viewing, double time);
-/* The state, set to the values of the view as far as the scene permits them. */
+/* Returns the state, set to the values of the view as far as the scene permits them. */
 KrsState *viewing_state(Viewing *viewing);
 /* Takes the camera to that of the scene. */
 void viewing_take_camera(Viewing *viewing, size_t camera);
 /* Takes a new version of the document. */
 void viewing_adopt(Viewing *viewing, Version *version);
-/* What is cut away has changed. */
+/* Says that what is cut away has changed. */
 void viewing_set_cut(Viewing *viewing);
-/* Values by a preset, a new preset of the values, or one preset less. */
+/* These take the values of a preset, add a preset of the values, or remove one. */
 void viewing_take_preset(Viewing *viewing, const Preset *preset);
 void viewing_make_preset(Viewing *viewing, const char *name);
 void viewing_drop_preset(Viewing *viewing, size_t number);
-/* Colours the picture by what parts cost, until the view changes; no longer tells what they cost. */
+/* Colours the picture by what parts cost, until the view changes; the other no longer tells what
+   they cost. */
 void viewing_show_costs(Viewing *viewing);
 void viewing_drop_costs(Viewing *viewing);
-/* All parameters to the scene's defaults. */
+/* Sets all parameters to the scene's defaults. */
 void viewing_reset_values(Viewing *viewing);
 
 #endif

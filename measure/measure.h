@@ -46,7 +46,7 @@ typedef struct Measurer {
 /* Tells whether to go on; the first thread reports progress, and all stop if that says so. */
 bool measurer_goes_on(Measurer *m, size_t part, double fraction);
 
-/* Set their members of the measures. */
+/* Each of these sets its members of the measures. */
 void measure_volume(Measurer *m);
 void measure_samples(Measurer *m);
 void measure_lying(Measurer *m);

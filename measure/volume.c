@@ -286,8 +286,9 @@ static void note_volume(Measurer *m, const Round *round, const Sum *sum)
                                  : 0.5 * m->longest * sqrt(3);
 }
 
-/* Errors of cells are about the fourth power of their sides, and their sum about the square: so the
-   sum is about the root of the error of a cell, and the number of cells its inverse. */
+/* Measures the volume.  Errors of cells are about the fourth power of their sides, and their sum
+   about the square: so the sum is about the root of the error of a cell, and the number of cells
+   its inverse. */
 void measure_volume(Measurer *m)
 {
     Round *round = arena_new(&m->arena, Round);

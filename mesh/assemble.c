@@ -12,7 +12,7 @@
 
 /* Items that a search for how far one reaches may visit. */
 enum { MAX_VISITS = 1 << 20 };
-/* What sticks out of a mirror by so much of the size is rounding. */
+/* The part of the size by which rounding lets a part stick out of a mirror. */
 static const double ROUNDING_OF_MIRRORS = 1e-9;
 
 typedef struct Assembler {

@@ -20,8 +20,8 @@
 #include "mesh/common/numbering.h"
 
 enum { MAX_ROUNDS = 64, PROBES = 64, HALVINGS = 45 };
-/* In errors: the spacing of samples, their margin to edges, where the mesh may belong to the
-   neighbour, and how near to a vertex no edge is split. */
+/* Lengths in errors: the spacing of samples, their margin to edges, where the mesh may belong to
+   the neighbour, and how near to a vertex no edge is split. */
 static const double SPACING = 2, MARGIN = 1.5, NEAR_VERTEX = 0.25;
 /* The least spacing, as a part of the size of the mesh. */
 static const double MIN_SPACING = 1.0 / 500;
@@ -29,7 +29,7 @@ static const double MIN_SPACING = 1.0 / 500;
    split is searched. */
 static const double MAX_MARGIN = 1.0 / 3, AT_EDGE = 1e-4;
 
-/* Where to split the edges of a triangle, from corner k to the next; 0: nowhere. */
+/* The places at which the edges of a triangle are split, from corner k to the next; 0: nowhere. */
 typedef struct SplitPoints {
     double at[3];
 } SplitPoints;

@@ -23,7 +23,7 @@ static bool are_equal(const KrsLocation *a, const KrsLocation *b)
     return a->start == b->start && a->end == b->end && strcmp(a->source, b->source) == 0;
 }
 
-/* The index of the part of this place, or NO_PART. */
+/* Returns the index of the part of this place, or NO_PART. */
 static size_t find_part(const Parts *parts, const KrsLocation *location)
 {
     for (size_t i = 0; i < parts->count; i++)
@@ -37,7 +37,7 @@ static bool entry_of(const Walk *walk, size_t index, KrsBound *bound)
     return krs_bound(walk->scene, walk->component, index, bound) == KRS_OK;
 }
 
-/* The entry behind all that are in this one. */
+/* Returns the entry behind all that are in this one. */
 static size_t end_of(const Walk *walk, size_t index)
 {
     KrsBound bound, next;
@@ -58,8 +58,8 @@ static bool has_one(const Walk *walk, size_t index)
            end_of(walk, index + 1) == end_of(walk, index);
 }
 
-/* What moves or paints something is the same part: its place is the outermost of the author's, its name that of the
-   author, or else the innermost. */
+/* Returns the part of a shape.  What moves or paints something is the same part: its place is the
+   outermost of the author's, its name that of the author, or else the innermost. */
 static Part part_of(const Walk *walk, size_t index, size_t *innermost)
 {
     Part     part = {.count = 1};

@@ -25,10 +25,11 @@ typedef struct Parts {
     size_t count, capacity;
 } Parts;
 
-/* The text of a part in one line, cut off where it is longer than `length`; its name where the text cannot be read. */
+/* Returns the text of a part in one line, cut off where it is longer than `length`; its name where
+   the text cannot be read. */
 const char *part_words(const Part *part, size_t length, Arena *arena);
 
-/* All parts of a scene, each behind the one that it is in.  Strings are the scene's. */
+/* Lists all parts of a scene, each behind the one that it is in.  Strings are the scene's. */
 Parts parts_of(const KrsScene *scene, Arena *arena);
 
 #endif

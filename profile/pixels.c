@@ -46,7 +46,7 @@ void pixels_take(Pixels *pixels, const KrsPicture *whole, const KrsPicture *with
             pixels->part[i] = part;
 }
 
-/* The row from 1 of a part, or of the nearest around it that has one. */
+/* Returns the row from 1 of a part, or of the nearest around it that has one. */
 static uint32_t row_of(const Parts *parts, const Profile *profile, size_t part)
 {
     for (; part != NO_PART; part = parts->items[part].parent)
@@ -56,7 +56,7 @@ static uint32_t row_of(const Parts *parts, const Profile *profile, size_t part)
     return 0;
 }
 
-/* What no other part in a part takes is its heir's. */
+/* Returns the heir of a part: it gets the pixels that no other part in it has. */
 static size_t heir_of(const Parts *parts, const PartProfile *found, size_t part)
 {
     for (size_t i = part + 1; i < parts->count; i++)

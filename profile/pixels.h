@@ -17,7 +17,8 @@ Pixels pixels_new(size_t count, const Parts *parts, Arena *arena);
 /* Takes pixels for a part, whose depths are others in a picture without it.  Where several parts could have one, it is
    that of the innermost, then of the one with the fewest. */
 void pixels_take(Pixels *pixels, const KrsPicture *whole, const KrsPicture *without, size_t part);
-/* Of each pixel the row from 1, which may be that of a part around the one that is seen; 0: none. */
+/* Returns the row of each pixel from 1, which may be that of a part around the one that is seen; 0:
+   none. */
 uint32_t *pixels_rows(const Pixels *pixels, const Parts *parts, const PartProfile *found,
                       const Profile *profile, Arena *arena);
 

@@ -50,7 +50,7 @@ static double read_clock(clockid_t clock)
 
 static double elapsed(const Profiling *p) { return read_clock(CLOCK_MONOTONIC) - p->started; }
 
-/* False: someone has asked to stop. */
+/* Tells whether the work goes on; false: someone has asked to stop. */
 static bool goes_on(Profiling *p)
 {
     const ProfileOptions *options = p->options;
@@ -100,7 +100,7 @@ static KrsStatus open_subject(const Profiling *p, const KrsScene *scene, Subject
     return status;
 }
 
-/* With a time of processors, that is divided as the other is. */
+/* Returns the times of a frame; a time of processors is divided as the other is. */
 static FrameTime frame_time(const KrsPicture *picture, double processor_ms)
 {
     const KrsRenderStats *stats = &picture->stats;
@@ -137,10 +137,12 @@ static KrsStatus time_frame(const Profiling *p, Subject *subject, FrameTime *tim
 /* ---- times ---- */
 
 enum { MIN_TURNS = 2, MAX_TURNS = 15 };
-/* How long the turns of a part take about, and the shortest frame that is timed, in milliseconds. */
+/* The time that the rounds of a part take about, and the shortest frame that is timed, in
+   milliseconds. */
 static const double TURNS_MS = 1500, LEAST_FRAME_MS = 25;
 
-/* What else a machine does makes frames slower, never faster: so the least time counts, of rays and of light. */
+/* Keeps the least time, of rays and of light: what else a machine does makes frames slower, never
+   faster. */
 static void take_least(FrameTime *least, const FrameTime *time, bool first)
 {
     least->rays  = first ? time->rays : fmin(least->rays, time->rays);
@@ -186,7 +188,7 @@ static KrsStatus choose_size(Profiling *p)
     }
 }
 
-/* Light counts as if as many pixels had been hit. */
+/* Returns the share that a part saves, as if light had hit as many pixels. */
 static double share_saved(const FrameTime *whole, const FrameTime *without)
 {
     const double hits  = without->hits > 0 ? (double)whole->hits / (double)without->hits : 1;
@@ -288,7 +290,7 @@ static size_t find_heir(Profiling *p, size_t parent)
     return heir;
 }
 
-/* What heirs save is what parts around them do, less what their other parts do. */
+/* Computes what heirs save: what parts around them do, less what their other parts do. */
 static void settle_heirs(Profiling *p)
 {
     for (size_t i = 0; i < p->parts.count; i++) {

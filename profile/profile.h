@@ -13,7 +13,7 @@
 
 #include "profile/types.h"
 
-/* How a scene is compiled, and what it is rendered with. */
+/* The options by which a scene is compiled and rendered. */
 typedef struct ProfileOptions {
     KrsRenderer     *renderer;
     KrsPurpose       purpose;

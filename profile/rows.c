@@ -43,8 +43,8 @@ void part_cost_subtract(PartCost *cost, const PartCost *other)
 
 static void list_part(Listing *l, size_t index, double share);
 
-/* The rows of the parts in one, which has this share of the frame and takes these milliseconds.  Leaves what is not
-   theirs. */
+/* Lists the rows of the parts in one, which has this share of the frame and takes these
+   milliseconds.  Leaves what is not theirs. */
 static void list_operands(Listing *l, size_t parent, ProfileRow *whole)
 {
     double sum = 0;
@@ -61,7 +61,7 @@ static void list_operands(Listing *l, size_t parent, ProfileRow *whole)
     whole->ms    = fmax(whole->ms - sum, 0);
 }
 
-/* What is left of a part and too little for a row is among the others. */
+/* Lists a part; what is left of it and too little for a row is among the others. */
 static void list_part(Listing *l, size_t index, double share)
 {
     const size_t before = l->rows.count;
@@ -86,7 +86,7 @@ static bool is_in_shared(const Parts *parts, size_t index)
     return index != NO_PART;
 }
 
-/* What an heir is cut from is seen as the heir. */
+/* Tells whether what an heir is cut from is seen as the heir. */
 static bool has_heir(const Listing *l, size_t index)
 {
     for (size_t i = index + 1; i < l->parts->count; i++)
@@ -95,8 +95,8 @@ static bool has_heir(const Listing *l, size_t index)
     return false;
 }
 
-/* The rows of parts that are in several others, and of parts in them: others have their time already, so these are as
-   they were measured. */
+/* Lists the rows of parts that are in several others, and of parts in them: others have their time
+   already, so these are as they were measured. */
 static void list_shared(Listing *l, const Profile *profile)
 {
     const size_t first = l->rows.count;

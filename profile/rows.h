@@ -6,8 +6,8 @@
 
 #include "profile/types.h"
 
-/* What is known of a part.  An heir is what others are cut from, or cut to: without it nothing is left of the part around
-   it, so that cannot tell what it costs.  It gets what the others leave. */
+/* The costs of a part.  An heir is what others are cut from, or cut to: without it nothing is left
+   of the part around it, so that cannot tell what it costs.  It gets what the others leave. */
 typedef struct PartProfile {
     bool     heir;
     bool     asked, compiled, timed; /* asked: it is shown, or in a part that was opened */

@@ -7,7 +7,7 @@
 #include "krs/vulkan.h"
 #include "profile/parts.h"
 
-/* What a point of the distance costs, and how long its text is. */
+/* The cost of a point of the distance, and the length of its text. */
 typedef struct PartCost {
     double flops, operations, glsl_bytes;
 } PartCost;

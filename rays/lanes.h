@@ -22,7 +22,7 @@ typedef struct RaySet {
     /* Takes the distances for rays of hits. */
     void (*take_blocked)(RayBlock *block, const BlockRule *rule, const float at[RAYS_OF_BLOCK],
                          const float distances[RAYS_OF_BLOCK]);
-    /* Of rays that march, and of those beside: adds origins, directions and their number, */
+    /* Adds origins and directions of rays that march, and of those beside, and their number, */
     void (*sum)(const RayBlock *block, float sums[RAY_SUMS][RAYS_OF_BLOCK]);
     /* and finds the greatest squares of how far these are from others, and the widest pixels. */
     void (*spread)(const RayBlock *block, const float origin[3], const float direction[3],
@@ -32,7 +32,7 @@ typedef struct RaySet {
 } RaySet;
 
 extern const RaySet ray_set_plain, ray_set_avx2, ray_set_avx512;
-/* The set of the instruction set that lane tapes are run by. */
+/* Returns the set of the instruction set that lane tapes are run by. */
 const RaySet *ray_set_of_lanes(void);
 
 #endif

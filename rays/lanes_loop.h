@@ -73,7 +73,7 @@ static void sum(const RayBlock *block, float sums[RAY_SUMS][RAYS_OF_BLOCK])
     }
 }
 
-/* The greatest numbers of rows, of rays that are there. */
+/* Takes the greatest numbers of rows, of rays that are there. */
 static inline void take_greatest(const RayBlock *block, const float *row, float *most)
 {
     EACH_RAY

@@ -44,7 +44,7 @@ static bool is_there(const RayBlock *block, int i)
     return block->state[i] == RAY_MARCHES || block->state[i] == RAY_IS_BESIDE;
 }
 
-/* The mean of the rays that march, and of those beside. */
+/* Finds the mean of the rays that march, and of those beside. */
 static void find_middle(const March *m, Bundle *bundle)
 {
     float  sums[RAY_SUMS][RAYS_OF_BLOCK] = {{0}};
@@ -82,7 +82,7 @@ static void measure_bundle(const March *m, Bundle *bundle)
     bundle->spread     = greatest(most[3]);
 }
 
-/* The ball of its points at t from first to last. */
+/* Returns the ball of its points at t from first to last. */
 static float ball_of(const Bundle *bundle, float first, float last, float middle[3])
 {
     const float half = 0.5f * (last - first), at = first + half,
@@ -133,7 +133,7 @@ static void place_blocks(March *m, Marching *all, float last, float points[3][CE
     all->count = count;
 }
 
-/* In a cell whose distance changes less fast more is clear, but that does not hold behind it. */
+/* Stretches clearances in a cell whose distance changes less fast; that does not hold behind it. */
 static void stretch_clearances(const Marching *all, float by)
 {
     for (size_t b = 0; b < all->count && by != 1; b++)
@@ -199,7 +199,7 @@ typedef struct Cells {
     int           count;
 } Cells;
 
-/* How far from a hit in the ball distances are asked for. */
+/* Returns how far from a hit in the ball distances are asked for. */
 static float taps_of(const March *m, const Bundle *bundle, float last, const float middle[3],
                      float radius)
 {
@@ -320,7 +320,7 @@ static void begin(March *m, size_t count, float *first, float *last)
     }
 }
 
-/* How far from their origin the rays of a tile are free, but no less than `least`. */
+/* Returns how far from their origin the rays of a tile are free, but no less than `least`. */
 static float free_from(const March *m, const CellTape *tape, float least)
 {
     const Bundle *all = &m->bundles[0][0];

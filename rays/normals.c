@@ -60,7 +60,7 @@ typedef struct Hit {
     float  t, middle, reach, bend_wide, at_hit;
 } Hit;
 
-/* How wide a pixel counts that is so wide at t. */
+/* Returns how wide a pixel counts that is so wide at t. */
 static float near_width(const RayRule *rule, float width, float t)
 {
     return fmaxf(rule->from_surfaces ? width : fminf(width, MAX_WIDTH * t), 1e-30f);
@@ -94,7 +94,7 @@ static float find_bend(const Hit *hit)
     return length(minus(hit->level, middle)) / length(hit->sum);
 }
 
-/* Two directions at right angles to a third: find_frame of frame.glsl gives the first. */
+/* Returns two directions at right angles to a third: find_frame of frame.glsl gives the first. */
 static Vector beside(Vector axis)
 {
     const float side = axis.z < 0 ? -1.0f : 1.0f, a = -1 / (side + axis.z), b = axis.x * axis.y * a;
@@ -248,7 +248,7 @@ static void store(const Hit *hit, RayBlock *block, int i)
     block->evenness[i]  = find_evenness(hit);
 }
 
-/* Up to as many hits as a block has rays. */
+/* Finds the normals of up to as many hits as a block has rays. */
 static uint64_t find_normals(const RayCell *cell, const RayRule *rule, const RayHit *found,
                              int count)
 {

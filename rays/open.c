@@ -8,7 +8,8 @@
 #include "rays/ray_field.h"
 #include "rays/waves.h"
 
-/* The box that has cubes: around the scene or, where that is endless, around what is not, with room beside it. */
+/* Finds the box that has cubes: around the scene or, where that is endless, around what is not,
+   with room beside it. */
 static void bound_space(const RayField *field, float low[3], float high[3])
 {
     const Box box = state_outer_box(field->state, state_find_boxes(field->state));

@@ -47,7 +47,8 @@ NodeValue *ray_copy_values(const KrsState *state, Arena *arena)
     return values;
 }
 
-/* How large coordinates count as in what has no end: pixels are much wider than rounding, farther away. */
+/* The coordinates that count of what has no end: pixels are much wider than rounding, farther
+   away. */
 static const double ENDLESS = 1e4;
 
 float ray_margin(const KrsProgram *program)
@@ -74,7 +75,7 @@ static void finish_tape(RayField *field, RayTape *tape, const NodeValue *values,
             &field->arena);
 }
 
-/* The least distance of the components that are planes, or of all others, cut by zones. */
+/* Makes the least distance of the components that are planes, or of all others, cut by zones. */
 void ray_field_make_distance(RayField *field, bool planes, RayTape *tape, uint32_t depth)
 {
     const KrsScene *scene    = field->state->scene;
@@ -85,7 +86,7 @@ void ray_field_make_distance(RayField *field, bool planes, RayTape *tape, uint32
     for (size_t i = 0; i < scene->component_count; i++)
         if ((is_plane && is_plane[i]) == planes)
             roots[count++] = distance_root(&scene->roots, i);
-    /* Where there are planes alone nothing is marched, but a tape has a root. */
+    /* A tape needs a root also if there are planes alone and nothing is marched. */
     if (count == 0)
         roots[count++] = distance_root(&scene->roots, 0);
     if (zone != NODE_NONE)
@@ -95,7 +96,7 @@ void ray_field_make_distance(RayField *field, bool planes, RayTape *tape, uint32
     finish_tape(field, tape, field->state->values, depth);
 }
 
-/* How far it is to the nearest plane along a ray. */
+/* Makes the tape of the length to the nearest plane along a ray. */
 void ray_field_make_plane_t(RayField *field, RayTape *tape)
 {
     const KrsScene *scene  = field->state->scene;

@@ -37,13 +37,14 @@ struct RayField {
 
 /* Tells whether numbers of copies may be above 2^24, up to which single precision knows them. */
 bool ray_has_large_numbers(const Tape *tape);
-/* Values of the frame for who changes them: tapes that read tables do. */
+/* Copies values of the frame for those who change them: tapes that read tables do. */
 NodeValue *ray_copy_values(const KrsState *state, Arena *arena);
-/* What rounding may make of coordinates of what a scene shows, planes left out. */
+/* Returns what rounding may make of coordinates of what a scene shows, planes left out. */
 float ray_margin(const KrsProgram *program);
-/* The least distance of the components that are planes, or of all others, for cells down to this depth. */
+/* Makes the least distance of the components that are planes, or of all others, for cells down to
+   this depth. */
 void ray_field_make_distance(RayField *field, bool planes, RayTape *tape, uint32_t depth);
-/* How far it is to the nearest plane along a ray. */
+/* Makes the tape of the length to the nearest plane along a ray. */
 void ray_field_make_plane_t(RayField *field, RayTape *tape);
 
 #endif

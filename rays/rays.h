@@ -36,7 +36,7 @@ typedef struct RayBlock {
        distance, infinite: nowhere. */
     float start[RAYS_OF_BLOCK], end[RAYS_OF_BLOCK], plane[RAYS_OF_BLOCK];
     float width[RAYS_OF_BLOCK], spread[RAYS_OF_BLOCK]; /* of a pixel: width + spread t */
-    /* What is found. */
+    /* The results. */
     uint32_t state[RAYS_OF_BLOCK],
         steps[RAYS_OF_BLOCK]; /* before: RAY_MARCHES, _IS_ABSENT or _IS_BESIDE */
     float    t[RAYS_OF_BLOCK], side[RAYS_OF_BLOCK]; /* -1: inside of a solid, 1: outside of all */
@@ -72,13 +72,13 @@ typedef struct BlockRule {
 /* Distances of a state of a scene. */
 typedef struct RayField RayField;
 
-/* NULL: memory has run out.  `planes`: those that are components are left out of the distance, and met at
-   once. */
+/* Makes a field; `planes`: those that are components are left out of the distance, and met at
+   once.  NULL: memory has run out. */
 RayField *ray_field_new(KrsState *state, bool planes);
 void      ray_field_free(RayField *field);
 /* Begins another picture of the same values: forgets parts of space where there is no room for others. */
 void ray_field_begin(RayField *field);
-/* Why rays of a scene cannot be marched, in words of its author; NULL: they can. */
+/* Returns why rays of a scene cannot be marched, in words of its author; NULL: they can. */
 const char *ray_field_refuses(const KrsScene *scene);
 
 /* Finds where rays meet planes, up to `farthest`. */
@@ -87,7 +87,8 @@ void ray_field_meet_planes(RayField *field, size_t part, float farthest, RayBloc
 uint64_t ray_field_march(RayField *field, size_t part, RayBlock *blocks, size_t count,
                          const RayRule *rule);
 
-/* The same for rays of hits, of which `side` is given: RAY_HITS is blocked, RAY_MISSES is not. */
+/* Returns the same for rays of hits, of which `side` is given: RAY_HITS is blocked, RAY_MISSES is
+   not. */
 uint64_t ray_field_block(RayField *field, size_t part, RayBlock *blocks, size_t count,
                          const BlockRule *rule);
 

@@ -150,7 +150,7 @@ static bool keep(Space *space, CellTape tape, SpaceCube *cube)
     return true;
 }
 
-/* The radius of the ball in which the tape of a cube of this side is right. */
+/* Returns the radius of the ball in which the tape of a cube of this side is right. */
 static float ball_of_cube(const Space *space, float side)
 {
     return space->stretch * 0.5f * sqrtf(3) * side;
@@ -178,7 +178,7 @@ static void make(Space *space, CellWork *work, const SpaceCube *around, const fl
     atomic_store_explicit(&cube->made, true, memory_order_release);
 }
 
-/* The first child of a cube; 0: it is a leaf. */
+/* Returns the first child of a cube; 0: it is a leaf. */
 static uint32_t first_child_of(Space *space, uint32_t number)
 {
     SpaceCube *cube  = &space->cubes[number];
@@ -199,7 +199,8 @@ static uint32_t first_child_of(Space *space, uint32_t number)
     return first;
 }
 
-/* The child with this corner, which the first thread that asks for it makes; 0: the cube is a leaf. */
+/* Returns the child with this corner, which the first thread that asks for it makes; 0: the cube is
+   a leaf. */
 static uint32_t child_of(Space *space, CellWork *work, uint32_t number, uint32_t child,
                          const float corner[3], float side)
 {
@@ -217,7 +218,7 @@ static uint32_t child_of(Space *space, CellWork *work, uint32_t number, uint32_t
 
 /* ---- who asks ---- */
 
-/* The child in whose octant a point is; the corner becomes that of the child. */
+/* Returns the child in whose octant a point is; the corner becomes that of the child. */
 static uint32_t enter_child(const float point[3], float corner[3], float half)
 {
     uint32_t child = 0;
@@ -229,7 +230,7 @@ static uint32_t enter_child(const float point[3], float corner[3], float half)
     return child;
 }
 
-/* The cube that has a cell of the deepest level. */
+/* Returns the cube that has a cell of the deepest level. */
 static uint32_t find_leaf(Space *space, CellWork *work, const uint32_t cell[3])
 {
     float    corner[3] = {space->low[0], space->low[1], space->low[2]}, half = 0.5f * space->side;

@@ -39,22 +39,22 @@ typedef struct Space {
     pthread_mutex_t room, gates[SPACE_GATES];
 } Space;
 
-/* How an octree is made. */
+/* The rules by which an octree is made. */
 typedef struct SpaceRule {
     float    stretch, margin;
     uint32_t deepest; /* level of cubes */
     size_t   short_tape, most_steps;
 } SpaceRule;
 
-/* Around what lies in the box. */
+/* Makes the space around what lies in the box. */
 void space_new(Space *space, const CellTape *tape, const float low[3], const float high[3],
                const SpaceRule *rule, Arena *arena);
 void space_free(Space *space);
 /* Makes room where there was none for a cube: those before are made again where rays go.  No other thread asks. */
 void space_clear_full(Space *space);
-/* The cube whose tape is right at a point; the rows of depth 0 are written. */
+/* Returns the cube whose tape is right at a point; the rows of depth 0 are written. */
 uint32_t space_find(Space *space, CellWork *work, const float point[3]);
-/* The smallest cube whose tape is right in a ball. */
+/* Returns the smallest cube whose tape is right in a ball. */
 uint32_t space_find_ball(Space *space, CellWork *work, const float middle[3], float radius);
 
 #endif

@@ -51,7 +51,7 @@ bool surface_field_suits(const KrsScene *scene)
 
 /* ---- tapes ---- */
 
-/* The roots of a component, in the order of the numbers. */
+/* Lists the roots of a component, in the order of the numbers. */
 static void list_roots(const Node *of, bool layers, Node **next)
 {
     *(*next)++ = of[ROOT_DISTANCE];
@@ -138,7 +138,7 @@ void surface_field_free(SurfaceField *field)
 
 /* ---- points ---- */
 
-/* What is asked: of each candidate its distance and numbers [first, end), to be written there. */
+/* The question of each candidate: its distance and numbers [first, end), to be written there. */
 typedef struct Question {
     const SurfaceField *field;
     CellWork           *work;
@@ -158,7 +158,7 @@ static void place(CellPoints *to, int lane, const SurfacePoint *from)
     to->footprint[lane] = from->footprint;
 }
 
-/* What the nearest candidate of a lane is. */
+/* Returns the nearest candidate of a lane. */
 static size_t find_nearest(const Question *q, const Rows *rows, const float *values, int lane)
 {
     float  least   = HUGE_VALF;
@@ -185,7 +185,7 @@ static void put(float *to, size_t number, float value)
     }
 }
 
-/* Zones leave the normal as it is. */
+/* Cuts a surface by zones, which leave the normal as it is. */
 static void cut(const Question *q, const Rows *rows, const float *values, int lane,
                 const SurfacePoint *point, float *found)
 {
@@ -196,7 +196,7 @@ static void cut(const Question *q, const Rows *rows, const float *values, int la
     memcpy(found + NORMAL, point->normal, sizeof point->normal);
 }
 
-/* Up to CELL_LANES points. */
+/* Finds the surfaces of up to CELL_LANES points. */
 static void find_points(const Question *q, const CellTape *tape, uint32_t level, const Rows *rows,
                         size_t first, size_t count)
 {
@@ -243,7 +243,7 @@ static void measure(const SurfacePoint *points, size_t count, CellPoints *middle
     *radius = 1.0001f * sqrtf(square);
 }
 
-/* The least upper bound of distances of the candidates in a ball. */
+/* Returns the least upper bound of distances of the candidates in a ball. */
 static float least_bound(const Question *q, const CellTape *tape, const Rows *rows,
                          const float *values, float radius)
 {
@@ -257,7 +257,7 @@ static float least_bound(const Question *q, const CellTape *tape, const Rows *ro
     return least;
 }
 
-/* Those that may be the nearest in the ball; there is at least one. */
+/* Finds those that may be the nearest in the ball; there is at least one. */
 static void find_candidates(const Question *q, const CellTape *tape, const Rows *rows,
                             const float *values, float radius, Rows *to)
 {

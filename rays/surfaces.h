@@ -35,7 +35,8 @@ typedef struct FoundSurface {
 #undef VEC3
 #undef UINT
 
-/* How many of them are found: of what all materials have, color to emission, or of layers, too. */
+/* The numbers that are found: those that all materials have, color to emission, or those of layers,
+   too. */
 enum {
     PLAIN_SURFACE_NUMBERS = offsetof(FoundSurface, specular) / sizeof(float),
     SURFACE_NUMBERS       = sizeof(FoundSurface) / sizeof(float)
@@ -44,7 +45,7 @@ enum {
 /* Surfaces of a state of a scene. */
 typedef struct SurfaceField SurfaceField;
 
-/* NULL: memory has run out.  The state stays as it is while the field is in use. */
+/* Makes a field; the state stays as it is while that is in use.  NULL: memory has run out. */
 SurfaceField *surface_field_new(KrsState *state, bool layers);
 void          surface_field_free(SurfaceField *field);
 /* Tells whether surfaces can be found: not where light goes through something or surfaces are open, where
@@ -56,7 +57,7 @@ bool surface_field_suits(const KrsScene *scene);
 enum { SURFACES_AT_ONCE = 16384 };
 void surface_field_find(const SurfaceField *field, size_t part, const SurfacePoint *points,
                         size_t count);
-/* Only their colors. */
+/* Finds the colors of points alone. */
 void surface_field_find_colors(const SurfaceField *field, size_t part, const SurfacePoint *points,
                                size_t count);
 

@@ -11,7 +11,7 @@
 
 #include "rays/ray_field.h"
 
-/* Rays of hits meet planes at once, and else only what is in the box. */
+/* Clips a blocked ray.  Rays of hits meet planes at once, and else only what is in the box. */
 static void clip_blocked(const RayField *field, RayBlock *block, int i)
 {
     float first = 0, last = fminf(block->end[i], block->plane[i]);
@@ -69,7 +69,7 @@ static void begin_blocked(const Wave *wave, RayBlock *block, float ends[RAYS_OF_
         block_cones(wave, block);
 }
 
-/* What nothing else blocks is blocked by a plane before its end. */
+/* Ends rays that nothing else blocks at the plane that blocks them. */
 static void end_blocked(const Wave *wave, RayBlock *block, const bool marched[RAYS_OF_BLOCK],
                         const float ends[RAYS_OF_BLOCK])
 {
@@ -84,7 +84,7 @@ static void end_blocked(const Wave *wave, RayBlock *block, const bool marched[RA
     }
 }
 
-/* How far a point is from the box around all that is marched, at least. */
+/* Returns how far a point is from the box around all that is marched, at least. */
 static float distance_to_box(const RayField *field, const float point[3])
 {
     float square = 0;

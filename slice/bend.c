@@ -18,8 +18,8 @@ static const double SMOOTH_COSINE = 0.996;
 /* Least distance of a corner to the ends of a stretch, in its lengths: a nearer one is the corner
    at that end. */
 static const double NEAREST = 0.02;
-/* How far beside a chord the distance is evaluated: in its lengths, and in errors, where a sharp
-   corner may be. */
+/* The lengths beside a chord at which the distance is evaluated: in its lengths, and in errors,
+   where a sharp corner may be. */
 static const double BESIDE_LENGTHS = 0.5, BESIDE_ERRORS = 4;
 
 typedef struct Stretch {
@@ -151,7 +151,7 @@ static bool find_middle(const Section *s, const Stretch *stretch, double at[2])
     return false;
 }
 
-/* At both ends the normal of the outline, and how steep the distance is. */
+/* The normal of the outline at both ends, and how steep the distance is. */
 typedef struct Ends {
     double normals[2][2], steep[2];
 } Ends;

@@ -33,7 +33,7 @@ typedef struct Corner {
     double   distance;
 } Corner;
 
-/* Where the outline crosses an edge from a corner on along an axis. */
+/* The crossing of the outline with an edge from a corner on along an axis. */
 typedef struct Crossing {
     uint32_t at[2], side, next;
     uint8_t  axis;

@@ -11,8 +11,8 @@ enum {
     ENTER_EVERY = 3,               /* halvings until the field is pruned again */
     ASK_EVERY   = 256
 };
-/* How often cells are halved again where something is thinner than the smallest; what is still
-   thinner is counted. */
+/* The number of times that cells are halved again where something is thinner than the smallest;
+   what is still thinner is counted. */
 enum { THIN_HALVINGS = 4 };
 /* Derivatives below this count as 0, so that a face that was rotated by a right angle is
    straight. */

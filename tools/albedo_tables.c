@@ -14,7 +14,7 @@ static double square(double x) { return x * x; }
 
 static double fifth_power(double x) { return square(square(x)) * x; }
 
-/* The cosine of a column: columns are square roots of cosines, in equal steps. */
+/* Returns the cosine of a column: columns are square roots of cosines, in equal steps. */
 static double cosine_of(uint32_t column, uint32_t columns, double least)
 {
     return fmin(fmax(square(column / (columns - 1.0)), least), 0.999999);
@@ -32,7 +32,7 @@ typedef struct Eye {
     double weight[POINTS];                   /* by heights of the light */
 } Eye;
 
-/* Half of the azimuths are enough: the others are the same. */
+/* Returns the cosine of an azimuth.  Half of the azimuths are enough: the others are the same. */
 static double cosine_of_azimuth(int i) { return cos(M_PI * (i + 0.5) / POINTS); }
 
 static void look_from(double cosine, Eye *eye)
@@ -50,7 +50,7 @@ static void look_from(double cosine, Eye *eye)
     }
 }
 
-/* Smith's function: what is hidden of a direction, for one that is seen. */
+/* Returns Smith's function: what is hidden of a direction, for one that is seen. */
 static double hidden(double cosine, double alpha)
 {
     const double squared = square(cosine), tangent = fmax(1 - squared, 0) / fmax(squared, 1e-20);
@@ -98,7 +98,8 @@ static double find_sheen(const Eye *eye, double alpha)
     return (2 + 1 / alpha) * total / square(POINTS);
 }
 
-/* Rows are roughnesses, from 0 to 1; those of sheen begin at MIN_SHEEN_ROUGHNESS (bsdf.glsl). */
+/* Prints albedos.  Rows are roughnesses, from 0 to 1; those of sheen begin at MIN_SHEEN_ROUGHNESS
+   (bsdf.glsl). */
 static void print_albedos(void)
 {
     static Eye    eye;
@@ -143,7 +144,7 @@ static double hidden_of(const double v[3], const double alpha[2])
     return 0.5 * (sqrt(1 + slope / fmax(square(v[2]), 1e-20)) - 1);
 }
 
-/* As find_mirrored, with a roughness along each tangent. */
+/* Computes as find_mirrored does, with a roughness along each tangent. */
 static void find_wide(const double eye[3], const double alpha[2], double shares[2])
 {
     double tall[3];

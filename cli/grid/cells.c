@@ -59,7 +59,8 @@ static int compare_bricks(const void *a, const void *b)
     return 0;
 }
 
-/* Those of a brick and of the seven behind it along x, y and z, by bits 1, 2 and 4; NULL where there is none. */
+/* Finds the brick and the seven behind it along x, y and z, by bits 1, 2 and 4; NULL where there is
+   none. */
 static void find_neighbours(const GridCells *cells, size_t number, const NearBrick *neighbours[8])
 {
     for (size_t i = 0; i < 8; i++) {
@@ -70,7 +71,8 @@ static void find_neighbours(const GridCells *cells, size_t number, const NearBri
     }
 }
 
-/* The points at the corners of the cell behind sample `i`, as VTK orders them; false: some are in no brick. */
+/* Finds the points at the corners of the cell behind sample `i`, as VTK orders them; false: some
+   are in no brick. */
 static bool find_corners(const GridCells *cells, const NearBrick *const neighbours[8], size_t i,
                          int64_t corners[CORNERS])
 {

@@ -141,7 +141,8 @@ static void put_number(const GridRows *rows, GridNumber number, bool half, size_
         memcpy(to, &part, 4);
 }
 
-/* The part of a row of bricks that is in one layer, for one array: rows of samples that follow each other. */
+/* Writes the part of a row of bricks that is in one layer, for one array: rows of samples that
+   follow each other. */
 static bool write_layer(GridFile *file, const GridArray *array, const size_t at[3], size_t layer)
 {
     const GridRows *rows    = file->own;
@@ -210,7 +211,8 @@ static double place_of(const KrsGridShape *shape, int axis, double index)
 
 /* ---- NumPy ---- */
 
-/* Version 1.0: an array of numbers, or of records where there is more than the values. */
+/* Writes the head of NPY version 1.0: an array of numbers, or of records where there is more than
+   the values. */
 static bool begin_npy(GridFile *file)
 {
     const GridSheet *sheet = file->sheet;
@@ -320,7 +322,7 @@ static size_t put_key(unsigned char *to, const char *key, const char *value)
     return (4 + length + 3) / 4 * 4;
 }
 
-/* The box of the texture's coordinates from 0 to 1: half a cell around samples. */
+/* Writes the box of the texture's coordinates from 0 to 1: half a cell around samples. */
 static size_t put_keys(const GridSheet *sheet, unsigned char *to)
 {
     const KrsGridShape *shape = &sheet->shape;
@@ -337,7 +339,7 @@ static size_t put_keys(const GridSheet *sheet, unsigned char *to)
     return length + put_key(to + length, "krs.box", box);
 }
 
-/* The basic data format descriptor: channels of so many bytes, signed, floating, linear. */
+/* Writes the basic data format descriptor: channels of so many bytes, signed, floating, linear. */
 static size_t put_format(unsigned char *to, size_t channels, size_t bytes)
 {
     static const unsigned char channel_ids[] = {0, 1, 2, 15}; /* red, green, blue, alpha */
@@ -360,7 +362,7 @@ static size_t put_format(unsigned char *to, size_t channels, size_t bytes)
     return length;
 }
 
-/* A texture in three dimensions: the values as red, or the colour with the values as alpha. */
+/* Begins a texture in three dimensions: the values as red, or the colour with the values as alpha. */
 static bool begin_ktx2(GridFile *file)
 {
     static const char     mark[]      = "\xABKTX 20\xBB\r\n\x1A\n";

@@ -8,7 +8,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/supervise.h"
 
-/* What files have in common. */
+/* The properties that files have in common. */
 typedef struct GridSheet {
     KrsGridShape shape;
     bool         fog, color, material, half; /* half: numbers but those of materials have 16 bits */
@@ -40,12 +40,13 @@ typedef struct GridFormat {
 /* files.c: the format by the ending of a path, or that of standard output; NULL: there is none. */
 const GridFormat *grid_format(const char *path);
 #define GRID_ENDINGS ".vdb, .npy, .nii, .ktx2, .vti or .vtu"
-/* A number in 16 bits as IEEE 754 has it, rounded towards 0, but what is below 0 stays so; and what these bits are. */
+/* These return a number in 16 bits as IEEE 754 has it, rounded towards 0, but what is below 0 stays
+   so; and what these bits are. */
 uint16_t half_bits(float number);
 float    half_value(float number);
-/* "distance" or "density". */
+/* Returns "distance" or "density". */
 const char *grid_name(const GridSheet *sheet);
-/* Bytes of a sample in files that are made in memory. */
+/* Returns the bytes of a sample in files that are made in memory. */
 size_t grid_sample_bytes(const GridSheet *sheet);
 
 /* cells.c: VTK's cells, as XML. */

@@ -1,7 +1,7 @@
 // openvdb.cpp: the bridge to OpenVDB, which is loaded where a .vdb is asked for.
 #include "cli/grid/vdb.h"
 
-// What this module and the library both have of templates must be one: their static members are.
+// Static members of templates that this module and the library both have must be one object.
 #pragma GCC visibility push(default)
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
@@ -60,7 +60,7 @@ try {
     return nullptr;
 }
 
-// What is far is told by tiles: solid ones, since those outside are the background.
+// Far cells become tiles, which are solid, since those outside are the background.
 void add_far(const File &file, const openvdb::Coord &origin, float value)
 {
     openvdb::FloatTree &tree = file.values->tree();

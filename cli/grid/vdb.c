@@ -9,7 +9,7 @@
 #include "cli/grid/vdb.h"
 #include "cli/grid/gridding.h"
 
-/* A file in the folder of this program, or told from there. */
+/* Finds the path of a file in the folder of this program, or told from there. */
 static bool find_beside(const char *name, char path[PATH_MAX])
 {
     char    self[PATH_MAX];

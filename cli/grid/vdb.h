@@ -17,7 +17,8 @@ extern "C" {
 /* Takes bytes of the file at an offset; false: there has been a failure. */
 typedef bool VdbSink(void *user, const void *bytes, size_t count, uint64_t offset);
 
-/* What a file has: a level set `surface`, or a fog volume `density`; and with them Cd and `material`. */
+/* The contents of a file: a level set `surface`, or a fog volume `density`; and with them Cd and
+   `material`. */
 typedef struct VdbHow {
     KrsGridShape shape;
     bool         fog, color, material, half; /* half: numbers of the file have 16 bits, and fit */

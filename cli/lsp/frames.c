@@ -47,7 +47,8 @@ bool frames_read(Frames *f, int file)
     return true;
 }
 
-/* The length that a header gives, which ends at `end`; SIZE_MAX: none, or one that is too large. */
+/* Returns the length that a header gives, which ends at `end`; SIZE_MAX: none, or one that is too
+   large. */
 static size_t length_in(const char *header, const char *end)
 {
     static const char name[] = "Content-Length:";
@@ -68,7 +69,7 @@ static size_t length_in(const char *header, const char *end)
     return length <= MAX_MESSAGE ? length : SIZE_MAX;
 }
 
-/* Behind the empty line that ends a header, or NULL. */
+/* Returns the place behind the empty line that ends a header, or NULL. */
 static const char *end_of_header(const char *bytes, size_t length)
 {
     for (const char *at = bytes; (at = memchr(at, '\n', length - (size_t)(at - bytes))) != NULL;

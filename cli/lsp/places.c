@@ -46,7 +46,8 @@ char *path_of_uri(const char *uri)
     return path;
 }
 
-/* "file://" and a path, with what is no letter, digit or one of a few signs as hexadecimal digits; for free(). */
+/* Returns "file://" and a path, where all but letters, digits and a few signs are hexadecimal
+   digits; for free(). */
 static char *uri_of_path(const char *path)
 {
     static const char plain[] =
@@ -95,7 +96,7 @@ static bool write_file(const char *path, const EmbeddedFile *file)
     return there;
 }
 
-/* The path of a file of the library, which is written where it is not there; for free(). */
+/* Returns the path of a file of the library, which is written where it is not there; for free(). */
 static char *library_path(const Places *places, const char *name)
 {
     const EmbeddedFile *file = library_files;

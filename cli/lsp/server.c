@@ -29,7 +29,7 @@ enum {
     REQUEST_FAILED   = -32803
 };
 
-/* So long no message comes before a whole check, in milliseconds. */
+/* The time without an edit before a whole check begins, in milliseconds. */
 enum { QUIET = 150 };
 
 /* An open document: how the editor calls it, and what it has not been told. */
@@ -71,7 +71,7 @@ static void send(Server *server, const char *format, ...)
     send_text(server, text, length);
 }
 
-/* The identifier of a request as JSON, for free(). */
+/* Returns the identifier of a request as JSON, for free(). */
 static char *id_text(const json_t *id)
 {
     char *text = id ? json_dumps(id, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
@@ -134,7 +134,7 @@ static Opened *find_opened(const Server *server, const json_t *parameters)
 
 /* ---- documents ---- */
 
-/* What is told of all documents may change: each may use the one that changed. */
+/* Marks all documents for a check: each may use the one that changed. */
 static void doubt_all(Server *server)
 {
     check_stop(&server->check);
@@ -282,7 +282,7 @@ static void note(Server *server, const char *method, const json_t *parameters)
 
 enum { MAX_FIXES = 64 };
 
-/* What the diagnostics at a place propose.  Texts of `dumped` are for free(). */
+/* Finds the fixes that the diagnostics at a place propose.  Texts of `dumped` are for free(). */
 static size_t find_fixes(const json_t *parameters, ServiceFix *fixes, char **dumped)
 {
     const json_t *found = json_object_get(json_object_get(parameters, "context"), "diagnostics");
@@ -306,7 +306,7 @@ static size_t find_fixes(const json_t *parameters, ServiceFix *fixes, char **dum
     return count;
 }
 
-/* `position` is that of the question, unless it is about a range. */
+/* Returns the question; `position` is its own, unless it is about a range. */
 static ServiceQuestion question_of(const Opened *opened, const json_t *parameters,
                                    const json_t *position)
 {
@@ -324,7 +324,7 @@ static ServiceQuestion question_of(const Opened *opened, const json_t *parameter
     return about;
 }
 
-/* A question about several positions: each answer is an array, and so is what is sent. */
+/* Asks a question about several positions: each answer is an array, and so is what is sent. */
 static void ask_each(Server *server, const json_t *id, const char *method, const json_t *parameters,
                      const json_t *positions)
 {
@@ -438,7 +438,8 @@ static bool begin_check(Server *server)
     return check_start(&server->check, server->service, opened->path);
 }
 
-/* Where a check ended without an answer, what reading found is all that is known. */
+/* Publishes the result of a check.  If it ended without one, the diagnostics of reading are all
+   that is known. */
 static void end_check(Server *server)
 {
     const Opened *opened = server->checked;

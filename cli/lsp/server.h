@@ -12,7 +12,7 @@
 
 /* ---- frames.c ---- */
 
-/* What came from the editor, and has not been read. */
+/* The bytes that came from the editor, and have not been read. */
 typedef struct Frames {
     char  *bytes;
     size_t start, end, capacity;
@@ -21,7 +21,7 @@ typedef struct Frames {
 
 /* Reads what is there; false: it has ended, or there is no memory. */
 bool frames_read(Frames *frames, int file);
-/* The next message, which is in the frames until the next call; false: it is not complete. */
+/* Takes the next message, which is in the frames until the next call; false: it is not complete. */
 bool frames_next(Frames *frames, const char **message, size_t *length);
 /* Writes a message with its header; false: nobody reads. */
 bool frame_write(int file, const char *message, size_t length);
@@ -36,7 +36,7 @@ typedef struct Check {
     size_t length, capacity;
 } Check;
 
-/* False: no process can be started. */
+/* Returns false if no process can be started. */
 bool check_start(Check *check, Service *service, const char *path);
 /* Reads what it writes; true: it is done, and `found` is an array in JSON, or NULL where it ended without one. */
 bool check_read(Check *check);
@@ -44,9 +44,10 @@ void check_stop(Check *check);
 
 /* ---- places.c ---- */
 
-/* The path of a file, or the URI itself where that is of no file, for free(). */
+/* Returns the path of a file, or the URI itself where that is of no file, for free(). */
 char *path_of_uri(const char *uri);
-/* Where files of the library are put for editors, and what was last handed out. */
+/* The folder in which files of the library are put for editors, and the path that was last handed
+   out. */
 typedef struct Places {
     const char *folder; /* NULL: nowhere */
     char       *uri, *names;

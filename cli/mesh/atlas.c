@@ -176,7 +176,7 @@ static Rows rows_of(const double c[3][2])
     return (Rows){lrint(ceil(low - MARGIN - 0.5)), lrint(floor(high + MARGIN - 0.5))};
 }
 
-/* The pixels of a row that are not farther from a triangle than the margin, and some more. */
+/* Returns the pixels of a row that are not farther from a triangle than the margin, and some more. */
 static Rows pixels_of(const double c[3][2], long row)
 {
     double low = (double)row + 0.5 - MARGIN, high = (double)row + 0.5 + MARGIN;
@@ -202,7 +202,8 @@ static Rows pixels_of(const double c[3][2], long row)
 
 /* ---- charts ---- */
 
-/* How a chart is seen: right, down and towards the eye, from the first corner of its first triangle. */
+/* The directions from which a chart is seen: right, down and towards the eye, from the first corner
+   of its first triangle. */
 typedef struct View {
     double axes[3][3], origin[3];
     double scale; /* pixels of a length of 1 */
@@ -317,7 +318,7 @@ static bool widen(const Layout *l, View *view, const Seen *seen)
     return true;
 }
 
-/* What has no area fits everywhere. */
+/* Tells whether a triangle faces the view; one without an area fits everywhere. */
 static bool faces(const Layout *l, const View *view, uint32_t triangle)
 {
     const double *normal = l->normals[triangle];
@@ -340,7 +341,7 @@ static bool take_triangle(Layout *l, View *view, uint32_t triangle, uint32_t sta
     return true;
 }
 
-/* False: its first triangle is larger than the picture. */
+/* Grows a chart from a triangle; false: that is larger than the picture. */
 static bool grow_chart(Layout *l, uint32_t seed)
 {
     View     view;
@@ -479,7 +480,7 @@ static void place_charts(Layout *l)
     }
 }
 
-/* Each pixel that is near to a triangle has the nearest; `heights` are distances now. */
+/* Finds the nearest triangle for each pixel that is near to one; `heights` become distances. */
 static void find_owners(Layout *l, Atlas *atlas)
 {
     float *away = l->heights;

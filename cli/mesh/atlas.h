@@ -23,7 +23,8 @@ typedef struct Atlas {
 bool atlas_make(Arena *arena, const MeshParts *parts, const float *fineness, uint32_t side,
                 Atlas *atlas);
 
-/* The distance of a point from a triangle, and weights of its corners in the nearest point of it. */
+/* Returns the distance of a point from a triangle, and weights of its corners in the nearest point
+   of it. */
 double atlas_nearest(const double corners[3][2], const double point[2], double weights[3]);
 
 #endif

@@ -19,7 +19,8 @@
 enum { PROBES = 256 };
 /* Points nearer than this part of the mesh's error are on the surface. */
 static const double ON_SURFACE = 1e-3;
-/* How far a pixel beyond an edge is moved into the triangle: in pixels, and of the way to the middle. */
+/* The length by which a pixel beyond an edge is moved into the triangle: in pixels, and of the way
+   to the middle. */
 static const double INTO = 0.02, MAX_INTO = 1e-3;
 /* The same emission, relatively. */
 static const double SAME_EMISSION = 1e-3;
@@ -30,13 +31,13 @@ static const double MAX_BAKED_TWICE = 0.75;
 enum { MAX_EVEN = 16 };
 static const uint32_t NONE = UINT32_MAX;
 
-/* What is known of a pixel, as in pictures. */
+/* The properties of a pixel, as in pictures. */
 typedef struct Texel {
     unsigned char color[3], roughness, metallic;
     float         emission[3];
 } Texel;
 
-/* What several pixels have, at least and at most. */
+/* The least and the greatest properties of several pixels. */
 typedef struct Spread {
     size_t count, first; /* the first pixel */
     Texel  low, high;
@@ -259,7 +260,7 @@ static void find_spreads(Baking *b, Pieces *pieces, const uint32_t *of)
 
 /* ---- materials of the file ---- */
 
-/* A pixel of a piece, or the middle of a triangle that is smaller than all pixels. */
+/* Returns a pixel of a piece, or the middle of a triangle that is smaller than all pixels. */
 static KrsHit look_at_piece(const Baking *b, const Piece *piece)
 {
     double point[3];
@@ -272,7 +273,7 @@ static KrsHit look_at_piece(const Baking *b, const Piece *piece)
     return hit;
 }
 
-/* All but pictures is as the scene has it in a point. */
+/* Takes the material of a piece at a point, except for what pictures show. */
 static void take_look(const Baking *b, const Piece *piece, MeshMaterial *material)
 {
     KrsHit hit     = look_at_piece(b, piece);
@@ -296,7 +297,8 @@ static bool is_same_texel(const Texel *a, const Texel *b)
            a->metallic == b->metallic && memcmp(a->emission, b->emission, sizeof a->emission) == 0;
 }
 
-/* Pieces of one material that vary are one row; of the others, those that are the same, unless there are many. */
+/* Finds the row of a piece.  Pieces of one material that vary share a row; of the others equal ones
+   do, unless there are many. */
 static uint32_t find_row(Baking *b, const Piece *piece, bool mixed)
 {
     size_t even = 0;
@@ -356,7 +358,8 @@ static void make_materials(Baking *b)
 
 /* ---- all pixels ---- */
 
-/* Levels of detail are seen from twice as far each, and their pixels are twice as long. */
+/* Finds the length of pixels.  Each level of detail is seen from twice as far, so its pixels are
+   twice as long. */
 static void find_fineness(const MeshParts *parts, bool all, float *fineness)
 {
     for (size_t i = 0; i < parts->body_count; i++) {
@@ -397,7 +400,8 @@ static KrsStatus bake(Baking *b, bool all)
     return KRS_OK;
 }
 
-/* What is near to no triangle is as the nearest pixel that is, so that coarser pictures are good as well. */
+/* Fills pixels that are near to no triangle from their neighbours, so that coarser pictures are
+   good as well. */
 static void fill(Baking *b)
 {
     const size_t side = b->atlas.side, count = side * side;
@@ -422,7 +426,7 @@ static void fill(Baking *b)
 
 /* ---- pictures ---- */
 
-/* Emission in pictures is a part of the brightest. */
+/* Finds the brightest emission, of which pictures have fractions. */
 static void find_brightest(Baking *b)
 {
     for (size_t i = 0; i < b->rows.count; i++)
@@ -477,7 +481,7 @@ static KrsStatus write_pictures(Baking *b)
     return KRS_OK;
 }
 
-/* In a picture v goes upwards, from 0 to 1. */
+/* Keeps the places in the picture, in which v goes upwards, from 0 to 1. */
 static void keep_places(Baking *b)
 {
     size_t count          = parts_triangle_count(b->parts);

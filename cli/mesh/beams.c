@@ -14,7 +14,7 @@ KrsStatus check_beams(const Meshing *meshing)
     return KRS_OK;
 }
 
-/* Files have neither balls nor what has no radius. */
+/* Tells whether a file can have all beams: it has neither balls nor beams without radius. */
 static bool are_beams(const KrsBeam *beams, size_t count)
 {
     for (size_t i = 0; i < count; i++)
@@ -40,7 +40,7 @@ bool add_beams(const Meshing *meshing, size_t component, Bodies *bodies)
     return true;
 }
 
-/* Their color is that of the middle of the first one's side. */
+/* Takes the beams of a body, with the color in the middle of the first one's side. */
 void take_beams(const Meshing *meshing, const Body *body, MeshBody *to)
 {
     KrsHit hit;

@@ -22,8 +22,8 @@ typedef struct MeshLook {
 #include "krs/surface.def"
 } MeshLook;
 
-/* What pictures show: colors; the roughness in green and the metallic in blue; and the emission, of which `look` has the
-   brightest. */
+/* The pictures: colors; the roughness in green and the metallic in blue; and the emission, of which
+   `look` has the brightest. */
 enum { PICTURE_COLOR, PICTURE_GLOSS, PICTURE_GLOW, PICTURES };
 
 /* A PNG file; its length is 0 if there is none. */
@@ -66,7 +66,7 @@ typedef struct MeshTrack {
     size_t         count;
 } MeshTrack;
 
-/* What has a name: a part, or copies of several. */
+/* A thing with a name: a part, or copies of several. */
 typedef struct MeshBody {
     const char    *name;
     KrsAssembly   *assembly;   /* where copies are; NULL: it is its only part */
@@ -117,13 +117,13 @@ bool mesh_needs_frames(const MeshMaterial *material);
 /* Tells whether a picture shows something of it. */
 bool mesh_is_baked(const MeshMaterial *material);
 
-/* What glTF has as roughness, which is that across the tangent. */
+/* Returns the roughness of glTF, which is that across the tangent. */
 double glb_roughness(double roughness, double anisotropy);
 
 /* Takes the next bytes of the file; false: there has been a failure. */
 typedef bool MeshSink(void *user, const void *bytes, size_t count);
 
-/* False: the sink failed, or memory has run out. */
+/* Writes a GLB; false: the sink failed, or memory has run out. */
 bool mesh_bridge_glb(const MeshParts *parts, MeshSink *sink, void *user);
 bool mesh_bridge_3mf(const MeshParts *parts, MeshSink *sink, void *user);
 

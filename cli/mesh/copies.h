@@ -17,12 +17,13 @@ typedef struct MeshCopy {
 typedef bool VisitMeshCopy(void *user, const MeshCopy *copy);
 bool         mesh_body_visit(const MeshParts *parts, size_t body, VisitMeshCopy *visit, void *user);
 
-/* A vertex of a copy, by its number in the part. */
+/* Computes a vertex of a copy, by its number in the part. */
 void mesh_copy_vertex(const MeshParts *parts, const MeshCopy *copy, size_t number, double at[3]);
-/* A triangle, by its number in the part, of vertices that are numbered from `base`; it faces outwards. */
+/* Finds a triangle of a copy, by its number in the part, of vertices that are numbered from `base`;
+   it faces outwards. */
 void mesh_copy_triangle(const MeshParts *parts, const MeshCopy *copy, size_t number, size_t base,
                         uint32_t triangle[3]);
-/* The colors of its corners, in the same order; there are such. */
+/* Finds the colors of its corners, in the same order; there are such. */
 void mesh_copy_colors(const MeshParts *parts, const MeshCopy *copy, size_t number,
                       unsigned char colors[3][3]);
 /* Finds their places in a texture, in the same order; there is one. */

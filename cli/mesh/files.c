@@ -79,13 +79,14 @@ static void vertex_of(const MeshFile *file, const MeshCopy *copy, size_t number,
 
 /* ---- STL ---- */
 
-/* STL has no numbers of vertices: those that are equal in single precision are one. */
+/* Tells whether two vertices are equal in single precision, and so are one: STL has no numbers of
+   vertices. */
 static bool are_one(const double a[3], const double b[3])
 {
     return (float)a[0] == (float)b[0] && (float)a[1] == (float)b[1] && (float)a[2] == (float)b[2];
 }
 
-/* False: it has no area there. */
+/* Finds the corners of a triangle; false: it has no area in single precision. */
 static bool find_corners(const MeshFile *file, const MeshCopy *copy, size_t number,
                          double corners[3][3])
 {
@@ -179,7 +180,7 @@ static bool add_ply_faces(void *user, const MeshCopy *copy)
     return true;
 }
 
-/* Vertices on seams of a texture count as often as they are written. */
+/* Writes a PLY file, in which vertices on seams of a texture occur for each side. */
 static bool write_ply(MeshFile *file)
 {
     file->vertex_count = 0;
@@ -234,7 +235,7 @@ static bool add_obj_place(MeshFile *file, uint32_t vertex, const double place[2]
     return add_line(file, "vt %.9g %.9g\n", place[0], place[1]);
 }
 
-/* `triangle` has numbers of vertices in the file. */
+/* Adds a face of OBJ; `triangle` has numbers of vertices in the file. */
 static bool add_obj_face(MeshFile *file, const MeshCopy *copy, size_t number,
                          const uint32_t triangle[3])
 {
@@ -281,7 +282,7 @@ static bool add_obj_copy(void *user, const MeshCopy *copy)
     return true;
 }
 
-/* Without several of them, neither bodies nor materials have names. */
+/* Writes an OBJ file; a body or material alone has no name. */
 static bool write_obj(MeshFile *file)
 {
     const MeshParts *parts = file->parts;

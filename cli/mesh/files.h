@@ -36,7 +36,7 @@ typedef struct MeshFormat {
     double rounding; /* of coordinates, relative */
 } MeshFormat;
 
-/* The format by the ending of a path; NULL: there is none. */
+/* Returns the format by the ending of a path; NULL: there is none. */
 const MeshFormat *mesh_format(const char *path);
 /* ".stl, .ply, .obj, .glb or .3mf" */
 #define MESH_ENDINGS ".stl, .ply, .obj, .glb or .3mf"

@@ -17,7 +17,7 @@ static void take_across(const double normal[3], double tangent[3])
     add_scaled3(tangent, tangent, -dot3(normal, tangent), normal);
 }
 
-/* The same in the space of a part, of which `matrix` makes a copy; NULL: it is where it is. */
+/* Does the same in the space of a part, of which `matrix` makes a copy; NULL: it is where it is. */
 static void bring_back(const double (*matrix)[4], const double direction[3], double back[3])
 {
     for (int k = 0; k < 3; k++)

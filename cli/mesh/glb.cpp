@@ -20,7 +20,7 @@ template <typename Number> void append(std::vector<unsigned char> &bytes, Number
     bytes.insert(bytes.end(), begin, begin + sizeof number);
 }
 
-// What is appended to the only buffer from here on is an accessor.
+// Adds an accessor for what is appended to the only buffer from here on.
 tinygltf::Accessor &add_accessor(tinygltf::Model &model, int target, int component, int type,
                                  size_t count)
 {
@@ -47,7 +47,8 @@ int end_accessor(tinygltf::Model &model)
     return (int)model.accessors.size() - 1;
 }
 
-// What has been written of a part, for parts of the same vertices and triangles that are painted otherwise.
+// The accessors written for a part, for parts of the same vertices and triangles that are painted
+// otherwise.
 struct Written {
     const MeshPart *part;
     bool            mirrored;
@@ -105,7 +106,7 @@ int add_positions(tinygltf::Model &model, const MeshParts *parts, const MeshPart
     return end_accessor(model);
 }
 
-// Linear, sixteen bits; the fourth number is for alignment.
+// Adds linear colors of sixteen bits; the fourth number is for alignment.
 int add_colors(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part)
 {
     add_accessor(model, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
@@ -120,7 +121,7 @@ int add_colors(tinygltf::Model &model, const MeshParts *parts, const MeshPart &p
     return end_accessor(model);
 }
 
-// There v goes down.
+// Adds places in the texture, whose v goes down in glTF.
 int add_places(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part)
 {
     add_accessor(model, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_FLOAT,
@@ -132,7 +133,7 @@ int add_places(tinygltf::Model &model, const MeshParts *parts, const MeshPart &p
     return end_accessor(model);
 }
 
-// Vertices without a frame are those of triangles that do not ask for it.
+// Adds normals.  Vertices without a frame are those of triangles that need none.
 int add_normals(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part, bool mirrored)
 {
     add_accessor(model, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_FLOAT,
@@ -182,7 +183,7 @@ int add_triangles(tinygltf::Model &model, const MeshParts *parts, const MeshPart
     return end_accessor(model);
 }
 
-// Normals and tangents, when a primitive asks for them first.
+// Writes normals and tangents when a primitive first needs them.
 void put_frames(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part, bool mirrored,
                 int frames[2], tinygltf::Primitive &primitive)
 {
@@ -316,7 +317,7 @@ int add_times(tinygltf::Model &model, const MeshTrack &track, Times &times)
     return times.accessor;
 }
 
-// A channel for what a node has, unless it stays the same.
+// Adds a channel for what a node has, unless it stays the same.
 void add_channel(tinygltf::Model &model, int node, const MeshTrack &track, bool rotates,
                  double lengths, Times &times)
 {
@@ -358,7 +359,7 @@ void animate(tinygltf::Model &model, int node, const MeshTrack &track, double le
     add_channel(model, node, track, true, lengths, times);
 }
 
-// A node for each copy.
+// Adds a node for each copy.
 void place_by_nodes(tinygltf::Model &model, int mesh, const std::vector<Copy> &copies,
                     double lengths, tinygltf::Node &body)
 {
@@ -391,7 +392,7 @@ int add_instances(tinygltf::Model &model, const std::vector<Copy> &copies, int m
     return end_accessor(model);
 }
 
-// One node with all copies, by the extension EXT_mesh_gpu_instancing.
+// Writes one node with all copies, by the extension EXT_mesh_gpu_instancing.
 void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Copy> &copies,
                         double lengths, tinygltf::Node &body)
 {
@@ -435,7 +436,8 @@ void add_copies(File &file, const MeshParts *parts, const MeshBody &body, tinygl
         }
 }
 
-// Levels of detail are members of nodes from tinygltf 2.9 on, which then knows them from nowhere else.
+// Puts levels of detail into a node: it has them from tinygltf 2.9 on, which then knows them from
+// nowhere else.
 template <typename Node>
 auto put_in_lods(Node &node, const std::vector<int> &ids, int) -> decltype((void)node.lods)
 {
@@ -452,8 +454,8 @@ template <typename Node> void put_in_lods(Node &node, const std::vector<int> &id
     node.extensions["MSFT_lod"] = tinygltf::Value(content);
 }
 
-// A node for each further level of detail, which the extension MSFT_lod names.  No scene has them: a
-// program without it shows the first level.
+// Adds a node for each further level of detail, which the extension MSFT_lod names.  No scene has
+// them: a program without it shows the first level.
 void add_lods(File &file, const MeshParts *parts, const MeshBody &body, tinygltf::Node &node)
 {
     std::vector<int>        ids;

@@ -22,17 +22,17 @@ std::vector<double> base_color_of(const MeshMaterial &m)
                   : std::vector<double>{1, 1, 1, 1};
 }
 
-// A factor of the emission, which is a color up to 1.
+// Returns a factor of the emission, which is a color up to 1.
 double emission_of(const MeshMaterial &m) { return std::fmax(largest(m.look.emission), 1); }
 
-// What is left of a color where 1/e is of the one that is absorbed most.
+// Returns the part of a color that is left where 1/e of the most absorbed one is.
 double left_of(const double absorption[3], int color)
 {
     double most = largest(absorption);
     return most > 0 ? std::exp(-absorption[color] / most) : 1;
 }
 
-// The width of the lobe along the tangent, as of OpenPBR (runtime/shaders/anisotropy.glsl).
+// Returns the width of the lobe along the tangent, as of OpenPBR (runtime/shaders/anisotropy.glsl).
 double width_along(double roughness, double anisotropy)
 {
     double across = 1 - anisotropy;
@@ -94,7 +94,8 @@ tinygltf::Value value_of(const std::vector<double> &numbers)
     return tinygltf::Value(values);
 }
 
-// What is not finite, as the distance in which light without absorption grows weaker, is the usual one.
+// Adds the extensions of a material.  A value that is not finite, such as the absorption length of
+// clear glass, stays at its default.
 void add_extensions(tinygltf::Model &model, tinygltf::Material &material, const MeshMaterial &m,
                     double length)
 {
@@ -117,7 +118,7 @@ void add_extensions(tinygltf::Model &model, tinygltf::Material &material, const 
     }
 }
 
-// A texture for each picture; -1: there is none.
+// Adds a texture for each picture; -1: there is none.
 void add_textures(tinygltf::Model &model, const MeshParts *parts, int textures[PICTURES])
 {
     static const char *const names[] = {"base colour", "roughness and metallic", "emission"};

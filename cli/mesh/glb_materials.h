@@ -17,7 +17,7 @@
 // Adds the name of an extension to a list that has each once.
 void glb_use_extension(std::vector<std::string> &extensions, const char *name);
 
-// All materials of the parts, in their order.
+// Adds the materials of all parts, in their order.
 void glb_add_materials(tinygltf::Model &model, const MeshParts *parts);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "cli/mesh/meshing.h"
 
-/* Each has four times the error of the one before, and they are made of the first. */
+/* Makes the levels of detail from the first, each with four times the error of the one before. */
 KrsStatus make_lods(Meshing *meshing, Body *body, double goal)
 {
     double error = 3 * body->mesh->error;

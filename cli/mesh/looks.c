@@ -44,7 +44,8 @@ static bool is_property(const Property *property, size_t offset)
     return property->first == offset / sizeof(double);
 }
 
-/* Colors are those of vertices, and tangents those of corners; the rest is that of pictures, if there are any. */
+/* Tells whether vertices (colors), corners (tangents) or pictures (the rest, if there are any) have
+   the property. */
 static bool is_told_elsewhere(const Property *property, bool baked)
 {
     return is_property(property, offsetof(MeshLook, color)) ||
@@ -116,7 +117,8 @@ static uint32_t add_group(Groups *groups, const KrsHit *hit, const MeshLook *loo
     return (uint32_t)groups->list.count;
 }
 
-/* What does not fit into the groups of its material is taken by the last one. */
+/* Finds the group of a point; the last group of a material takes what does not fit into the
+   others. */
 static uint32_t find_group(Groups *groups, const KrsHit *hit, const MeshLook *look)
 {
     uint32_t number = groups->by_name ? hit->material : 0, length = 0, last = 0;
@@ -213,7 +215,7 @@ static void group_triangles(const Meshing *meshing, const MeshParts *parts, Grou
 
 /* ---- materials ---- */
 
-/* What is painted with a color has no name but that. */
+/* Returns the name of a group, which is its color where that was painted. */
 static const char *name_of(const Meshing *meshing, const Group *group, bool even)
 {
     const char *name  = krs_material_name(meshing->scene, group->number);
@@ -229,7 +231,8 @@ static bool has_one_color(const Group *group)
     return memcmp(group->low.color, group->high.color, sizeof group->low.color) == 0;
 }
 
-/* What does not vary is as in the scene, without the rounding of a mean. */
+/* Returns the material of a group.  Properties that do not vary are those of the scene, without the
+   rounding of a mean. */
 static MeshMaterial material_of(const Meshing *meshing, const Groups *groups, const Group *group)
 {
     bool         even     = has_one_color(group) && !groups->varies[group->number];
@@ -347,8 +350,8 @@ static void find_shells(Arena *arena, const MeshParts *parts, Shells *shells)
     }
 }
 
-/* The mean length of ways through the solids of a material: 4 V / S, by Cauchy for convex ones and by Santalo
-   for all. */
+/* Returns the mean length of ways through the solids of a material: 4 V / S, by Cauchy for convex
+   ones and by Santalo for all. */
 static double mean_way(Arena *arena, const MeshParts *parts, const Shells *shells, uint32_t number)
 {
     char  *seen   = arena_new_array(arena, char, parts_vertex_count(parts));

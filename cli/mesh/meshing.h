@@ -34,7 +34,7 @@ typedef struct Bodies {
     size_t count, capacity;
 } Bodies;
 
-/* What is known of bodies. */
+/* The sizes of bodies. */
 typedef struct Summary {
     double low[3], high[3];
     double error, triangles, vertices, copies;
@@ -78,23 +78,23 @@ KrsStatus check_common_options(Meshing *meshing);
 KrsStatus check_mesh_options(Meshing *meshing);
 /* Tells whether files have neither colors nor parts with names. */
 bool has_shapes_alone(const Meshing *meshing);
-/* That there is nothing to `what`, which is all that is said of empty results: where, unless that is all or the box of
-   --within, and which error may have left out what there is (0: none).  Returns KRS_BAD_SCENE. */
+/* Reports that there is nothing to `what`: where, unless that is all or the box of --within, and
+   which error may have left out what there is (0: none).  Returns KRS_BAD_SCENE. */
 KrsStatus say_nothing(const Meshing *meshing, const char *what, const char *where, double error);
 
 /* summary.c: of all bodies; lengths are those of the scene. */
 Summary summarize(const Bodies *bodies);
 double  longest_side(const Bodies *bodies);
-/* The largest of its copies. */
+/* Returns the largest of its copies. */
 double assembly_error(const KrsAssembly *assembly);
 
 /* parts.c: what files have of bodies. */
 size_t parts_vertex_count(const MeshParts *parts);
 size_t parts_triangle_count(const MeshParts *parts);
 void   find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts);
-/* sRGB of a linear number. */
+/* Returns the sRGB byte of a linear number. */
 unsigned char color_byte(double linear);
-/* The same without copies: a part has all triangles of a body. */
+/* Does the same without copies: a part has all triangles of a body. */
 void flatten_parts(const Meshing *meshing, MeshParts *parts);
 /* looks.c: the materials of triangles, as a format has them; warns of what a file is without. */
 void find_materials(const Meshing *meshing, const MeshFormat *format, const char *path,
@@ -114,15 +114,15 @@ void find_frames(const Meshing *meshing, MeshParts *parts);
 void split_corners(Arena *arena, MeshParts *parts, bool all);
 /* bake.c: with --bake, pictures of what varies, at places of corners.  Points are at most by `error` off the surface. */
 KrsStatus bake_materials(Meshing *meshing, MeshParts *parts, double error);
-/* What a length of 1 is in metres, in the order of unit_choices. */
+/* The units of unit_choices in metres. */
 extern const double metres_of_units[];
-/* What a length of 1 is in the file. */
+/* Sets the unit of length of the file. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts);
 
 /* steps.c: the next step of the work, which is done to `goal` behind it; and the goal of the first of so many until one. */
 void   enter_step(Meshing *meshing, double goal);
 double step_of(const Meshing *meshing, double goal, double steps);
-/* False: the work is to end, with KRS_INTERRUPTED. */
+/* Tells whether the work goes on; false: it ends with KRS_INTERRUPTED. */
 bool mesh_goes_on(const Meshing *meshing);
 
 /* beams.c: with --beams, whether files have them; a body of beams, if a component is made of them (from 1; 0: the only

@@ -75,8 +75,8 @@ static void push_key(Motion *motion, size_t copy, double frame, const Matrix mat
     array_push(motion->meshing->options->arena, &motion->tracks[copy], key);
 }
 
-/* The largest distance of a point of the copy from where it belongs: both places are affine, so it is that of a corner of
-   a box around it. */
+/* Returns the largest distance of a point of the copy from where it belongs: both places are
+   affine, so it is that of a corner of a box around it. */
 static double distance_between(const Motion *motion, size_t copy, const MeshPose *pose,
                                const Matrix belongs)
 {
@@ -135,7 +135,7 @@ static void make_room(Motion *motion, int depth)
         motion->places[depth][i] = arena_alloc(arena, motion->copies, sizeof(Matrix));
 }
 
-/* Times of the file are in single precision, and must grow. */
+/* Tells whether a time between two fits: times of the file are in single precision, and must grow. */
 static bool can_be_halved(const Motion *motion, const double frames[2])
 {
     float middle = (float)seconds_of(motion, 0.5 * (frames[0] + frames[1]));
@@ -229,7 +229,7 @@ static void choose_signs(Track *track)
     }
 }
 
-/* What stands still has its first keyframe only. */
+/* Ends a track, which keeps its first keyframe alone if nothing moves. */
 static void end_track(Track *track)
 {
     bool still = true;

@@ -21,7 +21,7 @@ static bool is_first_of_name(const Meshing *meshing, size_t index)
     return true;
 }
 
-/* No name begins with a digit, so a number is that of `krs info`. */
+/* Reads a number of `krs info`, with which no name begins. */
 static bool is_number_of_component(const char *text, size_t count, size_t *number)
 {
     char               *end;

@@ -160,7 +160,7 @@ static void find_middles(const MeshParts *parts, size_t first, size_t count, dou
         mesh_middle(parts, first + t, middles[t]);
 }
 
-/* Colors of triangles; a corner is in triangles of several. */
+/* Finds the colors at the corners of triangles; a vertex may have several. */
 static void find_corner_colors(const Meshing *meshing, const MeshPart *part, MeshParts *parts,
                                unsigned char (*colors)[3][3])
 {
@@ -193,7 +193,7 @@ static void find_all_corner_colors(const Meshing *meshing, MeshParts *parts)
     parts->corner_colors = (const unsigned char(*)[3][3])colors;
 }
 
-/* Parts are one behind the other. */
+/* Returns the number of vertices of all parts, which lie one behind the other. */
 size_t parts_vertex_count(const MeshParts *parts)
 {
     const MeshPart *last = &parts->parts[parts->part_count - 1];

@@ -12,7 +12,7 @@ bool mesh_is_reflection(const double matrix[3][4])
     return dot3(cross, matrix[2]) < 0;
 }
 
-/* The quaternion of a rotation (Shepperd's method). */
+/* Finds the quaternion of a rotation (Shepperd's method). */
 static void find_rotation(const double m[3][3], double q[4])
 {
     double trace = m[0][0] + m[1][1] + m[2][2], most = trace;
@@ -75,7 +75,7 @@ void mesh_pose_between(const MeshPose *a, const MeshPose *b, double share, MeshP
     between->mirrored = a->mirrored;
 }
 
-/* v + 2 w (u x v) + 2 u x (u x v), of the quaternion (u, w). */
+/* Computes v + 2 w (u x v) + 2 u x (u x v) of the quaternion (u, w). */
 void mesh_pose_apply(const MeshPose *pose, const double point[3], double image[3])
 {
     const double v[3] = {(pose->mirrored ? -1 : 1) * pose->scale * point[0], pose->scale * point[1],

@@ -23,8 +23,8 @@ typedef struct MeshPose {
 bool mesh_is_reflection(const double matrix[3][4]);
 /* Finds the pose of a matrix that moves, rotates, mirrors and scales evenly. */
 void mesh_pose_of(const double matrix[3][4], MeshPose *pose);
-/* What is between two keyframes, which mirror both or none: lengths by the share, and the shorter way of the rotation
-   at an even speed (glTF 2.0, appendix C). */
+/* Interpolates two keyframes, which mirror both or none: lengths by the share, and the shorter way
+   of the rotation at an even speed (glTF 2.0, appendix C). */
 void mesh_pose_between(const MeshPose *a, const MeshPose *b, double share, MeshPose *between);
 void mesh_pose_apply(const MeshPose *pose, const double point[3], double image[3]);
 

@@ -7,7 +7,7 @@
 
 static const uint32_t NONE = UINT32_MAX;
 
-/* What is known of a corner: where it is in a texture, its frame and its color. */
+/* A corner: its place in a texture, its frame and its color. */
 typedef struct Corner {
     double        place[2];
     MeshFrame     frame;

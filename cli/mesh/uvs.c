@@ -71,7 +71,7 @@ static void find_slopes(const Triangle *triangle, double slopes[2][2])
         }
 }
 
-/* Most triangles have no seam: their corners are about where the slopes in the middle tell. */
+/* Continues the places of a triangle from its middle: by their slopes, unless a seam lies between. */
 static bool continue_places(const Meshing *meshing, const Triangle *triangle, double places[3][2])
 {
     static const double ALONG[3][2] = {{-1. / 3, -1. / 3}, {2. / 3, -1. / 3}, {-1. / 3, 2. / 3}};

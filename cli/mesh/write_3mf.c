@@ -39,7 +39,7 @@ typedef struct Model {
     size_t    color_count;
 } Model;
 
-/* Within quotes; what XML has no characters for is left out. */
+/* Writes text within quotes, without the characters that XML does not have. */
 static void put_text(FILE *out, const char *text)
 {
     for (; *text; text++)
@@ -95,7 +95,7 @@ static bool varies(const MeshParts *parts, size_t triangle)
     return parts->materials[parts->material_of[triangle]].varies;
 }
 
-/* False: memory has run out. */
+/* Returns false if memory has run out. */
 static bool find_colors(Model *model)
 {
     const MeshParts *parts = model->parts;
@@ -184,7 +184,8 @@ static void put_triangles(const Model *model, const MeshPart *part, bool mirrore
     fputs("</triangles>\n", model->out);
 }
 
-/* A mesh; a mirrored one is its image in the plane x = 0.  Returns its number; 0: it is empty. */
+/* Writes a mesh; a mirrored one is its image in the plane x = 0.  Returns its number; 0: it is
+   empty. */
 static size_t put_part(Model *model, const MeshPart *part, bool mirrored, const char *name)
 {
     if (part->triangle_count == 0)
@@ -205,7 +206,7 @@ static void put_number(const Model *model, const char *name, double number)
     fprintf(model->out, " %s=\"%.9g\"", name, (float)(model->parts->scale * number));
 }
 
-/* Shorter beams are none, by the specification. */
+/* Returns the length below which the specification has no beam. */
 static double min_length(const MeshBody *body)
 {
     double least = HUGE_VAL;
@@ -272,7 +273,8 @@ static void put_beams(const Model *model, const MeshBody *body, const size_t *ve
     fputs("</b:beams>\n</b:beamlattice>\n", model->out);
 }
 
-/* An object of beams with round ends, and a material of its own.  False: memory has run out. */
+/* Writes an object of beams with round ends, and a material of its own.  False: memory has run
+   out. */
 static bool put_lattice(Model *model, const MeshBody *body, size_t *built)
 {
     const size_t         material = ++model->last;
@@ -324,7 +326,7 @@ static void find_wanted(const KrsAssembly *assembly, ItemObjects *objects)
             }
 }
 
-/* A placed item, of whose image in x = 0 where `mirrored` is set. */
+/* Writes a placed item, of whose image in x = 0 where `mirrored` is set. */
 static void put_component(const Copies *copies, const KrsTransform *transform, bool mirrored)
 {
     const bool   image  = mesh_is_reflection(transform->matrix) != mirrored;
@@ -372,7 +374,7 @@ static size_t put_item(const Copies *copies, size_t number, bool mirrored)
     return copies->model->last;
 }
 
-/* False: memory has run out. */
+/* Returns false if memory has run out. */
 static bool put_assembly(Model *model, const MeshBody *body, size_t *built)
 {
     const KrsAssembly *assembly = body->assembly;
@@ -397,7 +399,7 @@ static bool has_beams(const MeshParts *parts)
     return false;
 }
 
-/* `built` has room for the number of each body's object. */
+/* Writes the model; `built` has room for the number of each body's object. */
 static bool put_model(Model *model, size_t *built)
 {
     const MeshParts *parts = model->parts;
@@ -434,7 +436,7 @@ static bool put_model(Model *model, size_t *built)
     return true;
 }
 
-/* The model's text, which the caller frees; NULL: memory has run out. */
+/* Returns the model's text, which the caller frees; NULL: memory has run out. */
 static char *model_text(const MeshParts *parts, size_t *length)
 {
     char   *text  = NULL;
@@ -455,7 +457,7 @@ static char *model_text(const MeshParts *parts, size_t *length)
 
 /* ---- the archive ---- */
 
-/* Its time is the first that there is. */
+/* Adds a file to the archive, with the earliest time that there is. */
 static bool add_file(zip_t *archive, const char *name, const char *text, size_t length)
 {
     enum { FIRST_DAY = 1 << 5 | 1 };

@@ -17,7 +17,7 @@ extern const Choice integrator_choices[], trace_choices[], schedule_choices[], c
     when_choices[], diagnostics_choices[], json_choices[], split_choices[], copies_choices[],
     language_choices[], export_choices[], unit_choices[], axis_choices[], exposure_choices[];
 
-/* The number of a word among the choices; -1: it is none of them. */
+/* Returns the number of a word among the choices; -1: it is none of them. */
 int find_choice(const char *word, const Choice *choices);
 
 #endif

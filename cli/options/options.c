@@ -95,7 +95,7 @@ static void add(char text[OPTION_TEXT], const char *words)
     snprintf(text + length, OPTION_TEXT - length, "%s", words);
 }
 
-/* The choices, in front of the last of which stands another word. */
+/* Adds the choices, in front of the last of which stands another word. */
 static void add_choices(char text[OPTION_TEXT], const Choice *choices, const char *between,
                         const char *last)
 {

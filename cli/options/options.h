@@ -39,9 +39,9 @@ typedef struct CommandInfo {
 
 extern const CommandInfo command_table[COMMAND_COUNT];
 
-/* The command of this name, or COMMAND_COUNT. */
+/* Returns the command of this name, or COMMAND_COUNT. */
 CommandId find_command(const char *name);
-/* The one whose name is most like this, or NULL. */
+/* Returns the one whose name is most like this, or NULL. */
 const char *nearest_command(const char *name);
 
 typedef enum OptionId {
@@ -72,17 +72,17 @@ typedef struct OptionInfo {
 
 extern const OptionInfo option_info[OPTION_COUNT];
 
-/* Texts of a row, with its choices in place. */
+/* Returns the argument of a row, with its choices in place. */
 const char *option_argument(const OptionInfo *option, char text[OPTION_TEXT]);
 const char *option_wants(const OptionInfo *option, char text[OPTION_TEXT]);
 const char *option_help(const OptionInfo *option, char text[OPTION_TEXT]);
-/* Its choices with blanks between; NULL: other values are possible. */
+/* Returns the choices of a row with blanks between; NULL: other values are possible. */
 const char *option_words(const OptionInfo *option, char text[OPTION_TEXT]);
 
 bool option_belongs(OptionId id, CommandId command);
 /* Tells whether the command has options of this group. */
 bool group_belongs(OptionGroup group, CommandId command);
-/* False: whatever its value, samples of pictures are the same. */
+/* Tells whether the value of an option changes the samples of pictures. */
 bool option_changes_pictures(OptionId id);
 
 typedef enum When { WHEN_AUTO, WHEN_ALWAYS, WHEN_NEVER } When;

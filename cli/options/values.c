@@ -49,7 +49,7 @@ bool read_count(const char *word, uint32_t low, uint32_t high, uint32_t *value)
     return read;
 }
 
-/* Whole numbers between separators: "640x480" with "x", "0,0,8,8" with ",". */
+/* Reads whole numbers between separators: "640x480" with "x", "0,0,8,8" with ",". */
 static bool read_wholes(const char *word, char separator, uint64_t low, uint64_t high,
                         uint32_t *values, size_t count)
 {
@@ -71,7 +71,7 @@ static bool read_wholes(const char *word, char separator, uint64_t low, uint64_t
     return *word == '\0';
 }
 
-/* Colours are linear in all computations, as in the language. */
+/* Returns linear light of an sRGB byte: all computations are linear, as in the language. */
 static double linear_from_srgb(unsigned byte)
 {
     double encoded = byte / 255.0;
@@ -89,7 +89,7 @@ static bool read_color(const char *word, Setting *setting)
     return true;
 }
 
-/* A number of a param: `deg` stands behind an angle in degrees, as in a scene. */
+/* Reads a number of a param: `deg` stands behind an angle in degrees, as in a scene. */
 static bool read_parameter_number(const char *word, const char **end, double *value)
 {
     if (!read_number_prefix(word, end, value))
@@ -138,7 +138,7 @@ bool read_setting(Options *options, const char *word)
     return done;
 }
 
-/* Two points, or a point and a direction. */
+/* Reads two points, or a point and a direction. */
 static bool read_six(const char *word, double first[3], double second[3])
 {
     for (int i = 0; i < 6; i++) {
@@ -167,7 +167,7 @@ bool read_within(const char *word, WithinBox *box)
     return box->low[0] < box->high[0] && box->low[1] < box->high[1] && box->low[2] < box->high[2];
 }
 
-/* What the library would refuse is refused here. */
+/* Reads a zone, and refuses what the library would refuse. */
 bool read_zone(Options *options, const char *word)
 {
     double *zone = options->zones[options->zone_count];
@@ -189,7 +189,7 @@ bool read_white_balance(const char *word, WhiteBalance *balance)
            (*word == '\0' || (*word == ',' && read_number(word + 1, -150, 150, &balance->tint)));
 }
 
-/* The AOV of which a part of a list is the name; 0: none is. */
+/* Returns the AOV of which a part of a list is the name; 0: none is. */
 static uint32_t find_aov(const char *word, size_t length)
 {
     static const struct {
@@ -246,7 +246,7 @@ bool read_exit_map(Options *options, const char *word)
     }
 }
 
-/* "512M" */
+/* Reads a size such as "512M". */
 static bool read_bytes(char *word, uint64_t *bytes)
 {
     static const char units[] = "KMG";
@@ -261,7 +261,7 @@ static bool read_bytes(char *word, uint64_t *bytes)
     return true;
 }
 
-/* "memory=512M"; the word changes. */
+/* Reads a limit such as "memory=512M"; the word changes. */
 static bool read_limit(char *word, Limits *limits)
 {
     char *value = strchr(word, '=');

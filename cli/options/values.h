@@ -19,8 +19,8 @@ bool read_size(const char *word, KrsRenderOptions *how); /* "640x480" */
 bool read_crop(const char *word, KrsWindow *crop);       /* "X,Y,WIDTH,HEIGHT" */
 bool read_frames(Options *options, const char *word);    /* "1..24" */
 bool read_setting(Options *options, const char *word);
-/* An expression of the language without names of the scene: names of colours, `2 * pi`, `1, 2, 3`.  Its
-   mistake is said. */
+/* Reads an expression of the language without names of the scene: names of colours, `2 * pi`, `1,
+   2, 3`.  Its mistake is said. */
 bool read_expression(Arena *arena, const char *text,
                      Setting *setting);                 /* "r=0.5", "at=[1,2,3]", "c=#rrggbb" */
 bool read_zone(Options *options, const char *word);     /* "X,Y,Z,R", of which there is room */

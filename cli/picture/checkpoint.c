@@ -24,8 +24,8 @@
 #include "cli/shell/supervise.h"
 #include "compiler/base/fingerprints.h"
 
-/* At most so many seconds of work are lost, or one sample of each pixel.  For the tests, the environment
-   variable KRS_TEST_CHECKPOINT says how many. */
+/* Returns the seconds of work that may be lost, unless a sample of each pixel takes longer.  For
+   the tests, the environment variable KRS_TEST_CHECKPOINT says how many. */
 static double seconds_between(void)
 {
     const char *setting = getenv("KRS_TEST_CHECKPOINT");
@@ -143,7 +143,7 @@ static bool fill(const void *user, OutputFile *file, OutputError *error)
     return good && output_append(file, &sum, sizeof sum);
 }
 
-/* A checkpoint of a frame that has not begun, or, if that is not NULL, of one with a film. */
+/* Writes a checkpoint of a frame that has not begun, or, if that is not NULL, of one with a film. */
 static KrsStatus write_checkpoint(Checkpoint *checkpoint, uint32_t number,
                                   const KrsRenderOptions *how, KrsFilm *film)
 {

@@ -15,7 +15,7 @@ typedef struct Checkpoint {
     double done, share;    /* of the samples: before those that are added at present, and these */
 } Checkpoint;
 
-/* What the samples of a frame are made by. */
+/* The properties that the samples of a frame depend on. */
 typedef struct CheckpointFrame {
     KrsRendering           *rendering;
     KrsState               *state;

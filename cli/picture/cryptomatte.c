@@ -20,7 +20,7 @@ static uint32_t rotate(uint32_t word, int by) { return word << by | word >> (32 
 
 static uint32_t mixed(uint32_t word) { return rotate(word * 0xcc9e2d51, 15) * 0x1b873593; }
 
-/* Up to four bytes as a word, the first lowest. */
+/* Returns up to four bytes as a word, the first lowest. */
 static uint32_t word_of(const unsigned char *bytes, size_t count)
 {
     uint32_t word = 0;
@@ -51,7 +51,7 @@ uint32_t matte_identifier(uint32_t hash)
 
 /* ---- names ---- */
 
-/* What is in a picture, without repetition, and the identifier of each. */
+/* The parts in a picture, without repetition, and the identifier of each. */
 typedef struct Parts {
     struct Part {
         KrsMatte part;
@@ -105,7 +105,7 @@ static Parts list_parts(const KrsPicture *picture, KrsMatteKind kind)
     return parts;
 }
 
-/* The manifest, {"tree": "1a2b3c4d", ...}; sets the identifiers. */
+/* Returns the manifest, {"tree": "1a2b3c4d", ...}; sets the identifiers. */
 static const char *manifest_of(Arena *arena, const KrsScene *scene, Parts *parts, KrsMatteKind kind)
 {
     Text manifest = {.arena = arena};
@@ -122,7 +122,8 @@ static const char *manifest_of(Arena *arena, const KrsScene *scene, Parts *parts
     return manifest.bytes;
 }
 
-/* "cryptomatte/1a2b3c4/name": the first seven digits of the layer's hash are its key. */
+/* Adds the texts of a layer under keys such as "cryptomatte/1a2b3c4/name", whose digits are the
+   first seven of the layer's hash. */
 static void add_texts(Arena *arena, const char *layer, const char *manifest, PictureText texts[4])
 {
     static const char *const members[] = {"name", "hash", "conversion", "manifest"};
@@ -136,7 +137,7 @@ static void add_texts(Arena *arena, const char *layer, const char *manifest, Pic
 
 /* ---- channels ---- */
 
-/* An identifier and a share for each rank, pixel by pixel. */
+/* Fills an identifier and a share for each rank, pixel by pixel. */
 static void fill_values(const KrsPicture *picture, KrsMatteKind kind, const Parts *parts,
                         float *values)
 {

@@ -10,9 +10,9 @@
 
 enum { MATTE_CHANNELS = KRS_MATTE_COUNT * 2 * KRS_MATTE_RANKS, MATTE_TEXTS = KRS_MATTE_COUNT * 4 };
 
-/* The 32-bit MurmurHash3 of a text, without a seed. */
+/* Returns the 32-bit MurmurHash3 of a text, without a seed. */
 uint32_t murmur_hash(const char *text);
-/* The bits of a float that is neither infinite nor denormal. */
+/* Returns the bits of a float that is neither infinite nor denormal. */
 uint32_t matte_identifier(uint32_t hash);
 
 typedef struct Cryptomatte {

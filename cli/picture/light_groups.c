@@ -13,7 +13,7 @@ typedef struct Groups {
     float  *values;
 } Groups;
 
-/* Lights of one name, as of a loop, are one group. */
+/* Returns the group of a light.  Lights of one name, as of a loop, are one group. */
 static size_t group_of(const KrsScene *scene, const Groups *g, size_t light)
 {
     const char *name = krs_light_name(scene, light);

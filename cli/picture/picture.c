@@ -38,7 +38,7 @@ uint32_t picture_aovs(const Options *options, bool exr)
     return KRS_AOV_COLOR | (exr ? options->aovs : 0);
 }
 
-/* "radius=0.5 tint=[1, 0.5, 0]": every param of the scene, in its order. */
+/* Describes every param of the scene, in its order: "radius=0.5 tint=[1, 0.5, 0]". */
 static const char *describe_parameters(const Options *options, const KrsScene *scene)
 {
     Text text = {.arena = options->arena};
@@ -59,7 +59,7 @@ static const char *describe_parameters(const Options *options, const KrsScene *s
     return text.bytes;
 }
 
-/* "[0, 1, 0, 0.5] [...]": centers and radii. */
+/* Describes the zones by centers and radii: "[0, 1, 0, 0.5] [...]". */
 static const char *describe_zones(const Options *options)
 {
     Text text = {.arena = options->arena};
@@ -198,7 +198,7 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
     return status;
 }
 
-/* What is shown on a screen, for free(); NULL: out of memory. */
+/* Returns the pixels as a screen shows them, for free(); NULL: out of memory. */
 static uint8_t *screen_pixels(const KrsPicture *source, const DisplayOptions *display,
                               size_t *length)
 {
@@ -209,7 +209,8 @@ static uint8_t *screen_pixels(const KrsPicture *source, const DisplayOptions *di
     return rgb;
 }
 
-/* Who reads may stop early: an encoder that has enough, or that failed. */
+/* Writes bytes to standard output.  A reader may stop early: an encoder that has enough, or that
+   failed. */
 static KrsStatus write_bytes(const uint8_t *bytes, size_t length)
 {
     for (size_t done = 0; done < length;) {

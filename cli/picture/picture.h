@@ -12,10 +12,10 @@ typedef enum FileForm { FORM_UNKNOWN, FORM_EXR, FORM_PNG } FileForm;
 /* Tells the form of a file by the ending of its name, in any case. */
 FileForm file_form(const char *path);
 
-/* The AOVs (bits of KrsAov) that writing these forms takes. */
+/* Returns the AOVs (bits of KrsAov) that writing these forms takes. */
 uint32_t picture_aovs(const Options *options, bool exr);
 
-/* What stands in the files beside the pixels. */
+/* The texts that stand in the files beside the pixels. */
 typedef struct PictureNotes {
     const KrsScene *scene;
     double          time;    /* of the scene */

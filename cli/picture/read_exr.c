@@ -33,7 +33,7 @@ static KrsStatus say_result(const Reading *r, exr_result_t result)
     return result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_IO_ERROR;
 }
 
-/* The number of the letter that a channel has: "Z", "depth.Z"; the count of letters: none. */
+/* Returns the number of the letter that a channel has: "Z", "depth.Z"; the count of letters: none. */
 static size_t letter_of(const Reading *r, const char *channel)
 {
     const char *dot  = strrchr(channel, '.');
@@ -44,7 +44,7 @@ static size_t letter_of(const Reading *r, const char *channel)
     return i;
 }
 
-/* Which of several channels with a letter is taken: the one without a layer, else the first. */
+/* Chooses one of several channels with a letter: the one without a layer, else the first. */
 static void choose_channels(const Reading *r, const exr_decode_pipeline_t *pipeline,
                             int chosen[MAX_WANTED])
 {

@@ -10,7 +10,7 @@
    *depth is for free(), NULL on any status but KRS_OK, which is said. */
 KrsStatus read_depth(const Options *options, const char *path, uint32_t width, uint32_t height,
                      float **depth);
-/* The same of R, G, B and A, four numbers a pixel; without A it is 1, and all is 0 outside. */
+/* Does the same of R, G, B and A, four numbers a pixel; without A it is 1, and all is 0 outside. */
 KrsStatus read_plate(const Options *options, const char *path, uint32_t width, uint32_t height,
                      float (**plate)[4]);
 

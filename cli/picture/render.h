@@ -30,17 +30,17 @@ typedef struct Render {
     void *user;      /* handed to `outdated` */
 } Render;
 
-/* Which files are written, and whether they can be. */
+/* Finds which files are written, and whether they can be. */
 KrsStatus render_begin(Render *render, const Options *options);
-/* The frame of the scene, and how it is rendered: what options and scene say together. */
+/* Chooses the frame of the scene, and how it is rendered: what options and scene say together. */
 KrsStatus render_choose(Render *render);
 /* Compiles the shaders, after the scene and how it is rendered are known. */
 KrsStatus render_compile(Render *render);
 /* Renders and writes all frames.  KRS_INTERRUPTED also where a picture is outdated. */
 KrsStatus render_frames(Render *render);
-/* "`a.exr`, `b.exr` and `a.png`" */
+/* Returns a list such as "`a.exr`, `b.exr` and `a.png`". */
 const char *output_names(Arena *arena, const char *const *outputs, size_t count);
-/* "wrote `a.exr` and `a.png` in 0.4 s"; `seconds` 0: not how long it took. */
+/* Says "wrote `a.exr` and `a.png` in 0.4 s"; `seconds` 0: not how long it took. */
 void render_say_written(const Render *render, double seconds);
 void render_free(Render *render);
 

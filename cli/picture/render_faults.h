@@ -8,7 +8,7 @@
 #include "cli/options/options.h"
 #include "krs/vulkan.h"
 
-/* What was wrong in all pictures of a command. */
+/* The faults of all pictures of a command. */
 typedef struct RenderFaults {
     uint64_t unresolved, rays;
     uint64_t noisy, pixels; /* where samples were to end by noise */

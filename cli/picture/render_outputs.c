@@ -71,7 +71,7 @@ static KrsStatus check_name(const Render *render, size_t index)
     return KRS_OK;
 }
 
-/* Standard output may have one thing only. */
+/* Refuses raw pixels where they cannot go to standard output alone. */
 static KrsStatus check_raw(const Options *options)
 {
     if (!options->raw)

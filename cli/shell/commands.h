@@ -22,11 +22,12 @@ extern const char commit[];
 /* Compiles a scene file, its diagnostics to standard error.  On KRS_OK the caller owns *scene,
    else it is NULL and the user knows why. */
 KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene);
-/* KRS_OK, or KRS_IO_ERROR and words: the file is missing, a folder, or not ours to read. */
+/* Returns KRS_OK, or KRS_IO_ERROR with a message: the file is missing, a folder, or cannot be
+   read. */
 KrsStatus scene_readable(const Options *options, const char *path);
-/* KRS_OK, or wrong usage and words: `output` is the file that is read, by whatever name. */
+/* Returns KRS_OK, or reports wrong usage: `output` is the file that is read, by whatever name. */
 KrsStatus check_scene_not_overwritten(const Options *options, const char *output);
-/* The same, and KRS_IO_ERROR and words where the output cannot be written. */
+/* Does the same, and returns KRS_IO_ERROR with words if the output cannot be written. */
 KrsStatus check_output(const Options *options, const char *output);
 
 /* Prints diagnostics as they come, and counts them. */
@@ -42,26 +43,29 @@ const char *scene_input(const Options *options, const char *path);
 /* Compiles the one or the other. */
 KrsStatus scene_compile(const Options *options, const char *path, const KrsOptions *with,
                         KrsScene **scene);
-/* The folder that the scene may read from; NULL: any. */
+/* Returns the folder that the scene may read from; NULL: any. */
 const char *scene_root(const Options *options, const char *path);
 /* Notes that the scene of that file is compiled from here on. */
 void scene_enter_compile(const char *path);
-/* "2 errors, 1 warning", unless there were none. */
+/* Prints "2 errors, 1 warning", unless there were none. */
 void scene_print_counts(const DiagnosticSink *sink);
 
-/* KRS_OK, or KRS_BAD_SCENE and words: the scene is too large for shaders, which somebody needs. */
+/* Returns KRS_OK, or KRS_BAD_SCENE with a message: the scene is too large for shaders, which
+   somebody needs. */
 KrsStatus scene_check_shaders(const Options *options, const KrsScene *scene);
 /* Says why a call with that renderer failed. */
 void say_renderer(const Options *options, const KrsScene *scene, const KrsRenderer *renderer,
                   KrsStatus status);
 
-/* A frame with --set, --zone and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
+/* Makes a frame with --set, --zone and --time; KRS_BAD_ARGUMENT and words when a setting does not
+   fit. */
 KrsStatus scene_state(const Options *options, const KrsScene *scene, KrsState **state);
-/* The number of the camera that --camera names, or of the first; KRS_BAD_ARGUMENT and words: there is none. */
+/* Finds the number of the camera that --camera names, or of the first; KRS_BAD_ARGUMENT and words:
+   there is none. */
 KrsStatus scene_camera(const Options *options, const KrsScene *scene, size_t *camera);
-/* Words as well where the frame cannot have this time. */
+/* Sets the time, and reports if the frame cannot have it. */
 KrsStatus scene_set_time(const Options *options, KrsState *state, double time);
-/* "a/ring.krs" is called "ring". */
+/* Returns the name of a scene: that of "a/ring.krs" is "ring". */
 const char *scene_name(Arena *arena, const char *path);
 /* Says what a status means after a call of the library that has no words of its own. */
 KrsStatus say_status(KrsStatus status, const char *path);
@@ -80,8 +84,8 @@ KrsRendererOptions renderer_options(const Options *options);
 /* Opens the device that --device asks for.  On KRS_OK the caller owns *renderer,
    else it is NULL and the user knows why. */
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer);
-/* The same in two steps, for pictures: between them a scene is compiled, whose mistakes the user is to
-   know first.  The second step gets the status of the first. */
+/* These do the same in two steps, for pictures: between them a scene is compiled, whose mistakes
+   the user is to know first.  The second step gets the status of the first. */
 KrsStatus open_renderer_early(const Options *options, KrsRenderer **renderer);
 KrsStatus opened_renderer(KrsStatus status, KrsRenderer **renderer);
 

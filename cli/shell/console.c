@@ -30,7 +30,7 @@ void console_doing(const Options *options, const char *what)
     fflush(stderr);
 }
 
-/* Words may have names of files, and these any bytes. */
+/* Prints words, in which names of files may have any bytes. */
 static void say_words(const char *format, va_list words)
 {
     char *line;

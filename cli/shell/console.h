@@ -8,7 +8,7 @@
 
 #include "cli/options/options.h"
 
-/* "krs: " and the words, on a line of their own. */
+/* Prints "krs: " and the words on a line of their own. */
 void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Prints as say does, and then where to look it up; returns KRS_BAD_ARGUMENT. */
 KrsStatus say_usage(const Options *options, const char *format, ...)
@@ -24,19 +24,19 @@ void console_doing(const Options *options, const char *what);
 /* Tells whether colours are wanted on standard error. */
 bool console_color(const Options *options);
 
-/* Standard output, to the last byte: KRS_IO_ERROR and a line when that fails. */
+/* Writes standard output to the last byte; KRS_IO_ERROR and a line when that fails. */
 KrsStatus console_finish(void);
 
-/* A name of a file as it is printed: a terminal gets no control characters of it. */
+/* Returns a name of a file as it is printed: a terminal gets no control characters of it. */
 const char *console_name(const Options *options, const char *path);
 
-/* The shortest decimal that reads back as the same double. */
+/* Prints the shortest decimal that reads back as the same double. */
 void print_number(FILE *out, double number);
 
-/* Seconds of a clock that only goes forward. */
+/* Returns the seconds of a clock that only goes forward. */
 double clock_now(void);
 
-/* How far the work is: a bar on a terminal; else, at most once a second, "Progress: 42%". */
+/* The progress of the work: a bar on a terminal; else, at most once a second, "Progress: 42%". */
 typedef struct Progress {
     bool   off, terminal;
     double shown_at;      /* when something was last shown; 0: never */

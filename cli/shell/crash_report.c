@@ -29,7 +29,7 @@ static void copy_file(const char *from, const char *to)
         close(target);
 }
 
-/* Single quotes keep every byte in a shell, except themselves. */
+/* Prints a word in single quotes, which keep every byte in a shell except themselves. */
 static void print_quoted(FILE *out, const char *word)
 {
     fputc('\'', out);

@@ -15,7 +15,8 @@
 #include "cli/shell/supervise.h"
 #include "runtime/writer/atomic.h"
 
-/* "error[E0203]: message" of the first line; the rest is drawn in ASCII and stays plain. */
+/* Prints "error[E0203]: message" of the first line in color; the rest is drawn in ASCII and stays
+   plain. */
 static void print_colored(const KrsDiagnostic *diagnostic)
 {
     size_t head = strcspn(diagnostic->text, ":\n"), line = strcspn(diagnostic->text, "\n");
@@ -50,7 +51,7 @@ const char *scene_root(const Options *options, const char *path)
     return slash ? arena_copy_text(options->arena, path, (size_t)(slash - path) + 1) : ".";
 }
 
-/* Who watches a scene is about to edit it. */
+/* Returns how numbers of the scene are compiled: whoever watches a scene is about to edit it. */
 static KrsSpecialize find_specialize(const Options *options)
 {
     if (options->specialize >= 0)
@@ -67,7 +68,7 @@ static bool shows_pictures(const Options *options)
            (options->command == COMMAND_INFO && options->cost);
 }
 
-/* Those that say something of a figure, or write it. */
+/* Tells whether the command says something of a figure, or writes it. */
 static bool takes_figures(const Options *options)
 {
     return options->command == COMMAND_SLICE || options->command == COMMAND_CHECK ||
@@ -152,8 +153,8 @@ KrsStatus say_status(KrsStatus status, const char *path)
     return status; /* diagnostics have told of a wrong scene, or one that cannot be read */
 }
 
-/* What compiling may use is limited, so that a machine does not come to a standstill.  The system may
-   allow less. */
+/* Reports that a scene needs more than compiling may use, of which the system may permit less than
+   the options. */
 static KrsStatus say_too_large(const Options *options, const char *path)
 {
     const uint64_t limit = options->limits.memory ? options->limits.memory : KRS_USUAL_MEMORY;
@@ -262,7 +263,7 @@ static KrsStatus say_unknown_parameter(const Options *options, const KrsScene *s
     return say_usage(options, "the scene has no param `%s`; `krs info` lists what it has", name);
 }
 
-/* "1.5", or "90deg" where the scene says so. */
+/* Adds "1.5", or "90deg" if the scene says so. */
 static void add_value(Text *text, double value, bool degrees)
 {
     text_format(text, degrees ? "%.6gdeg" : "%.6g", degrees ? value * 180 / M_PI : value);
@@ -280,7 +281,7 @@ static KrsStatus say_outside(const Options *options, const KrsParameter *paramet
                      range.bytes, found.bytes);
 }
 
-/* Why krs_state_set refused a setting. */
+/* Reports why krs_state_set refused a setting. */
 static KrsStatus say_refused_setting(const Options *options, const KrsScene *scene,
                                      const KrsState *state, const Setting *setting)
 {

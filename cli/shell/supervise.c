@@ -91,7 +91,7 @@ static void crash_for_test(RunStage stage)
 
 void stage_goes_on(void) { atomic_fetch_add(&shared->progress, 1); }
 
-/* Who sees the new stage sees the step, too. */
+/* Enters a stage; whoever sees the new stage sees the step, too. */
 void stage_enter(RunStage stage)
 {
     stage_goes_on();
@@ -122,7 +122,8 @@ void stage_forget(void)
     shared->read_since  = time_of(&now);
 }
 
-/* What there is no room for is not seen again before the scene itself is saved. */
+/* Notes a file that is read.  One for which there is no room is not seen again before the scene
+   itself is saved. */
 void stage_read(const char *path)
 {
     const size_t length = strlen(path) + 1;
@@ -276,8 +277,8 @@ static const char *signal_name(int signal_number)
     return name ? name : "?";
 }
 
-/* The bytes that a caller leaves us, 0 when that is no less than all; drivers and the libraries
-   that they use crash when they are refused memory. */
+/* Returns the bytes that a caller leaves us, 0 when that is no less than all; drivers and the
+   libraries that they use crash when they are refused memory. */
 static uint64_t memory_allowed(void)
 {
     const uint64_t plenty = (uint64_t)4 << 30;
@@ -305,7 +306,7 @@ static bool is_out_of_time(const Watch *watch, int signal_number)
     return seconds + 1 >= (double)limit.rlim_cur;
 }
 
-/* What takes long to compile is large, or a bug; nobody can tell, and only the former has a cure. */
+/* Reports a scene that takes too long to compile: it is large, which has a cure, or this is a bug. */
 static int report_late(const Options *options, const StageInfo *stage)
 {
     char story[256];
@@ -444,7 +445,8 @@ static void add_signal(sigset_t *signals, int number)
         sigaddset(signals, number);
 }
 
-/* What this process waits for.  SIGUSR1 is ignored by both processes (main.c), and yet taken here. */
+/* Chooses the signals that this process waits for.  SIGUSR1 is ignored by both processes (main.c),
+   and yet taken here. */
 static void choose_signals(sigset_t *signals)
 {
     sigemptyset(signals);

@@ -10,7 +10,7 @@
 #include "cli/options/options.h"
 #include "runtime/writer/atomic.h"
 
-/* What the child is doing; the parent names it should the child die. */
+/* The stages of the child; the parent names the one in which it died. */
 typedef enum RunStage {
     STAGE_START,
     STAGE_COMPILE,
@@ -67,15 +67,16 @@ void stage_forget(void);
 typedef bool VisitRead(void *user, const char *path);
 bool         stage_again(VisitRead *visit, void *user, bool *changed);
 
-/* Nonzero once the user has asked to stop.  In STAGE_RENDER, STAGE_VALIDATE, STAGE_MESH,
-   STAGE_SLICE, STAGE_GRID, STAGE_WRITE and STAGE_WAIT it is for the work to notice; in the others the process just ends. */
+/* Is nonzero once the user has asked to stop.  In STAGE_RENDER, STAGE_VALIDATE, STAGE_MESH,
+   STAGE_SLICE, STAGE_GRID, STAGE_WRITE and STAGE_WAIT it is for the work to notice; in the others
+   the process just ends. */
 const volatile sig_atomic_t *interrupted(void);
 
 /* Writes an output file by `fill`, in STAGE_WRITE, and says why when it cannot be.  The parent
    removes the temporary if the child does not live to do so. */
 typedef bool Fill(const void *user, OutputFile *file, OutputError *error);
 KrsStatus    write_output(const char *path, Fill *fill, const void *user);
-/* The same for a text. */
+/* Does the same for a text. */
 KrsStatus write_output_text(const char *path, const char *text, size_t length);
 
 #endif

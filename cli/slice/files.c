@@ -28,7 +28,7 @@ __attribute__((format(printf, 2, 3))) static bool add(SliceFile *file, const cha
     return true;
 }
 
-/* No exponents, which some readers do not know, and no -0. */
+/* Adds a number without an exponent, which some readers do not know, and without -0. */
 static bool add_number(SliceFile *file, const char *before, double number)
 {
     double least = 0.5 * pow(10, -file->sheet->digits);
@@ -43,13 +43,13 @@ static bool nothing(SliceFile *file)
 
 /* ---- SVG ---- */
 
-/* y goes downwards there. */
+/* Adds a point of SVG, in which y goes downwards. */
 static bool add_svg_point(SliceFile *file, const char *before, const double at[2])
 {
     return add_number(file, before, at[0]) && add_number(file, " ", -at[1]);
 }
 
-/* Radius of an arc between two points. */
+/* Returns the radius of an arc between two points. */
 static double arc_radius(const double from[2], const double to[2], double bulge)
 {
     return 0.25 * hypot(to[0] - from[0], to[1] - from[1]) * (1 + bulge * bulge) / fabs(bulge);
@@ -113,7 +113,7 @@ static bool end_svg(SliceFile *file) { return add(file, "</svg>\n"); }
 
 /* ---- DXF ---- */
 
-/* Release 12, which all programs read: lines of a code and its value. */
+/* Begins a file of release 12, which all programs read: lines of a code and its value. */
 static bool begin_dxf(SliceFile *file)
 {
     static const struct {
@@ -165,8 +165,8 @@ static bool end_dxf(SliceFile *file) { return add(file, "0\nENDSEC\n0\nEOF\n"); 
 
 /* ---- Common Layer Interface ---- */
 
-/* Version 2.0, in ASCII.  Layers are named by their upper side, and the one before the first by the lower side of
-   that. */
+/* Begins a file of version 2.0, in ASCII.  Layers are named by their upper side, and the one before
+   the first by the lower side of that. */
 static bool begin_cli(SliceFile *file)
 {
     const SliceSheet *sheet      = file->sheet;

@@ -77,7 +77,7 @@ static void add_line(float *row, double a, double b, double tall)
     row[last] += (float)(tall * (1 - before));
 }
 
-/* The same for a line that may leave the picture. */
+/* Does the same for a line that may leave the picture. */
 static void add_clipped(float *row, double a, double b, double tall, double width)
 {
     double sides[2] = {0, width};

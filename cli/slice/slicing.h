@@ -17,7 +17,7 @@ typedef struct Layer {
     double            low, at, high;
 } Layer;
 
-/* What files have in common; lengths are those of the scene. */
+/* The properties that files have in common; lengths are those of the scene. */
 typedef struct SliceSheet {
     double      low[2], high[2];    /* around all sections, in their plane */
     double      bottom, top, layer; /* along the axis */
@@ -52,7 +52,7 @@ typedef struct SliceFormat {
 /* files.c: the format by the ending of a path, or that of standard output; NULL: there is none. */
 const SliceFormat *slice_format(const char *path);
 #define SLICE_ENDINGS ".svg, .dxf, .cli or .png"
-/* All that was added goes to the file. */
+/* Writes all that was added to the file. */
 bool slice_file_flush(SliceFile *file);
 
 /* picture.c: a picture of a layer. */

@@ -9,7 +9,7 @@
 
 #include "krs/krs.h"
 
-/* count * size zeroed bytes, by malloc where there is no allocator; NULL: memory has run out. */
+/* Returns count * size zeroed bytes, by malloc without an allocator; NULL: memory has run out. */
 static inline void *allocator_new(const KrsAllocator *allocator, size_t count, size_t size)
 {
     if (!allocator->allocate)

@@ -28,7 +28,8 @@ static _Noreturn void out_of_memory(const Memory *memory) { longjmp(*memory->exh
 
 _Noreturn void arena_exhausted(const Arena *arena) { out_of_memory(arena->memory); }
 
-/* A zeroed block with space for `bytes` behind its header.  The caller links it into a list. */
+/* Returns a zeroed block with space for `bytes` behind its header.  The caller links it into a
+   list. */
 static ArenaBlock *block_new(Memory *memory, size_t bytes)
 {
     if (bytes > SIZE_MAX - HEADER_BYTES)
@@ -176,7 +177,8 @@ static void free_until(Memory *memory, ArenaBlock **newest, const ArenaBlock *la
     }
 }
 
-/* Large objects are listed behind the block that was the newest one. */
+/* Frees what was allocated since a mark.  Large objects are listed behind the block that was the
+   newest one. */
 void arena_rewind(Arena *arena, ArenaMark mark)
 {
     bool   same = arena->newest == mark.newest;

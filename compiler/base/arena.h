@@ -33,17 +33,18 @@ typedef struct Arena {
 /* Objects are put together in blocks of at most this size. */
 enum { LARGEST_BLOCK_BYTES = 1 << 20 };
 
-/* count * size zeroed bytes, aligned for any object; never NULL.  If the product overflows, memory
-   has run out. */
+/* Returns count * size zeroed bytes, aligned for any object; never NULL.  If the product overflows,
+   memory has run out. */
 void *arena_alloc(Arena *arena, size_t count, size_t size);
 
 /* Frees all blocks; the arena can be used again. */
 void arena_free(Arena *arena);
-/* The same, but a small block stays for what follows: of arenas that are used for one thing after the
-   other. */
+/* Does the same, but a small block stays for what follows: of arenas that are used for one thing
+   after the other. */
 void arena_clear(Arena *arena);
 
-/* What was allocated since a mark can be freed again.  Marks are rewound in the reverse order. */
+/* A place in an arena; what was allocated since can be freed again.  Marks are rewound in the
+   reverse order. */
 typedef struct ArenaMark {
     struct ArenaBlock *newest, *behind;
     char              *next;
@@ -52,17 +53,17 @@ typedef struct ArenaMark {
 ArenaMark arena_mark(const Arena *arena);
 void      arena_rewind(Arena *arena, ArenaMark mark);
 
-/* A copy of length bytes, with a NUL behind them. */
+/* Returns a copy of length bytes, with a NUL behind them. */
 char *arena_copy_text(Arena *arena, const char *bytes, size_t length);
 
-/* What happens when the memory of an arena runs out, for who finds that elsewhere. */
+/* Ends as an arena does whose memory runs out, for callers that find that elsewhere. */
 _Noreturn void arena_exhausted(const Arena *arena);
 
 /* A new T, or an array of n of them: Token *t = arena_new(arena, Token); */
 #define arena_new(arena, T)          ((T *)arena_alloc((arena), 1, sizeof(T)))
 #define arena_new_array(arena, T, n) ((T *)arena_alloc((arena), (n), sizeof(T)))
 
-/* A larger copy of a full array, for array_push.  The old array stays in the arena. */
+/* Returns a larger copy of a full array, for array_push.  The old array stays in the arena. */
 void *arena_grow(Arena *arena, void *items, size_t count, size_t *capacity, size_t size);
 
 /* Frees an object of at least LARGEST_BLOCK_BYTES that nothing refers to any more, such as an array

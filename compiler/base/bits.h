@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/* The place of the lowest bit that is 1; there is one. */
+/* Returns the place of the lowest bit that is 1; there is one. */
 static inline uint32_t lowest_bit(uint64_t bits) { return (uint32_t)__builtin_ctzll(bits); }
 
 #endif

@@ -118,8 +118,8 @@ static bool comes_after(const Diag *a, const Diag *b)
     return a->span.end > b->span.end;
 }
 
-/* Insertion sort: there are some 40 diagnostics and 100 notes at most, and those at one place must keep their
-   order. */
+/* Sorts by insertion: there are some 40 diagnostics and 100 notes at most, and those at one place
+   must keep their order. */
 void diags_sort(Diags *diags)
 {
     for (size_t i = 1; i < diags->count; i++) {

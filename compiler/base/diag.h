@@ -68,7 +68,7 @@ enum { MAX_DIAGS = 20 }; /* errors that are stored at most; as many warnings.  A
    and repeats of a code at one span, which are not.  Notes may repeat. */
 Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Text formatted into the arena of the diagnostics, for labels and help. */
+/* Formats text into the arena of the diagnostics, for labels and help. */
 const char *diag_text(Diags *diags, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void        diag_note(Diags *diags, Diag *diag, const char *note);
 void        diag_secondary(Diags *diags, Diag *diag, Span span, const char *label);
@@ -85,13 +85,13 @@ void diags_sort(Diags *diags);
 void diags_print_text(const Diags *diags, bool color, Text *out);
 /* Writes a JSON object in each line, with the field names of the Language Server Protocol. */
 void diags_print_json(const Diags *diags, Text *out);
-/* One diagnostic alone, as the two functions above write it. */
+/* Writes one diagnostic alone, as the two functions above do. */
 void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out);
 void diag_json_one(const Diags *diags, const Diag *diag, Text *out);
 
-/* "error", "warning", "note". */
+/* Returns "error", "warning" or "note". */
 const char *diag_severity(DiagCode code);
-/* The row of "E0203", or NULL. */
+/* Returns the row of "E0203", or NULL. */
 const DiagInfo *diag_find(const char *code);
 
 #endif

@@ -93,7 +93,7 @@ static const Source *source_of(const Excerpt *excerpt, Span span)
     return &excerpt->diags->sources->items[span.source];
 }
 
-/* The offset of a line's end, before its line break. */
+/* Returns the offset of a line's end, before its line break. */
 static uint32_t line_end(const Source *source, uint32_t line)
 {
     uint32_t end = line + 1 < source->line_count ? source->lines[line + 1] - 1 : source->length;
@@ -206,7 +206,7 @@ static void draw_line(Excerpt *excerpt, Mark *first)
     }
 }
 
-/* The next mark to draw in a file: the first of those on the topmost line that has undrawn
+/* Returns the next mark to draw in a file: the first of those on the topmost line that has undrawn
    marks. */
 static Mark *next_mark(const Excerpt *excerpt, uint32_t source)
 {

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What a file holds. */
+/* The content of a file. */
 typedef struct Loaded {
     const char *text; /* NULL: it could not be read */
     size_t      length;
@@ -19,7 +19,7 @@ typedef struct Loaded {
 /* Reads a file.  Of one longer than MAX_SOURCE_BYTES a little more than that is read: `length` then shows that it is too
    long. */
 Loaded disk_read(const char *path);
-/* The same for an open file, which is closed. */
+/* Returns the same for an open file, which is closed. */
 Loaded disk_read_open(int file);
 
 /* Opens a folder that nothing may be read outside of; -1: there is none. */
@@ -27,7 +27,8 @@ int  disk_open_root(const char *root);
 void disk_close_root(int root);
 /* Reads a file by its path from that folder. */
 Loaded disk_read_below(int root, const char *path);
-/* The path from a root to the folder of a scene, "" or "a/b/", for free(); NULL: that is not in there. */
+/* Returns the path from a root to the folder of a scene, "" or "a/b/", for free(); NULL: that is
+   not in there. */
 char *disk_folder_below(const char *root, const char *scene);
 
 #endif

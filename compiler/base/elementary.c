@@ -30,7 +30,7 @@ static double number_of(uint64_t bits)
 
 static double power_of_2(int n) { return number_of((uint64_t)(n + 1023) << 52); }
 
-/* x 2^n; by two factors where either alone may be beyond what there is. */
+/* Returns x 2^n, by two factors where either alone may overflow or underflow. */
 static double scaled(double x, int n)
 {
     if (n > -1000 && n < 1000)
@@ -38,7 +38,7 @@ static double scaled(double x, int n)
     return x * power_of_2(n / 2) * power_of_2(n - n / 2);
 }
 
-/* The nearest whole number; |x| < 2^51. */
+/* Returns the nearest whole number; |x| < 2^51. */
 static double nearest(double x) { return (x + 0x1.8p52) - 0x1.8p52; }
 
 /* A number that is the sum of two, of which the second is about what rounding took from the first. */
@@ -46,7 +46,7 @@ typedef struct Pair {
     double high, low;
 } Pair;
 
-/* a + b without an error, by Knuth. */
+/* Returns a + b without an error, by Knuth. */
 static Pair exact_sum(double a, double b)
 {
     const double sum = a + b, part = sum - a;
@@ -59,7 +59,7 @@ static double upper_half(double x)
     return large - (large - x);
 }
 
-/* a b without an error, by Dekker; both are far below the largest number. */
+/* Returns a b without an error, by Dekker; both are far below the largest number. */
 static Pair exact_product(double a, double b)
 {
     const double product = a * b, a1 = upper_half(a), b1 = upper_half(b), a2 = a - a1, b2 = b - b1;
@@ -72,14 +72,14 @@ static Pair pair_product(Pair a, Pair b)
     return (Pair){product.high, product.low + (a.high * b.low + a.low * b.high)};
 }
 
-/* The same number, with as much as there is room for in the first part. */
+/* Returns the same number, with as much as there is room for in the first part. */
 static Pair pair_settled(Pair a)
 {
     const double sum = a.high + a.low;
     return (Pair){sum, (a.high - sum) + a.low};
 }
 
-/* c[0] + c[1] x + ... by two sums that do not wait for each other. */
+/* Returns c[0] + c[1] x + ... by two sums that do not wait for each other. */
 static inline double series(double x, const double *c, size_t count)
 {
     const double square = x * x;
@@ -101,7 +101,7 @@ static const double LN2_REST  = 0x1.a39ef35793c76p-33;
 static const double LOG2_E    = 0x1.71547652b82fep0;
 static const double LOG2_E_REST = 0x1.777d0ffda0d24p-56;
 
-/* exp(r + rest) - 1 for |r| < 0.35, and a rest that is much smaller. */
+/* Returns exp(r + rest) - 1 for |r| < 0.35, and a rest that is much smaller. */
 static double exp_less_one(double r, double rest)
 {
     static const double c[]    = {1.0 / 2,       1.0 / 6,         1.0 / 24,         1.0 / 120,
@@ -151,7 +151,7 @@ static double       small_sinh(double x)
     return x + x * (square * SERIES(square, sinh_series));
 }
 
-/* exp(|x|) / 2, also where exp(|x|) is too large. */
+/* Returns exp(|x|) / 2, also where exp(|x|) is too large. */
 static double half_exp(double x)
 {
     const double size = fabs(x);
@@ -184,7 +184,7 @@ double real_tanh(double x)
 
 /* ---- logarithms ---- */
 
-/* A number above 0 as 2^exponent (1 + what is returned), which is from -0.3 to 0.42. */
+/* Returns a number above 0 as 2^exponent (1 + what is returned), which is from -0.3 to 0.42. */
 static double split(double x, int *exponent)
 {
     const int      tiny = x < 0x1p-1022 ? 54 : 0;
@@ -194,7 +194,7 @@ static double split(double x, int *exponent)
     return number_of(bits - ((uint64_t)above << 52)) - 1;
 }
 
-/* log(1 + f) - f + f^2 / 2, from the series of 2 artanh s with s = f / (2 + f). */
+/* Returns log(1 + f) - f + f^2 / 2, from the series of 2 artanh s with s = f / (2 + f). */
 static double log_rest(double f)
 {
     static const double c[] = {2.0 / 3,  2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11,
@@ -203,7 +203,7 @@ static double log_rest(double f)
     return s * (0.5 * f * f + square * SERIES(square, c));
 }
 
-/* Where x is not above 0, or infinite, or no number. */
+/* Returns log(x) of an x that is not above 0, or infinite, or no number. */
 static double log_at_limits(double x) { return x == 0 ? -HUGE_VAL : x > 0 ? x : (x - x) / 0.0; }
 
 static bool is_limit(double x) { return !(x > 0) || x > 0x1.fffffffffffffp1023; }
@@ -243,7 +243,7 @@ double real_log1p(double x)
 
 /* ---- powers ---- */
 
-/* log(x) for a number above 0, to 2^-65 of it. */
+/* Returns log(x) for a number above 0, to 2^-65 of it. */
 static Pair log_pair(double x)
 {
     static const double c[]        = {2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11, 2.0 / 13, 2.0 / 15,
@@ -269,7 +269,8 @@ static bool is_odd(double y)
     return fabs(y) < 0x1p53 && floor(y) == y && floor(0.5 * y) != 0.5 * y;
 }
 
-/* The power of a size where that is 0 or infinite, or where the exponent is beyond all that matters. */
+/* Returns the power of a size where that is 0 or infinite, or where the exponent is beyond all that
+   matters. */
 static double power_at_limits(double size, double y)
 {
     return size == 1 ? 1 : (size > 1) == (y > 0) ? HUGE_VAL : 0;
@@ -292,7 +293,8 @@ double real_pow(double x, double y)
     return signbit(x) && is_odd(y) ? -power : power;
 }
 
-/* Halley's steps, the last of them from what is right to a unit in the last place. */
+/* Returns the cube root by Halley's steps, the last of them from what is right to a unit in the
+   last place. */
 double real_cbrt(double x)
 {
     int exponent;
@@ -335,15 +337,16 @@ static const uint32_t two_over_pi[] = {
 
 enum { WORDS = 8, FRACTION_WORDS = 5 };
 
-/* 32 bits of a long number, whose words begin with the lowest, from bit `at` on. */
+/* Returns 32 bits of a long number, whose words begin with the lowest, from bit `at` on. */
 static uint32_t bits_at(const uint32_t *words, int at)
 {
     const uint64_t both = words[at / 32] | (uint64_t)words[at / 32 + 1] << 32;
     return (uint32_t)(both >> at % 32);
 }
 
-/* The quotient of a number above 0 by pi / 2, less a multiple of 4: its fraction, at most 1/2, and the whole number before it.
-   It is multiplied out in whole numbers, but for words of 2 / pi that give multiples of 4 (Payne and Hanek 1983). */
+/* Returns the quotient of a number above 0 by pi / 2, less a multiple of 4: its fraction, at most
+   1/2, and the whole number before it.  It is multiplied out in whole numbers, but for words of 2 /
+   pi that give multiples of 4 (Payne and Hanek 1983). */
 static Pair quarter_turns(double x, int *whole)
 {
     int            exponent;
@@ -372,7 +375,8 @@ static Pair quarter_turns(double x, int *whole)
     return up ? (Pair){-sum.high, -sum.low} : sum;
 }
 
-/* An angle less a multiple of pi / 2, at most pi / 4 or little more, and how often that was taken away, modulo 4. */
+/* Returns an angle less a multiple of pi / 2, at most pi / 4 or little more, and how often that was
+   taken away, modulo 4. */
 static Pair reduced(double x, int *quarter)
 {
     if (fabs(x) < 0x1p20) {
@@ -451,7 +455,7 @@ static const Pair arcs[] = {{0x0.0p+0, 0x0.0p+0},
                             {0x1.700a7c5784634p-1, -0x1.8c34d25aadef6p-56},
                             {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55}};
 
-/* atan(x) for x from 0 to 1, as an arc of the table and what is left. */
+/* Returns atan(x) for x from 0 to 1, as an arc of the table and what is left. */
 static Pair small_atan(double x)
 {
     static const double c[]  = {-1.0 / 3,  1.0 / 5,  -1.0 / 7, 1.0 / 9,
@@ -492,7 +496,7 @@ double real_atan2(double y, double x)
     return copysign(size, y);
 }
 
-/* sqrt((1 - x) (1 + x)) */
+/* Returns sqrt((1 - x) (1 + x)). */
 static double other_side(double x) { return sqrt((1 - x) * (1 + x)); }
 
 double real_asin(double x) { return fabs(x) <= 1 ? real_atan2(x, other_side(x)) : (x - x) / 0.0; }

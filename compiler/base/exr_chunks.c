@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-/* Errors are also results. */
+/* Ignores messages: errors are also results. */
 static void ignore_message(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context, (void)code, (void)message;

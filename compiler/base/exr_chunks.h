@@ -19,7 +19,7 @@ typedef struct ExrChunks {
 /* Opens a file for reading, from a stream if the setup has one. */
 exr_result_t exr_chunks_open(exr_context_t *context, const char *name,
                              exr_context_initializer_t setup);
-/* What is wrong with a file, in words of ours: those of the library change with its version. */
+/* Returns what is wrong with a file, in our words: those of the library change with its version. */
 const char *exr_chunks_fault(exr_result_t result);
 /* Reads all chunks, of `lines` lines each but the last. */
 exr_result_t exr_chunks_read(const ExrChunks *chunks, int32_t lines);

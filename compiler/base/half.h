@@ -6,9 +6,9 @@
 
 #include <stdint.h>
 
-/* The nearest half-precision number, ties to even.  Finite numbers beyond the largest half become
-   65504, that half.  So a very bright pixel does not become infinite, which no filter survives.
-   Infinities and NaN stay as they are. */
+/* These return the nearest half-precision number, ties to even.  Finite numbers beyond the largest
+   half become 65504, that half.  So a very bright pixel does not become infinite, which no filter
+   survives.  Infinities and NaN stay as they are. */
 uint16_t half_from_float(float number);
 float    float_from_half(uint16_t half);
 

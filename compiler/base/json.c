@@ -3,7 +3,7 @@
  */
 #include "compiler/base/json.h"
 
-/* What stands before a member or an element. */
+/* Adds what stands before a member or an element. */
 static void begin(Json *json, const char *name)
 {
     if (json->more)

@@ -34,8 +34,8 @@ void loader_close(Loader *loader)
     *loader = (Loader){.root = -1};
 }
 
-/* The path from the root to a file.  `path` begins as the scene's path does.  NULL if the file may be outside of
-   the root, or if there is no memory. */
+/* Returns the path from the root to a file.  `path` begins as the scene's path does.  NULL if the
+   file may be outside of the root, or if there is no memory. */
 static char *path_from_root(const Loader *loader, const char *path)
 {
     char *relative = loader->scene_folder ? path_relative(loader->scene, path) : NULL,

@@ -37,8 +37,8 @@ typedef struct Loader {
    there is no memory. */
 bool loader_open(Loader *loader, const char *root, const char *scene);
 void loader_close(Loader *loader);
-/* The text of a file that a scene uses, and of the scene itself, which is read from disk even where
-   there is a supplier. */
+/* These return the text of a file that a scene uses, and of the scene itself, which is read from
+   disk even where there is a supplier. */
 Loaded loader_read(const Loader *loader, const char *path);
 Loaded loader_read_scene(const Loader *loader, const char *path);
 

@@ -26,7 +26,8 @@ typedef struct NearSlots {
     size_t    count;
 } NearSlots;
 
-/* The slot that is looked at after `steps` others, for an entry whose latest part is `near`. */
+/* Returns the slot that is looked at after `steps` others, for an entry whose latest part is
+   `near`. */
 static inline NearSlot *near_slot(const NearSlots *slots, uint32_t near, uint32_t hash,
                                   size_t steps)
 {
@@ -35,7 +36,7 @@ static inline NearSlot *near_slot(const NearSlots *slots, uint32_t near, uint32_
     return &slots->items[at & (slots->count - 1)];
 }
 
-/* The first free slot for an entry that is not in the table. */
+/* Returns the first free slot for an entry that is not in the table. */
 static inline NearSlot *near_slot_free(const NearSlots *slots, uint32_t near, uint32_t hash)
 {
     size_t steps = 0;

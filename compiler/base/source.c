@@ -42,7 +42,7 @@ static void count_characters(Arena *arena, Source *source)
         source->characters[source->length / SOURCE_BLOCK] = count;
 }
 
-/* The number of characters that begin before a byte. */
+/* Returns the number of characters that begin before a byte. */
 static uint32_t characters_before(const Source *source, uint32_t offset)
 {
     offset         = offset < source->length ? offset : source->length;
@@ -160,7 +160,7 @@ static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t length)
     return hash;
 }
 
-/* The length before the content: bytes that go from one file to the next change the hash. */
+/* Hashes the length before the content: bytes that go from one file to the next change the hash. */
 static uint64_t hash_file(uint64_t hash, const char *path, const void *bytes, size_t length)
 {
     unsigned char size[8];

@@ -55,19 +55,20 @@ uint32_t source_add(Sources *sources, const char *name, const char *text, size_t
                     bool library);
 /* Notes a file that is no text, such as a picture or a font, for the hash. */
 void sources_note_file(Sources *sources, const char *path, const void *bytes, size_t length);
-/* A hash of 64 bits, as hexadecimal digits, of all files that were read but the library's: of the path of each from
-   the scene's folder, its length and its content. */
+/* Finds a hash of 64 bits, as hexadecimal digits, of all files that were read but the library's: of
+   the path of each from the scene's folder, its length and its content. */
 void          sources_hash(const Sources *sources, char hash[17]);
 uint32_t      source_line(const Source *source, uint32_t offset);
 Position      source_position(const Source *source, uint32_t offset);
 Utf16Position source_utf16_position(const Source *source, uint32_t offset);
-/* UTF-16 units between two offsets of a text. */
+/* Returns the UTF-16 units between two offsets of a text. */
 uint32_t utf16_units(const char *text, uint32_t start, uint32_t end);
-/* The offset of a position in a text; behind the end of a line, that end; behind the last line, the end of the text. */
+/* Returns the offset of a position in a text; behind the end of a line, that end; behind the last
+   line, the end of the text. */
 uint32_t utf16_offset(const char *text, size_t length, Utf16Position position);
 
-/* The smallest span that contains both.  Of spans in different sources: `from`, unless that is in
-   source 0. */
+/* Returns the smallest span that contains both.  Of spans in different sources: `from`, unless that
+   is in source 0. */
 Span span_join(Span from, Span to);
 
 #endif

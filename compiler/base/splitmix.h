@@ -16,7 +16,7 @@ static inline uint64_t splitmix_next(uint64_t *state)
     return z ^ z >> 31;
 }
 
-/* A random number in [0, 1). */
+/* Returns a random number in [0, 1). */
 static inline double splitmix_unit(uint64_t *state)
 {
     return (double)(splitmix_next(state) >> 11) * 0x1p-53;

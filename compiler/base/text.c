@@ -16,7 +16,7 @@
 
 /* ---- building ---- */
 
-/* Most texts are added to once, and stay as short as that. */
+/* Makes room for `more` bytes.  A text that is added to once takes no more than that. */
 static void text_reserve(Text *text, size_t more)
 {
     size_t needed = text->length + more + 1, larger = 2 * text->capacity;
@@ -98,8 +98,8 @@ void text_number(Text *text, double number)
     add_with_point(text, printed);
 }
 
-/* strtod gets the digits and an exponent, but no decimal point: which character that is depends on
-   the locale. */
+/* Reads a decimal number by strtod, which gets the digits and an exponent, but no decimal point:
+   which character that is depends on the locale. */
 double text_decimal(Text *scratch, const char *bytes, size_t length)
 {
     const long most     = 100000000; /* exceeds the number of digits in any file */
@@ -126,7 +126,7 @@ double text_decimal(Text *scratch, const char *bytes, size_t length)
 
 /* ---- JSON ---- */
 
-/* The length of a UTF-8 character by its first byte, or 0. */
+/* Returns the length of a UTF-8 character by its first byte, or 0. */
 static size_t length_by_first(unsigned char byte)
 {
     if (byte < 0x80)
@@ -134,7 +134,7 @@ static size_t length_by_first(unsigned char byte)
     return byte < 0xC2 ? 0 : byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : byte < 0xF5 ? 4 : 0;
 }
 
-/* The length of the well-formed UTF-8 character at s, or 0. */
+/* Returns the length of the well-formed UTF-8 character at s, or 0. */
 static size_t utf8_length(const unsigned char *s)
 {
     size_t        length = length_by_first(s[0]);
@@ -221,7 +221,7 @@ void json_vector(Text *json, const double *values, size_t count)
 
 /* ---- names ---- */
 
-/* FNV-1a. */
+/* Returns the hash FNV-1a. */
 static size_t hash_bytes(const char *bytes, size_t length)
 {
     uint64_t hash = 0xCBF29CE484222325u;
@@ -230,7 +230,7 @@ static size_t hash_bytes(const char *bytes, size_t length)
     return (size_t)(hash ^ hash >> 32);
 }
 
-/* The slot where a name is, or where it would go; capacity is a power of two. */
+/* Returns the slot where a name is, or where it would go; capacity is a power of two. */
 static const char **find_slot(const char **slots, size_t capacity, const char *bytes, size_t length)
 {
     size_t i = hash_bytes(bytes, length) & (capacity - 1);
@@ -268,8 +268,8 @@ enum { LONGEST_GUESS = 64 }; /* letters; longer names are not compared */
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
-/* Restricted Damerau-Levenshtein distance: the number of insertions, deletions, replacements and
-   swaps of neighbours that make b of a, where no letter is changed twice. */
+/* Returns the restricted Damerau-Levenshtein distance: the number of insertions, deletions,
+   replacements and swaps of neighbours that make b of a, where no letter is changed twice. */
 static size_t edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
 {
     size_t  rows[3][LONGEST_GUESS + 1];

@@ -22,14 +22,14 @@ void text_format(Text *text, const char *format, ...) __attribute__((format(prin
 void text_format_list(Text *text, const char *format, va_list arguments)
     __attribute__((format(printf, 2, 0)));
 
-/* The shortest decimal that reads back as the same double ("0.1", "1e+30", "inf"). */
+/* Adds the shortest decimal that reads back as the same double ("0.1", "1e+30", "inf"). */
 void text_number(Text *text, double number);
 
-/* The number that a decimal without a sign stands for: digits, perhaps a point and an exponent.
-   `scratch` is overwritten. */
+/* Returns the number that a decimal without a sign stands for: digits, perhaps a point and an
+   exponent.  `scratch` is overwritten. */
 double text_decimal(Text *scratch, const char *bytes, size_t length);
 
-/* A JSON string with its quotes; bytes that are not UTF-8 become U+FFFD. */
+/* Adds a JSON string with its quotes; bytes that are not UTF-8 become U+FFFD. */
 void text_json(Text *text, const char *string);
 /* Numbers in JSON; what is not finite becomes null. */
 void json_number(Text *json, double number);

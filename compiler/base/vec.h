@@ -23,7 +23,7 @@ static inline void cross3(const double a[3], const double b[3], double product[3
 
 static inline double length3(const double v[3]) { return sqrt(dot3(v, v)); }
 
-/* The maximum norm: the largest absolute value of a component. */
+/* Returns the maximum norm: the largest absolute value of a component. */
 static inline double largest3(const double v[3])
 {
     return max2(fabs(v[0]), max2(fabs(v[1]), fabs(v[2])));
@@ -35,7 +35,7 @@ static inline double distance3(const double a[3], const double b[3])
     return length3(offset);
 }
 
-/* to = from + factor v; `to` may be one of the arguments. */
+/* Computes to = from + factor v; `to` may be one of the arguments. */
 static inline void add_scaled3(double to[3], const double from[3], double factor, const double v[3])
 {
     for (int i = 0; i < 3; i++)

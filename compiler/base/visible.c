@@ -22,7 +22,8 @@ static bool is_among(uint32_t c, const CharacterRange *ranges, size_t count)
     return false;
 }
 
-/* Control characters, and invisible ones that reorder or hide their neighbours. */
+/* Tells whether a character is a control character, or an invisible one that reorders or hides its
+   neighbours. */
 static bool is_deceptive(uint32_t c)
 {
     static const CharacterRange ranges[] = {{0x80, 0x9F},     {0x61C, 0x61C},   {0x200B, 0x200F},
@@ -46,7 +47,7 @@ static bool is_wide(uint32_t c)
     return is_among(c, ranges, sizeof ranges / sizeof *ranges);
 }
 
-/* `length` bytes of `text`, which is a constant. */
+/* Returns `length` bytes of `text`, which is a constant. */
 static Visible show(const char *text, size_t length, uint32_t columns, size_t used)
 {
     Visible visible = {.length = length, .columns = columns, .used = used ? used : 1};

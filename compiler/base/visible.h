@@ -11,7 +11,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* What stands for a character. */
+/* The text that stands for a character. */
 typedef struct Visible {
     char     text[4];
     size_t   length;

@@ -17,7 +17,7 @@
 
 #define WATCHDOG_LONGEST_GAP 0.2 /* seconds */
 
-/* What is seen of a process at a moment. */
+/* The state of a process at a moment. */
 typedef struct ProcessSample {
     double   now;       /* seconds of a clock that only goes forward */
     double   processor; /* seconds that all of its threads have had */

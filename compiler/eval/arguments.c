@@ -11,8 +11,9 @@ static const double ORIGIN[3] = {0, 0, 0};
 /* ---- checks ---- */
 
 /*
- * Ranges are those of the parameters, but a parameter without one counts with its default, and
- * time with a long animation: what is infinite then divides by zero somewhere, or overflows.
+ * Refuses values that may be infinite.  Ranges are those of the parameters, but a parameter without
+ * one counts with its default, and time with a long animation: what is infinite then divides by
+ * zero somewhere, or overflows.
  */
 bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
 {
@@ -49,7 +50,7 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
     return false;
 }
 
-/* Shapes are the same at every point: what may not depend on x, y, z or p. */
+/* Refuses nodes that depend on x, y, z or p: shapes are the same at every point. */
 static Node frame_time(Elaboration *e, Node node, const Syntax *syntax, const char *what)
 {
     if (node == NODE_NONE || e->graph->items[node].time == TIME_COMPILE)
@@ -294,7 +295,7 @@ static uint32_t split_parameters(const char *parameters, ParameterWord *words)
     return count;
 }
 
-/* The parameter that a named argument is for; UINT32_MAX: reported. */
+/* Returns the parameter that a named argument is for; UINT32_MAX: reported. */
 static uint32_t find_word(Elaboration *e, const Syntax *call, const Syntax *argument,
                           const char *name, const ParameterWord *words, uint32_t count)
 {

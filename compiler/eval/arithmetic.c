@@ -57,7 +57,7 @@ static bool is_truth(const Elaboration *e, Value value)
            (value.type == VALUE_EXPRESSION && e->graph->items[value.node].type == TYPE_BOOL);
 }
 
-/* 2 to 4 when the value is a vector, else 0. */
+/* Returns 2 to 4 when the value is a vector, else 0. */
 static uint32_t vector_length(const Elaboration *e, Value value)
 {
     if (value.type == VALUE_EXPRESSION) {
@@ -166,7 +166,8 @@ static Value not_finite(Elaboration *e, const Syntax *syntax, bool by_zero)
     return value_error();
 }
 
-/* An operation on lists of `length` numbers, element by element: the result is such a list. */
+/* Returns an operation on lists of `length` numbers, element by element: the result is such a
+   list. */
 static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_t count,
                           uint32_t length, const Syntax *origin)
 {
@@ -217,7 +218,7 @@ Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count
     return known ? value_from(e, value, op, arguments, count) : value;
 }
 
-/* The common case, and the one that loops run through: numbers known now. */
+/* Computes the common case, and the one that loops run through: numbers known now. */
 static bool fold_numbers(TokenKind op, double a, double b, double *result)
 {
     switch (op) {
@@ -324,8 +325,8 @@ static bool compare_numbers(TokenKind op, double a, double b)
     }
 }
 
-/* A comparison of numbers that shaders read: it is structure, and so decided now, where all that the
-   numbers may be has the same answer. */
+/* Tells whether a comparison is decided now.  Of numbers that shaders read it is structure, and so
+   it is where all that the numbers may be has the same answer. */
 static bool is_decided(Elaboration *e, Op op, Node left, Node right, bool *answer)
 {
     const Expr *items = e->graph->items;
@@ -429,7 +430,7 @@ Value value_unary(Elaboration *e, const Syntax *syntax, Value a)
     return value_error();
 }
 
-/* `if` on a condition that is not known yet: both branches are there, one is chosen. */
+/* Evaluates an `if` on a condition that is not known yet: both branches are there, one is chosen. */
 Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value yes, Value no)
 {
     if (yes.type == VALUE_ERROR || no.type == VALUE_ERROR)

@@ -8,7 +8,7 @@
 #include "compiler/eval/elaborate.h"
 #include "compiler/eval/kinds.h"
 
-/* So many steps take some ten milliseconds. */
+/* The steps that an answer may take: some ten milliseconds. */
 enum { MOST_STEPS = 200 * 1000 };
 
 /* An evaluation with all that it works on. */
@@ -67,13 +67,13 @@ static Value first_element(Elaboration *e, const Environment *env, const Syntax 
     return first;
 }
 
-/* A shape of the library with its defaults. */
+/* Returns a shape of the library with its defaults. */
 static Value example_shape(Elaboration *e, const char *name, const Syntax *parameter)
 {
     return call_library(e, name, value_number(1), parameter);
 }
 
-/* A value that a parameter without default takes. */
+/* Returns a value that a parameter without default takes. */
 static Value example_of_kind(Elaboration *e, const Syntax *parameter)
 {
     switch ((ParameterKind)parameter->number[0]) {
@@ -144,7 +144,7 @@ static Environment with_statements(Elaboration *e, Environment env, const Syntax
     return env;
 }
 
-/* What `next`, a child of `node`, sees. */
+/* Returns the environment of `next`, a child of `node`. */
 static Environment inside(Elaboration *e, Environment env, const Syntax *node, const Syntax *next)
 {
     switch (node->kind) {
@@ -166,7 +166,7 @@ static Environment inside(Elaboration *e, Environment env, const Syntax *node, c
     }
 }
 
-/* What the last node sees.  Names of the whole file are found by its scope. */
+/* Returns the environment of the last node.  Names of the whole file are found by its scope. */
 static Environment around(Asking *a, size_t file, const Syntax *const *nodes, size_t count)
 {
     Environment env = a->e.scopes.items[file]->environment;
@@ -203,7 +203,7 @@ Value ask_definition(Asking *a, size_t file, const Syntax *const *nodes, size_t 
 
 /* ---- words ---- */
 
-/* Six digits: a box is for orientation. */
+/* Adds a corner of a box with six digits: it is for orientation. */
 static void add_corner(Text *out, const Shape *shape, bool high)
 {
     for (int i = 0; i < 3; i++)

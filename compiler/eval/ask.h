@@ -18,14 +18,14 @@ typedef struct Asking Asking;
    use. */
 Asking *asking_new(Files *files, const Loader *loader, Arena *arena, Arena *values, Arena *scratch);
 
-/* The value of the last of some nodes, each a child of the one before it; the first is the tree of file
-   number `file`.  VALUE_ERROR: it is not known. */
+/* Returns the value of the last of some nodes, each a child of the one before it; the first is the
+   tree of file number `file`.  VALUE_ERROR: it is not known. */
 Value ask_value(Asking *asking, size_t file, const Syntax *const *nodes, size_t count);
-/* The same of a statement that defines a name, of the name. */
+/* Returns the same of a statement that defines a name, of the name. */
 Value ask_definition(Asking *asking, size_t file, const Syntax *const *nodes, size_t count);
 /* Says what a value is: "1.5", "a shape, `sphere`, from [-1, -1, -1] to [1, 1, 1]"; nothing of VALUE_ERROR. */
 void ask_text(Asking *asking, Value value, Text *out);
-/* How many components a vector has; else 0 or 1. */
+/* Returns the number of components of a vector; else 0 or 1. */
 uint32_t ask_size(Asking *asking, Value value);
 
 #endif

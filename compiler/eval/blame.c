@@ -23,7 +23,7 @@ static bool add_value(Text *text, const Elaboration *e, Value value)
     return true;
 }
 
-/* "called with levels = 18, size = [1, 2, 1]": numbers and vectors that are known. */
+/* Notes "called with levels = 18, size = [1, 2, 1]", of the numbers and vectors that are known. */
 static void note_arguments(Elaboration *e, Diag *diag, const Function *function,
                            const Value *values, const Syntax *const *origins)
 {
@@ -39,7 +39,7 @@ static void note_arguments(Elaboration *e, Diag *diag, const Function *function,
         diag_note(e->diags, diag, text.bytes);
 }
 
-/* The first sentence of the comment before a definition. */
+/* Notes the first sentence of the comment before a definition. */
 static void note_meaning(Elaboration *e, Diag *diag, const Syntax *definition)
 {
     size_t length = 0;
@@ -51,8 +51,9 @@ static void note_meaning(Elaboration *e, Diag *diag, const Syntax *definition)
     diag_note(e->diags, diag, diag_text(e->diags, "%.*s", (int)length, definition->doc));
 }
 
-/* What a function of the library asserts is said in its own words; of other mistakes inside of it
-   nothing is, since their words are of what the caller does not see. */
+/* Reports a mistake in the library to its caller.  What a function of the library asserts is said
+   in its own words; other mistakes inside of it are not described, since their words are of what
+   the caller does not see. */
 static void say_for_caller(Elaboration *e, Diag *diag, const char *name)
 {
     diag->notes.count = 0;

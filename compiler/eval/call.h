@@ -47,7 +47,7 @@ typedef struct Builtin {
  * fail silently.
  */
 
-/* What is chosen by a name: kinds of blends, palettes. */
+/* The names that an argument may choose: kinds of blends, palettes. */
 typedef struct Choices {
     const char *noun, *wanted;  /* "blend"; "the kind of a blend, a string" */
     const char *unknown, *more; /* label of another name; what follows the names in its help */
@@ -55,29 +55,31 @@ typedef struct Choices {
     uint32_t           count;
 } Choices;
 
-/* Which one an argument names, the first without one. */
+/* Finds which name an argument has, the first without one. */
 bool want_name(Elaboration *e, const Argument *argument, const Choices *names, uint32_t *chosen);
 
-/* A FLOAT, or a VEC3, of frame time. */
+/* These return a FLOAT, or a VEC3, of frame time. */
 Node want_number(Elaboration *e, const Call *call, uint32_t index, double otherwise);
 Node want_vector(Elaboration *e, const Call *call, uint32_t index, const double otherwise[3]);
 bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least, uint32_t most,
                 uint32_t otherwise, uint32_t *count);
 const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index);
-/* The node of a number or a vector. */
+/* Returns the node of a number or a vector. */
 Node want_numeric(Elaboration *e, const Call *call, uint32_t index);
-/* A number that is known at compile time; *number stays what it is when nothing was given. */
+/* These find a list, or a number, that is known at compile time; *number stays what it is when
+   nothing was given. */
 const List *want_list(Elaboration *e, const Call *call, uint32_t index);
 bool        want_constant(Elaboration *e, const Call *call, uint32_t index, double *number);
-/* True or false, known at compile time; *flag stays what it is when nothing was given. */
+/* Finds true or false, known at compile time; *flag stays what it is when nothing was given. */
 bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag);
-/* The parameter "plane": its unit normal and offset. */
+/* Finds the parameter "plane": its unit normal and offset. */
 bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset);
-/* The map that the parameters "by", "axis angle" and "by" describe. */
+/* These return the map that the parameters "by", "axis angle" and "by" describe. */
 const Map *want_translation(Elaboration *e, const Call *call);
 const Map *want_rotation(Elaboration *e, const Call *call);
 const Map *want_scaling(Elaboration *e, const Call *call);
-/* The same for a value that stands anywhere; `what` names it: "`fov`", "this argument". */
+/* These return the same for a value that stands anywhere; `what` names it: "`fov`", "this
+   argument". */
 Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *what);
 Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what);
 Node to_pair(Elaboration *e, Value value, const Syntax *syntax, const char *what);
@@ -96,7 +98,7 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax);
 bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_syntax,
                     uint32_t first, const char *name, const char *parameters, Call *call);
 
-/* Report; the strings of `parameters` must live as long as the diagnostics. */
+/* Reports too many arguments; the strings of `parameters` must live as long as the diagnostics. */
 Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count);
 Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter);
 void unknown_parameter(Elaboration *e, const Syntax *call, const Syntax *argument, const char *name,
@@ -106,15 +108,15 @@ void explain_usage(Elaboration *e, Diag *diag, const Syntax *call, const char *n
 /* Adds a note with the names that would be right: "its properties: eye, target". */
 void note_names(Elaboration *e, Diag *diag, const char *what, const char *const *names,
                 size_t count);
-/* A value of another type than `wanted` ("a number"); silent for VALUE_ERROR. */
+/* Returns a value of another type than `wanted` ("a number"); silent for VALUE_ERROR. */
 Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
-/* A value that must be known at compile time, and is not. */
+/* Reports a value that must be known at compile time, and is not. */
 void constant_error(Elaboration *e, const Syntax *syntax, const char *message);
-/* A value that must be the same at every point, and is not; `what` names it. */
+/* Reports a value that must be the same at every point, and is not; `what` names it. */
 void point_error(Elaboration *e, const Syntax *syntax, const char *what);
-/* What the language describes and this version does not have. */
+/* Reports what the language describes and this version does not have. */
 void not_supported(Elaboration *e, Span span, const char *what);
-/* "torus(major, minor)", for notes. */
+/* Returns "torus(major, minor)", for notes. */
 const char *signature(Elaboration *e, const char *name, const char *const *parameters,
                       uint32_t count);
 

@@ -68,7 +68,7 @@ typedef struct BuiltinName {
 
 enum { MAX_BUILTIN_NAMES = 512 };
 
-/* What a file has that scenes name in an argument. */
+/* The bytes of a file that scenes name in an argument. */
 typedef struct FileBytes {
     const char          *path;
     const unsigned char *bytes;
@@ -133,7 +133,7 @@ struct Elaboration {
                                     the arguments are evaluated; or NULL */
 };
 
-/* What a shape knows of the declaration that made it. */
+/* The properties of the declaration that made a shape. */
 struct Declaration {
     const Syntax *syntax;
     const Syntax *core;   /* what .round(r) grows by r, using `rounding`; or NULL */
@@ -158,11 +158,11 @@ void elaborate(Elaboration *e);
 /* ---- scope.c ---- */
 /* Makes e->scopes of e->files, and e->library of those that every scene sees. */
 void scopes_make(Elaboration *e);
-/* A definition of the file or of the files that it uses, or NULL. */
+/* Returns a definition of the file or of the files that it uses, or NULL. */
 Definition *scope_find(const Scope *scope, const char *name);
 
-/* How far from the origin shapes, cameras and lights may be: single precision, in which devices
-   compute, ends at 3e38, and its squares much earlier. */
+/* The distance from the origin that shapes, cameras and lights may have: single precision, in which
+   devices compute, ends at 3e38, and its squares much earlier. */
 static const double MAX_EXTENT = 1e12;
 
 /* ---- expression.c ---- */
@@ -170,23 +170,25 @@ static const double MAX_EXTENT = 1e12;
 enum { MAX_ELEMENTS = 4 * 1000 * 1000 };
 /* Counts steps of evaluation; false when a limit is reached (reported once). */
 bool count_steps(Elaboration *e, uint64_t count, Span span);
-/* VALUE_ERROR: a mistake was found, and has been reported. */
+/* Evaluates an expression; VALUE_ERROR: a mistake was found, and has been reported. */
 Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* A list's elements in turn: of a SYNTAX_RANGE without making the list.  False: reported. */
 typedef bool EachElement(Elaboration *e, Value element, void *user);
 bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax, EachElement *each,
                    void *user);
-/* The environment with one more name, which hides any equal one. */
+/* Returns the environment with one more name, which hides any equal one. */
 Environment bind(Elaboration *e, const Environment *env, const char *name, Value value);
 /* Tells whether one may go through all shapes of a list and of the lists in it; false: reported. */
 bool check_shape_count(Elaboration *e, const List *list, Span span);
-/* The value of a top-level definition, evaluated when it is first needed, at `use`. */
+/* Returns the value of a top-level definition, evaluated when it is first needed, at `use`. */
 Value run_definition(Elaboration *e, Definition *definition, Span use);
 
 /* ---- hollow.c: a scene without a part ---- */
-/* The place as a span of the texts that are loaded; source 0: none of them is the author's and has that name. */
+/* Returns the place as a span of the texts that are loaded; source 0: none of them is the author's
+   and has that name. */
 Span location_span(const Sources *sources, const KrsLocation *location);
-/* A shape as an empty one in its box, and shapes of a list likewise; any other value as it is. */
+/* Returns a shape as an empty one in its box, and shapes of a list likewise; any other value as it
+   is. */
 Value value_hollow(Elaboration *e, Value value);
 
 /* ---- forget.c: what is needed while one element or one iteration of a loop is evaluated ---- */
@@ -198,10 +200,10 @@ EvaluationMark evaluation_mark(const Elaboration *e);
 /* Frees the values and bindings made since, but for this value, which may be NULL; not if something
    refers to them. */
 void evaluation_forget(Elaboration *e, EvaluationMark mark, Value *result);
-/* The names that `inner` adds to `outer`, so that they stay. */
+/* Returns the names that `inner` adds to `outer`, so that they stay. */
 Environment keep_names(Elaboration *e, const Environment *inner, const Environment *outer);
 
-/* What the clauses of a comprehension hand on: the next clause, or the element itself. */
+/* The function that the clauses of a comprehension call: the next clause, or the element itself. */
 typedef struct Comprehension {
     const Environment    *env;
     const Syntax         *syntax;
@@ -225,7 +227,7 @@ typedef struct IterationTrials {
 typedef struct IterationLoop {
     bool tried, made; /* all iterations at once: tried; and done */
 } IterationLoop;
-/* What a statement shows. */
+/* Evaluates what a statement shows. */
 Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show);
 /* Tells whether that may be tried: the shapes of this comprehension are joined. */
 bool iterations_possible(const Elaboration *e, const Syntax *comprehension);
@@ -237,8 +239,8 @@ bool iterations_require(Elaboration *e, Node condition);
 /* Returns an iteration of a loop that was made at once by itself, for what needs its numbers, and
    any other shape as it is.  NULL: a limit was reached. */
 const Shape *iteration_alone(Elaboration *e, const Shape *shape);
-/* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->iterated, to be set
-   again behind it. */
+/* Begins a definition that is evaluated now, and is no part of a loop that is tried.  Returns
+   e->iterated, to be set again behind it. */
 struct Iterated *iterations_begin_definition(Elaboration *e, Definition *definition);
 
 /* ---- iteration_statements.c: a `for` that shows shapes, evaluated once ---- */
@@ -249,76 +251,77 @@ bool         statement_iterations_made(Elaboration *e, const Environment *env, c
                                        size_t shown, ShowShape *show);
 
 /* ---- fold.c ---- */
-/* A number that the author of the scene may change without another program: it gets an identity, by
-   the order of evaluation, if such numbers are kept out of shaders. */
+/* Returns a number that the author of the scene may change without another program: it gets an
+   identity, by the order of evaluation, if such numbers are kept out of shaders. */
 Value value_authored(Elaboration *e, Value value);
-/* A number that an operation on others gives: the author may change it if one of them.  The same
-   operation on the same numbers gives the same number. */
+/* Returns a number that an operation on others gives: the author may change it if one of them.  The
+   same operation on the same numbers gives the same number. */
 Value value_from(Elaboration *e, Value value, Op op, const Value *arguments, uint32_t count);
 /* Tells whether it is such a number, or a list of some. */
 bool value_is_authored(Value value);
-/* The common case, which makes no node: an operation on numbers that are known now, though the author
-   may change them.  False: some are not, or the result is not finite. */
+/* Computes the common case, which makes no node: an operation on numbers that are known now, though
+   the author may change them.  False: some are not, or the result is not finite. */
 bool fold_op(Op op, const Value *arguments, uint32_t count, double *result);
-/* The same of vectors and numbers, of which the author may change some.  Of others nodes are
+/* Does the same of vectors and numbers, of which the author may change some.  Of others nodes are
    constants, which are folded where they are made. */
 bool fold_vectors(Elaboration *e, Op op, const Value *arguments, uint32_t count, Value *result);
 
 /* ---- arithmetic.c ---- */
-/* The operator `syntax->op` on values; types that it does not go with are reported. */
+/* These return the operator `syntax->op` on values; types that it does not go with are reported. */
 Value value_unary(Elaboration *e, const Syntax *syntax, Value a);
 Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b);
-/* `if` on a condition that is a node: both branches are there, one is chosen. */
+/* Evaluates an `if` on a condition that is a node: both branches are there, one is chosen. */
 Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value yes, Value no);
-/* An operation that works element by element, on numbers and vectors whose types go together
-   (graph_op_type); `origin` is blamed for results that are not finite. */
+/* Returns an operation that works element by element, on numbers and vectors whose types go
+   together (graph_op_type); `origin` is blamed for results that are not finite. */
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
                    const Syntax *origin);
-/* A number, vector or truth value, plain where the node is constant. */
+/* Returns a number, vector or truth value, plain where the node is constant. */
 Value value_of_node(Elaboration *e, Node node);
 /* Takes over `items`, which are in the arena. */
 Value value_list(Elaboration *e, Value *items, size_t count);
 Value value_vector(Elaboration *e, const double *numbers, uint32_t count);
-/* 1 for a number, 2 to 4 for a vector, 0 for anything else. */
+/* Returns 1 for a number, 2 to 4 for a vector, 0 for anything else. */
 uint32_t value_size(const Elaboration *e, Value value);
 /* Tells how many elements a vector has, all of them finite numbers that are known now; else 0. */
 uint32_t value_numbers(Value value, double numbers[4]);
-/* "a number", "a vector of 3", "a shape": for messages. */
+/* Returns "a number", "a vector of 3", "a shape": for messages. */
 const char *value_type_name(Elaboration *e, Value value);
-/* The node of a number, vector or truth value; NODE_NONE when it is none of these. */
+/* Returns the node of a number, vector or truth value; NODE_NONE when it is none of these. */
 Node value_node(Elaboration *e, Value value);
-/* The latest of its parts. */
+/* Returns the latest of its parts. */
 BindingTime value_time(const Elaboration *e, Value value);
 
 /* ---- units.c ---- */
 /* Tells whether a number in an expression has `deg` behind it. */
 bool written_in_degrees(const Elaboration *e, const Syntax *syntax);
-/* "1.5", or "90deg". */
+/* Adds "1.5", or "90deg". */
 void add_number(Text *text, double number, bool degrees);
-/* "90deg" for the literal 90 of a scene; NULL: it is none, or in degrees already. */
+/* Returns "90deg" for the literal 90 of a scene; NULL: it is none, or in degrees already. */
 const char *degrees_instead(Elaboration *e, const Syntax *syntax);
 /* Warns of an angle that is written as a number above one turn. */
 void warn_of_revolutions(Elaboration *e, const Syntax *syntax, Value value);
-/* The same of what turns something: also where names, or numbers times a name, seem to be degrees. */
+/* Does the same of what turns something: also where names, or numbers times a name, seem to be
+   degrees. */
 void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value);
 /* Warns of a constant colour above 1; `help` says what else could be meant. */
 void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, const char *help);
 
 /* ---- reports.c ---- */
-/* The top-level definition that a name refers to, as far as its file tells; or NULL. */
+/* Returns the top-level definition that a name refers to, as far as its file tells; or NULL. */
 const Definition *definition_of(const Elaboration *e, const Syntax *name);
-/* If `syntax` is a top-level name, marks where it was defined as a second place of `diag`. */
+/* Marks where `syntax` was defined as a second place of `diag`, if it is a top-level name. */
 void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
 
 /* ---- members.c ---- */
 /* Tells whether `value.name` has the letters of components behind a vector: `v.x`, `c.rgb`. */
 bool is_component(const Elaboration *e, Value value, const Syntax *syntax);
-/* A number, or a vector of as many components as the name has letters. */
+/* These return a number, or a vector of as many components as the name has letters. */
 Value value_components(Elaboration *e, const Syntax *syntax, Value vector);
 Value value_record(Elaboration *e, const Value *names, const Value *values, size_t count);
-/* What stands under a name, which is written at `span`. */
+/* Returns the member of a name, which is written at `span`. */
 Value record_member(Elaboration *e, const Record *record, const char *name, Span span);
-/* `list[index]`, also of vectors and records. */
+/* Evaluates `list[index]`, also of vectors and records. */
 Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index);
 
 /* ---- files.c ---- */
@@ -333,13 +336,13 @@ FontSearch read_font(Elaboration *e, const char *name, FileBytes *bytes);
 Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,
                     const Function *function);
 
-/* The same with one value for the first parameter; `call` is where that happens. */
+/* Returns the same with one value for the first parameter; `call` is where that happens. */
 Value call_with(Elaboration *e, const Function *function, Value first, const Syntax *call);
-/* The same of a function of the library that scenes do not see. */
+/* Returns the same of a function of the library that scenes do not see. */
 Value call_library(Elaboration *e, const char *name, Value first, const Syntax *call);
 
-/* What in the scene asked for what a function of the library makes now: its name, and the call.  False:
-   the scene makes it itself. */
+/* Finds what in the scene called the function of the library that is evaluated now: its name, and
+   the call.  False: the scene does so itself. */
 bool made_for_author(const Elaboration *e, const char **name, Span *span);
 
 /* ---- empty.c ---- */
@@ -353,7 +356,7 @@ void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *nam
 bool run_message(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Adds what a value is, in words; nothing more once the text is longer than `most`. */
 void value_text(Elaboration *e, Value value, Text *text, size_t most);
-/* A string like those that are written. */
+/* Returns a string like those that are written. */
 Value           value_string(Elaboration *e, const char *bytes, size_t length);
 BuiltinFunction builtin_str;
 
@@ -361,23 +364,23 @@ BuiltinFunction builtin_str;
 /* Reports properties that a block of this kind may not have, and those that are given twice.  False:
    one of the first. */
 bool check_block(Elaboration *e, const Syntax *block);
-/* "a camera", for messages. */
+/* Returns "a camera", for messages. */
 const char *block_name(SyntaxKind kind);
-/* The value of `name:` in a block of properties, or NULL. */
+/* Returns the value of `name:` in a block of properties, or NULL. */
 const Syntax *find_property(const Syntax *block, const char *name);
-/* A number or a vector that does not depend on the point; `otherwise` when it is not given, or is
-   of another type, which is reported. */
+/* These return a number or a vector that does not depend on the point; `otherwise` when it is not
+   given, or is of another type, which is reported. */
 Node number_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
                      double otherwise);
 Node vector_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
                      const double otherwise[3]);
-/* The same of a position, which must be near enough for devices to compute with. */
+/* Returns the same of a position, which must be near enough for devices to compute with. */
 Node position_property(Elaboration *e, const Environment *env, const Syntax *block,
                        const char *name, const double otherwise[3]);
-/* A number that must be known when the scene is compiled, and lie in a range. */
+/* Returns a number that must be known when the scene is compiled, and lie in a range. */
 double constant_property(Elaboration *e, const Environment *env, const Syntax *block,
                          const char *name, double least, double most, double otherwise);
-/* One of a few words, behind which is NULL; NULL when it is not given, or none of them. */
+/* Returns one of a few words, behind which is NULL; NULL when it is not given, or none of them. */
 const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
                           const char *name, const char *const *words);
 
@@ -385,13 +388,13 @@ const char *word_property(Elaboration *e, const Environment *env, const Syntax *
 Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- statements.c ---- */
-/* What an `if` among statements runs, a block or another `if`; or NULL. */
+/* Returns what an `if` among statements runs, a block or another `if`; or NULL. */
 const Syntax *branch_taken(const Syntax *syntax, bool condition);
-/* A function, shape or material of the text, with what it sees. */
+/* Returns a function, shape or material of the text, with what it sees. */
 Value value_function(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Runs the statements of a file. */
 void run_file(Elaboration *e, Scope *scope);
-/* The shape of a `krs` block. */
+/* Returns the shape of a `krs` block. */
 Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- shown.c ---- */
@@ -401,11 +404,11 @@ void gather_shown(Elaboration *e);
 /* ---- what evaluation asks of the rooms of this folder ---- */
 
 /* builtins/builtins.c */
-/* What a name means that no file defines; it is valid until the next call. */
+/* Returns the meaning of a name that no file defines; it is valid until the next call. */
 const BuiltinName *builtin_find(Elaboration *e, const char *name);
-/* A constant (pi, x, time).  One that has no meaning at this place is reported. */
+/* Returns a constant (pi, x, time).  One that has no meaning at this place is reported. */
 Value builtin_constant(Elaboration *e, const char *name, Span span);
-/* All names that need no definition, for names_check; returns how many, at most `capacity`. */
+/* Lists all names that need no definition, for names_check; returns how many, at most `capacity`. */
 size_t builtin_names(const char **names, size_t capacity);
 
 /* builtins/methods.c */
@@ -414,7 +417,7 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* builtins/csg.c */
 /* Tells whether it is `union`, `intersection` or `difference`. */
 bool joins_shapes(const Builtin *builtin);
-/* `a | b`, `a & b` and `a - b` of shapes; `if` on a condition that frames know. */
+/* Evaluates `a | b`, `a & b` and `a - b` of shapes, and `if` on a condition that frames know. */
 Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b);
 Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,
                    const Shape *no);
@@ -424,7 +427,7 @@ Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const 
 void find_beams(Elaboration *e, Component *component);
 
 /* data/texture.c */
-/* `t(u, v)` of the texture of this number. */
+/* Evaluates `t(u, v)` of the texture of this number. */
 Value call_texture(Elaboration *e, const Environment *env, const Syntax *syntax, uint32_t number);
 
 /* view/material.c: the value of a `material` block. */
@@ -439,13 +442,13 @@ void complete_view(Elaboration *e);
 /* view/studio.c */
 /* Plans which boxes of components are to be found in each state. */
 void plan_boxes(Elaboration *e);
-/* Then adds lights, a sky and a floor to a scene that has none, if that is wanted. */
+/* Adds lights, a sky and a floor to a scene that has none, if that is wanted. */
 void run_studio(Elaboration *e, const Files *files);
 
 /* declared/declare.c */
-/* Property `index` of shapes (vocabulary.h). */
+/* Returns the name of property `index` of shapes (vocabulary.h). */
 const char *property_of_shape(size_t index);
-/* The shape of a declaration whose parameters `env` binds; `span` is the call. */
+/* Returns the shape of a declaration whose parameters `env` binds; `span` is the call. */
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
 
 #endif

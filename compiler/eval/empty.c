@@ -15,7 +15,7 @@
 /* A component may have so many operations on numbers, and so many cells that are open at once. */
 enum { MAX_OPERATIONS = 500000, MAX_CELLS = 64 };
 
-/* Placing and painting make nothing empty. */
+/* Returns the shape inside of placings and paint, which make nothing empty. */
 static const Shape *inside_wrappers(const Shape *shape)
 {
     while (shape_info[shape->kind].leaves == LEAVES_ALL)
@@ -45,7 +45,7 @@ static double value_at(const Tape *tape, Node distance, const double point[3], N
     return values[distance].v[0];
 }
 
-/* The half of a box along its longest side. */
+/* Returns the half of a box along its longest side. */
 static Box half_of(Box box, int half)
 {
     int longest = 0;
@@ -100,7 +100,8 @@ static bool is_cancelled(const Graph *g, Node distance)
     return false;
 }
 
-/* Known to be empty by the distance; only what no parameter changes is looked at. */
+/* Tells whether the distance proves a shape to be empty; only what no parameter changes is looked
+   at. */
 static bool is_nowhere(Elaboration *e, const Shape *shape)
 {
     Graph   *g     = e->graph;
@@ -120,7 +121,7 @@ static bool is_nowhere(Elaboration *e, const Shape *shape)
     return empty;
 }
 
-/* The innermost shape of which nothing is left, although something of its parts is. */
+/* Returns the innermost shape of which nothing is left, although something of its parts is. */
 static const Shape *where_it_vanishes(const Shape *shape)
 {
     for (uint32_t i = 0; i < shape->child_count; i++)
@@ -129,7 +130,8 @@ static const Shape *where_it_vanishes(const Shape *shape)
     return shape;
 }
 
-/* Rounding is an offset of a smaller part, whose box tells it; the box of what shrinks is that of its part. */
+/* Tells whether an offset takes all of a shape off.  Rounding is an offset of a smaller part, whose
+   box tells it; the box of what shrinks is that of its part. */
 static bool is_taken_off(Elaboration *e, const Shape *shape)
 {
     if (shape->kind != SHAPE_OFFSET || shape->estimate)

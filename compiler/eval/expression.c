@@ -77,7 +77,7 @@ static Value evaluate_list(Elaboration *e, const Environment *env, const Syntax 
     return wrong ? value_error() : value_list(e, items, syntax->count);
 }
 
-/* A number that is known now: a bound of a range. */
+/* Finds a number that is known now: a bound of a range. */
 static bool constant_number(Elaboration *e, const Environment *env, const Syntax *syntax,
                             const char *what, double *number)
 {
@@ -281,7 +281,8 @@ static Value evaluate_let(Elaboration *e, const Environment *env, const Syntax *
     return evaluate(e, &inner, syntax->children[1]);
 }
 
-/* A number of a text: that of the scene may be changed by its author, that of the library not. */
+/* Returns a number of a text: that of the scene may be changed by its author, that of the library
+   not. */
 static Value written_number(Elaboration *e, double number, const Syntax *syntax)
 {
     Value value = value_number(number);

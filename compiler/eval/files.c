@@ -9,7 +9,7 @@
 
 enum { MAX_FILE_BYTES = 64 << 20 };
 
-/* "folder/file.ttf" for a name in a call in "folder/scene.krs". */
+/* Returns "folder/file.ttf" for a name in a call in "folder/scene.krs". */
 static const char *path_beside(Elaboration *e, const Syntax *syntax, const char *name)
 {
     const char *from  = e->sources->items[syntax->span.source].name;
@@ -84,7 +84,8 @@ bool read_beside(Elaboration *e, const Argument *argument, const char *name, Fil
 
 /* ---- fonts ---- */
 
-/* Its name does not count, nor where the system has it: a scene is the same with the same letters. */
+/* Notes the bytes of a font.  Neither its name nor its folder counts: a scene is the same with the
+   same letters. */
 static void note_font(Elaboration *e, const FileBytes *bytes)
 {
     sources_note_file(e->sources, "font", bytes->bytes, bytes->length);

@@ -33,8 +33,8 @@ typedef struct DerivationKey {
     uint32_t count, latest; /* of the words; of the identities */
 } DerivationKey;
 
-/* What was computed: what is computed again from the same numbers is the same number, as equal
-   nodes are one node. */
+/* The numbers computed so far: the same operation on the same numbers gives the same number, as
+   equal nodes are one node. */
 struct Derivations {
     struct {
         uint64_t *items; /* keys, each with the identity of the first number that it gave */
@@ -88,7 +88,7 @@ static bool is_key(const uint64_t *words, const DerivationKey *key)
     return words[0] == key->words[0] && !memcmp(words, key->words, key->count * sizeof *words);
 }
 
-/* The slot of an equal key, or the free one where it belongs. */
+/* Returns the slot of an equal key, or the free one where it belongs. */
 static NearSlot *find_slot(const struct Derivations *all, const DerivationKey *key, uint32_t hash)
 {
     for (size_t steps = 0;; steps++) {
@@ -98,7 +98,7 @@ static NearSlot *find_slot(const struct Derivations *all, const DerivationKey *k
     }
 }
 
-/* The latest identity in a key that is kept. */
+/* Returns the latest identity in a key that is kept. */
 static uint32_t latest_of(const uint64_t *words)
 {
     uint64_t        latest = 0;
@@ -126,7 +126,8 @@ static void grow(struct Derivations *all, Arena *arena)
     arena_release(arena, old.items, old.count * sizeof *old.items);
 }
 
-/* The identity of the first of `results` numbers that an operation gives; the others follow. */
+/* Returns the identity of the first of `results` numbers that an operation gives; the others
+   follow. */
 static uint32_t derive(Elaboration *e, const DerivationKey *key, uint32_t results)
 {
     if (!e->derivations)
@@ -175,7 +176,7 @@ bool fold_op(Op op, const Value *arguments, uint32_t count, double *result)
     return isfinite(*result);
 }
 
-/* The number or vector that a value is; 0: it is none that is known now and finite. */
+/* Returns the number or vector that a value is; 0: it is none that is known now and finite. */
 static GraphType known_numbers(Value value, NodeValue *numbers)
 {
     if (value.type != VALUE_NUMBER)

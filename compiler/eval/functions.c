@@ -16,7 +16,7 @@ uint32_t parameter_count(const Syntax *definition)
     return count;
 }
 
-/* The names of the parameters of a definition. */
+/* Returns the names of the parameters of a definition. */
 static const char **parameter_names(Elaboration *e, const Syntax *definition)
 {
     uint32_t     count = parameter_count(definition);
@@ -38,7 +38,7 @@ void explain_library(Elaboration *e, Diag *diag, const Syntax *call, const Synta
         explain_usage(e, diag, call, definition->name);
 }
 
-/* The parameter that a named argument is for; UINT32_MAX: reported. */
+/* Returns the parameter that a named argument is for; UINT32_MAX: reported. */
 static uint32_t find_parameter(Elaboration *e, const Syntax *call, const Syntax *definition,
                                const Syntax *argument)
 {
@@ -149,7 +149,7 @@ static bool check_shape_arguments(Elaboration *e, const Function *function, cons
     return true;
 }
 
-/* What a function asserts is about how it is called. */
+/* Marks the call in what a function asserts, which is about how it is called. */
 static void mark_call(Elaboration *e, size_t first, const Syntax *syntax, const Function *function)
 {
     for (size_t i = first; i < e->diags->count; i++) {
@@ -161,7 +161,7 @@ static void mark_call(Elaboration *e, size_t first, const Syntax *syntax, const 
     }
 }
 
-/* The value of a body whose parameters `env` binds. */
+/* Returns the value of a body whose parameters `env` binds. */
 static Value call_body(Elaboration *e, const Function *function, const Environment *env, Span span)
 {
     const Syntax *syntax = function->syntax;
@@ -179,8 +179,8 @@ typedef struct CalledFunction {
     const struct CalledFunction *outer;
 } CalledFunction;
 
-/* The innermost call of a function that is called within itself: others may be met in the last of its
-   iterations alone. */
+/* Returns the innermost call of a function that is called within itself: others may be met in the
+   last of its iterations alone. */
 static const CalledFunction *call_within_itself(const CalledFunction *innermost)
 {
     for (const CalledFunction *call = innermost; call; call = call->outer)
@@ -190,7 +190,7 @@ static const CalledFunction *call_within_itself(const CalledFunction *innermost)
     return innermost;
 }
 
-/* The innermost call that is written in the scene. */
+/* Returns the innermost call that is written in the scene. */
 static const CalledFunction *call_of_author(const Elaboration *e)
 {
     const CalledFunction *call = e->called;
@@ -227,7 +227,7 @@ static void report_depth(Elaboration *e, const CalledFunction *innermost)
         "sphere(1) else box([1, 1, 1]) | tower(n - 1).move([0, 1, 0]);`";
 }
 
-/* What a function, shape declaration or material gives for arguments in order. */
+/* Returns the value of a function, shape declaration or material for arguments in order. */
 static Value call_values(Elaboration *e, const Function *function, const Value *values,
                          const Syntax *const *origins, const Syntax *syntax)
 {

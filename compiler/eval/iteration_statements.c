@@ -9,7 +9,7 @@
 static bool take_block(Elaboration *e, const Environment *env, const Syntax *block, Iterated *t,
                        bool last);
 
-/* `last`: no statement of the body follows. */
+/* Takes an `if`; `last`: no statement of the body follows. */
 static bool take_if(Elaboration *e, const Environment *env, const Syntax *syntax, Iterated *t,
                     bool last)
 {
@@ -60,7 +60,7 @@ static bool evaluate_body(Elaboration *e, const Environment *env, Iterated *t)
     return take_block(e, env, t->body->syntax, t, true);
 }
 
-/* False: the first iteration shows too much. */
+/* Takes the witnesses of a loop; false: the first iteration shows too much. */
 static bool take_witnesses(const Elaboration *e, size_t shown, Iterated *t)
 {
     const size_t count = e->scene->components.count - shown;

@@ -15,12 +15,12 @@
 #include "compiler/graph/instances/iterations.h"
 #include "compiler/shape/iteration_boxes.h"
 
-/* So many loops may be made at once: each takes a slot of the parameter block. */
+/* Loops whose iterations may be evaluated at once: each takes a slot of the parameter block. */
 enum { MAX_LOOPS = 256, MAX_CONDITIONS = 8, MAX_SHARED_SHAPES = 4096 };
 
 /* ---- what may be tried ---- */
 
-/* What a statement shows is joined if it is many (shown.c). */
+/* Tells whether a statement shows the shapes, which are joined if they are many (shown.c). */
 static bool is_shown(const Elaboration *e) { return e->joining && e->joining->kind == SYNTAX_SHOW; }
 
 static bool is_joined(const Elaboration *e, const Syntax *comprehension)
@@ -55,7 +55,7 @@ bool iterations_possible(const Elaboration *e, const Syntax *comprehension)
 
 /* ---- what is put back ---- */
 
-/* What a trial adds to, as it was before. */
+/* The lists that a trial adds to, as they were before. */
 typedef struct Before {
     EvaluationMark values;
     GraphMark      graph;
@@ -89,7 +89,7 @@ static Before remember(Elaboration *e)
                     .here       = e->graph->here};
 }
 
-/* Nothing was reported, and nothing made that an iteration by itself would not make. */
+/* Tells whether nothing was reported, and nothing made that an iteration by itself would not make. */
 static bool is_silent(const Elaboration *e, const Before *before)
 {
     const Diags *diags = &before->diags;
@@ -187,8 +187,8 @@ static bool evaluate_iterated(Elaboration *e, Iterated *t)
 
 /* ---- whether that is all ---- */
 
-/* Large CSG nodes in it would be instance groups by themselves.  What a choice leaves is not the same in all
-   iterations. */
+/* Tells whether iterations may share a shape.  Large CSG nodes in it would be instance groups by
+   themselves, and a choice leaves different shapes in different iterations. */
 static bool may_be_shared(const Elaboration *e, const Shape *shape)
 {
     if (shape->kind == SHAPE_CHOICE || shape->kind == SHAPE_ITERATION ||
@@ -200,7 +200,8 @@ static bool may_be_shared(const Elaboration *e, const Shape *shape)
     return true;
 }
 
-/* What ranges over all iterations make worse than the numbers of one is made iteration by iteration. */
+/* Tells whether ranges over all iterations give a shape as good as the numbers of one; else each
+   iteration is evaluated by itself. */
 static bool is_like(const Shape *shape, const Shape *witness)
 {
     return shape->kind == witness->kind && shape->figure == witness->figure &&
@@ -348,8 +349,8 @@ static bool boxes_agree(const Box *box, const Box *witness)
     return true;
 }
 
-/* What a blend makes of a bound is cut to its box, part by part (group_iterations.c).  Of what is shown each
-   that is empty is reported. */
+/* Tells whether a shape is joined by the CSG node.  A blend of bounds is cut to its box, part by
+   part (group_iterations.c), and each empty shape that is shown is reported. */
 static bool goes_with_csg_node(const IterationBody *body, const Shape *shape)
 {
     return body->shown ? !may_vanish(shape) : shape->exact || !body->bounded;

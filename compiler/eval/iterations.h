@@ -39,8 +39,9 @@ struct Iterated {
     Nodes  roots;      /* conditions of the loop; what must hold; what may not be finite */
     Nodes  required;   /* what must hold in each iteration */
     size_t conditions; /* of the loop */
-    /* What is evaluated before the last condition must hold and be finite also where the iteration is left out:
-       how much must hold, how many numbers are to be finite, and the first node behind it. */
+    /* Numbers that are evaluated before the last condition must hold and be finite also where the
+       iteration is left out: how many must hold, how many are to be finite, and the first node
+       behind them. */
     size_t  early_required, early_numbers;
     Node    early_end;
     double *iterations; /* values of the variable */

@@ -71,7 +71,7 @@ static bool is_pattern(Elaboration *e, Value value)
     return value.type == VALUE_TEXTURE || value.type == VALUE_FUNCTION;
 }
 
-/* The first element that a check refuses, or SIZE_MAX. */
+/* Returns the first element that a check refuses, or SIZE_MAX. */
 static size_t first_refused(Elaboration *e, const List *list, KindCheck *check)
 {
     for (size_t i = 0; i < list->count; i++)
@@ -136,7 +136,7 @@ static bool fits_row(Elaboration *e, const Kind *kind, Value value)
     return kind->many ? is_list_of(e, value, kind->check, kind->many - 1) : kind->check(e, value);
 }
 
-/* What of a list is not as the rest has to be, or why a shape has no bounds. */
+/* Returns what of a list is not as the rest has to be, or why a shape has no bounds. */
 static const char *label_of(Elaboration *e, const Kind *kind, Value value)
 {
     KindCheck *check = kind->many                ? kind->check
@@ -290,7 +290,7 @@ static bool range_end(Elaboration *e, Value value, bool high, double *end)
     return true;
 }
 
-/* Whole numbers, as 0..3 has them. */
+/* Tells whether a parameter takes whole numbers, as 0..3 has them. */
 static bool takes_whole(const Syntax *parameter)
 {
     return parameter->children[1]->kind == SYNTAX_RANGE;
@@ -324,7 +324,7 @@ static bool parameter_range(Elaboration *e, const Environment *env, const Syntax
     return false;
 }
 
-/* "18", or "from 0deg to 18deg" of what is known in frames only. */
+/* Returns "18", or "from 0deg to 18deg" of what is known in frames only. */
 static const char *range_text(Elaboration *e, Range range, bool degrees)
 {
     Text text = {.arena = e->diags->arena};

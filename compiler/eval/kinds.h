@@ -30,7 +30,8 @@ void note_signature(Elaboration *e, Diag *diag, const Syntax *definition);
 void explain_library(Elaboration *e, Diag *diag, const Syntax *call, const Syntax *definition);
 
 /* ---- blame.c ---- */
-/* Mistakes since `first` inside of the library become mistakes of this call, if it is the scene's. */
+/* Turns mistakes since `first` inside of the library into mistakes of this call, if it is the
+   scene's. */
 void blame_caller(Elaboration *e, size_t first, const Syntax *call, const Function *function,
                   const Value *values, const Syntax *const *origins);
 

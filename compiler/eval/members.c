@@ -7,7 +7,7 @@
 
 #include "compiler/eval/elaborate.h"
 
-/* One element of a list, or of a vector known only as a node. */
+/* Returns one element of a list, or of a vector known only as a node. */
 static Value element(Elaboration *e, Value list, size_t index)
 {
     if (list.type == VALUE_LIST)
@@ -21,7 +21,7 @@ static Value element(Elaboration *e, Value list, size_t index)
 static const char *const alphabets[] = {"xyzw", "rgba"};
 enum { ALPHABETS = sizeof alphabets / sizeof *alphabets, MAX_LETTERS = 4 };
 
-/* The alphabet that all letters of a name are from; NULL: no name of components. */
+/* Returns the alphabet that all letters of a name are from; NULL: no name of components. */
 static const char *alphabet_of(const char *name)
 {
     size_t length = strlen(name);
@@ -122,7 +122,7 @@ static Value known_index(Elaboration *e, const Syntax *syntax, Value list, size_
 
 /* ---- an index that frames know ---- */
 
-/* Nodes of all elements, of one type; false: reported. */
+/* Makes nodes of all elements, of one type; false: reported. */
 static bool element_nodes(Elaboration *e, const Syntax *syntax, Value list, size_t count,
                           Node *nodes)
 {
@@ -215,7 +215,7 @@ static Node choose_element(Graph *g, Node index, const Node *nodes, size_t from,
     return graph_op3(g, OP_select, below, low, high);
 }
 
-/* An index that may change with the frames. */
+/* Returns an index that may change with the frames. */
 static Value frame_index(Elaboration *e, const Syntax *syntax, Value list, size_t count, Node index)
 {
     const Syntax *where = syntax->children[1];

@@ -102,7 +102,7 @@ void value_text(Elaboration *e, Value value, Text *text, size_t most)
     add_value(e, text, value, true, most);
 }
 
-/* All positional arguments, with a separator between; "" without any. */
+/* Joins all positional arguments, with a separator between; "" without any. */
 static Text join_arguments(Elaboration *e, const Call *call, const char *separator, size_t most)
 {
     Text text = {.arena = e->diags->arena};
@@ -136,7 +136,7 @@ Value value_string(Elaboration *e, const char *bytes, size_t length)
 
 /* ---- messages ---- */
 
-/* What is printed or said: the values with blanks between, cut where that is long. */
+/* Returns the line that is printed or said: the values with blanks between, cut if it is long. */
 static const char *line_of(Elaboration *e, const Call *call)
 {
     Text text = join_arguments(e, call, " ", MAX_LINE);

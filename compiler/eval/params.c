@@ -53,7 +53,7 @@ static void refuse_range(Elaboration *e, const Syntax *syntax, Value range)
     diag_secondary(e->diags, diag, syntax->children[0]->span, "the default");
 }
 
-/* The range of a `param`, endless when it has none; a number counts for all components. */
+/* Finds the range of a `param`, endless when it has none; a number counts for all components. */
 static bool param_range(Elaboration *e, const Environment *env, const Syntax *syntax,
                         Parameter *parameter)
 {

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Which blocks may have which property; `later` ones are known but not in this version. */
+/* The blocks that may have each property; `later` ones are known but not in this version. */
 static const struct BlockProperty {
     SyntaxKind  block;
     const char *name;
@@ -169,7 +169,7 @@ Node vector_property(Elaboration *e, const Environment *env, const Syntax *block
     return node == NODE_NONE ? graph_constant(e->graph, TYPE_VEC3, otherwise) : node;
 }
 
-/* A position.  A `param` without a range may be anything, and says so at its frame. */
+/* Returns a position.  A `param` without a range may be anything, and says so at its frame. */
 Node position_property(Elaboration *e, const Environment *env, const Syntax *block,
                        const char *name, const double otherwise[3])
 {

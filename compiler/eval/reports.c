@@ -15,7 +15,7 @@ const Definition *definition_of(const Elaboration *e, const Syntax *name)
     return NULL;
 }
 
-/* The first name in an expression whose value is later than compile time. */
+/* Returns the first name in an expression whose value is later than compile time. */
 static const Syntax *find_late_name(const Elaboration *e, const Syntax *syntax)
 {
     if (syntax->kind == SYNTAX_NAME) {
@@ -46,7 +46,7 @@ void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax)
     }
 }
 
-/* What is wanted of a value; a property whose whole value it is has a name. */
+/* Returns what is wanted of a value; a property whose whole value it is has a name. */
 static const char *wanted_of(Elaboration *e, const Syntax *syntax, const char *wanted)
 {
     for (uint32_t i = 0; e->block && i < e->block->count; i++) {
@@ -70,7 +70,7 @@ Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *
     return diag;
 }
 
-/* What helps where a value must be known: a `let`, if it is a `param` that it depends on. */
+/* Returns help where a value must be known: a `let`, if it is a `param` that it depends on. */
 static const char *constant_help(Elaboration *e, const Syntax *syntax)
 {
     enum { LONGEST_CHAIN = 8 };
@@ -151,7 +151,7 @@ void unknown_parameter(Elaboration *e, const Syntax *call, const Syntax *argumen
     diag_note(e->diags, diag, signature(e, name, parameters, count));
 }
 
-/* "a", "b" and "c" */
+/* Returns text such as "`a`, `b` and `c`". */
 static const char *listed_names(Elaboration *e, const Choices *names)
 {
     Text list = {.arena = e->diags->arena};

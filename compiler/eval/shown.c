@@ -35,7 +35,7 @@ static uint64_t hash_with(uint64_t hash, uint64_t word)
     return hash * 0xD6E8FEB86659FD93u;
 }
 
-/* Iterations of one `show` have the same. */
+/* Hashes the place of a component, which is equal for iterations of one `show`. */
 static uint64_t hash_of_place(const Component *component)
 {
     uint64_t hash = hash_with(component->span.source, component->span.start);
@@ -49,7 +49,7 @@ static uint64_t hash_of_declaration(const Shape *shape)
     return syntax ? hash_with(syntax->span.source, syntax->span.start) : 0;
 }
 
-/* What a shape is made of and how, without its numbers. */
+/* Hashes the structure of a shape, without its numbers. */
 static uint64_t hash_of_form(const Shape *shape, int *left)
 {
     uint64_t hash = hash_with(shape->kind, shape->child_count);
@@ -120,7 +120,7 @@ static void find_groups(Gathering *g)
     group(g, keys, MIN_OF_A_FORM);
 }
 
-/* The union of a group, in which each knows its number. */
+/* Joins a group, in which each knows its number. */
 static const Shape *join_group(Elaboration *e, const Gathering *g, size_t first, size_t count)
 {
     const Shape **shapes = arena_new_array(e->values, const Shape *, count);

@@ -98,7 +98,7 @@ static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *synta
     return true;
 }
 
-/* A figure as a solid, about as high as it is long. */
+/* Returns a figure as a solid, about as high as it is long. */
 static const Shape *thicken(const Elaboration *e, const Shape *figure, Span span)
 {
     double height = 1;
@@ -174,7 +174,7 @@ static void add_kernel(Elaboration *e, const Environment *env, const Syntax *syn
         type_error(e, syntax->children[0], value, "a shape");
 }
 
-/* False: neither a plane nor a sphere. */
+/* Reads a mirror; false: it is neither a plane nor a sphere. */
 static bool read_mirror(Elaboration *e, const Shape *shape, SequenceStage *stage)
 {
     if (shape_plane(e->builder, shape, &stage->normal, &stage->offset))
@@ -210,7 +210,7 @@ static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syn
     point_at_definition(e, diag, argument);
 }
 
-/* One stage for each map of a chain, the innermost first. */
+/* Adds one stage for each map of a chain, the innermost first. */
 static void push_map(Elaboration *e, Sequence *sequence, const Map *map, Span span)
 {
     SequenceStage stage = {.kind = SEQUENCE_MAP, .map = *map, .span = span};
@@ -372,8 +372,8 @@ Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax
 
 /* ---- the file ---- */
 
-/* Materials use these coordinates by the names `u` and `v`, or are anisotropic along them.  `declared`: a declaration of
-   them counts as well. */
+/* Tells whether materials use the coordinates `u` and `v`, or are anisotropic along them.
+   `declared`: a declaration of them counts as well. */
 static bool mentions_uv(const Syntax *syntax, bool declared)
 {
     const char *name  = syntax->name;
@@ -385,7 +385,8 @@ static bool mentions_uv(const Syntax *syntax, bool declared)
     return found;
 }
 
-/* What a scene declares is put to the test; the library's claims are true. */
+/* Tells whether files use the coordinates on surfaces.  Declarations of a scene count, since their
+   claims are checked; those of the library are true. */
 static bool files_mention_uv(const Files *files)
 {
     bool found = false;
@@ -420,7 +421,7 @@ void run_file(Elaboration *e, Scope *scope)
     }
 }
 
-/* What used files say of themselves; their other statements are for whoever shows them. */
+/* Runs the messages of used files; their other statements are for whoever shows them. */
 static void run_messages(Elaboration *e, const Scope *scope)
 {
     for (uint32_t i = 0; scope->file && i < scope->file->count; i++)
@@ -428,7 +429,7 @@ static void run_messages(Elaboration *e, const Scope *scope)
             run_message(e, &scope->environment, scope->file->children[i]);
 }
 
-/* Parameters get their slots in the order of the text, whoever needs them first. */
+/* Gives parameters their slots in the order of the text, whoever needs them first. */
 static void run_params(Elaboration *e, Scope *scope)
 {
     for (size_t i = 0; i < scope->definitions.count; i++) {

@@ -8,7 +8,7 @@
 
 #include "compiler/base/arena.h"
 
-/* What makes one texture differ from another. */
+/* The properties by which textures differ. */
 typedef struct TextureKey {
     const char *path;
     uint32_t    wrap, space;

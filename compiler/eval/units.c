@@ -70,8 +70,8 @@ static bool looks_like_degrees(double number)
     return number >= 10 && (fmod(number, 15) == 0 || fmod(360, number) == 0);
 }
 
-/* The literal by which an expression of names, numbers and + - * / counts degrees; NULL: none, or
-   something else is in it, as a function or a unit.  Names are followed `depth` times. */
+/* Returns the literal by which an expression of names, numbers and + - * / counts degrees; NULL:
+   none, or something else is in it, as a function or a unit.  Names are followed `depth` times. */
 static const Syntax *degrees_in(const Elaboration *e, const Syntax *syntax, int depth, bool *else_)
 {
     const Syntax     *found = NULL;
@@ -107,7 +107,7 @@ void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value)
                            graph_bool(e->graph, false)); /* iterations with large numbers earn it */
     if (!large || is_literal(syntax) || e->sources->items[syntax->span.source].library)
         return;
-    /* What has pi or degrees in it is no multiple of a half. */
+    /* A multiple of pi or degrees is no multiple of a half. */
     if (fmod(value.number, 0.5) == 0)
         literal = degrees_in(e, syntax, DEEPEST_CHAIN, &more);
     if (!literal || more)
@@ -123,7 +123,8 @@ void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value)
 
 /* ---- colours ---- */
 
-/* "#ff8000" for [255, 128, 0]: whole numbers up to 255 are the bytes of a colour; else NULL. */
+/* Returns "#ff8000" for [255, 128, 0]: whole numbers up to 255 are the bytes of a colour; else
+   NULL. */
 static const char *bytes_instead(Elaboration *e, const double color[3])
 {
     for (int i = 0; i < 3; i++)
@@ -136,7 +137,7 @@ static const char *bytes_instead(Elaboration *e, const double color[3])
 /* The largest part of a colour is at least this if it counts bytes; lights may be a little above 1. */
 enum { MIN_BYTE = 16 };
 
-/* Iterations with colours that earn the warning are made by themselves. */
+/* Leaves iterations with colours that earn the warning to be evaluated by themselves. */
 static void require_colour(Elaboration *e, Value value)
 {
     const Node color = value_node(e, value);

@@ -6,7 +6,8 @@
 
 #include "compiler/front/syntax.h"
 
-/* What is built in: a row of functions.def, methods.def, constants.def or ops.def each.  The last has no name. */
+/* A word that is built in: a row of functions.def, methods.def, constants.def or ops.def each.  The
+   last has no name. */
 typedef struct BuiltinWord {
     const char *kind, *name; /* "function", "method" or "value" */
     const char *parameters;  /* as the tables have them; NULL: scenes do not call it */
@@ -14,7 +15,8 @@ typedef struct BuiltinWord {
 } BuiltinWord;
 extern const BuiltinWord builtin_words[];
 
-/* Property `index`, from 0, of blocks of a kind, or of declarations of shapes; NULL: there are not so many. */
+/* Returns property `index`, from 0, of blocks of a kind, or of declarations of shapes; NULL: there
+   are not so many. */
 const char *property_of_block(SyntaxKind block, size_t index);
 
 #endif

@@ -15,7 +15,7 @@ static const double SMALL_ANGLE = 1e-6;
 
 /* ---- how it is made ---- */
 
-/* sin(a) / a, whose slope is below 1/2 everywhere. */
+/* Returns the range of sin(a) / a, whose slope is below 1/2 everywhere. */
 static Range range_sinc(Range a)
 {
     double middle = 0.5 * (a.low + a.high), half = 0.5 * (a.high - a.low);
@@ -25,7 +25,7 @@ static Range range_sinc(Range a)
     return (Range){fmax(value - rise, -0.2173), fmin(value + rise, 1)};
 }
 
-/* y and z of the bent box: where its cells go, for all cells of the range of the rate. */
+/* Bounds y and z of the bent box: the union of its cells, for all cells of the range of the rate. */
 static Box bend_box(Box box, Range rate)
 {
     Range z = box.axis[2], half = range_of(0.5);
@@ -111,8 +111,8 @@ static const Shape *bend_upright(ShapeBuilder *builder, const Shape *shape,
     return bent;
 }
 
-/* The rotation that brings the axis to x, and to y what stands upright: y, or x where that is the
-   axis. */
+/* Returns the rotation that brings the axis to x, and to y what stands upright: y, or x where that
+   is the axis. */
 static const Map *bend_rotation(ShapeBuilder *builder, Node axis)
 {
     Graph *g = builder->graph;
@@ -145,7 +145,7 @@ const Shape *make_bend(ShapeBuilder *builder, const Shape *shape, const DeformAr
 
 /* ---- how it is lowered ---- */
 
-/* f(a) / a for an odd f with f(a) / a = 1 at 0. */
+/* Returns f(a) / a for an odd f with f(a) / a = 1 at 0. */
 static Node over_angle(Graph *g, Op f, Node a)
 {
     Node small = graph_number(g, SMALL_ANGLE), size = graph_op1(g, OP_abs, a);
@@ -187,7 +187,7 @@ static BendSegment bend_segment(Graph *g, const Shape *shape, uint32_t i)
     return segment;
 }
 
-/* The box around the bent segment; rate * z stays below 1 in the child's box. */
+/* Finds the box around the bent segment; rate * z stays below 1 in the child's box. */
 static void segment_region(Graph *g, const BendSegment *segment, Box box, Node *low, Node *high)
 {
     Node one = graph_number(g, 1), half = graph_number(g, 0.5);
@@ -217,7 +217,7 @@ static Node unbent_height(Graph *g, Node rate, Node y, Node u, Node w)
     return mul(g, over(g, y, w), angle);
 }
 
-/* *lengths: how much longer things along y are there than they were. */
+/* Undoes a bend; `lengths` are how much longer things along y are there than they were. */
 static void undo_bend(Lowering *l, const BendSegment *segment, Node point,
                       InverseDeformation *inverse, Node *lengths)
 {
@@ -245,7 +245,7 @@ static void undo_bend(Lowering *l, const BendSegment *segment, Node point,
     inverse->out[2]                  = row(g, zero, s_less, c);
 }
 
-/* A segment, at a point of its own space. */
+/* Lowers a segment, at a point of its own space. */
 static Lowered lower_segment(Lowering *l, const Shape *shape, LowerContext context,
                              const BendSegment *segment)
 {

@@ -110,7 +110,7 @@ static Lowered lower_joined(Lowering *l, const Shape *csg_node, const Shape *chi
                                               : lower_operand(l, child, context);
 }
 
-/* Sharply joined in pairs, so that the graph stays shallow. */
+/* Joins shapes sharply in pairs, so that the graph stays shallow. */
 static Lowered union_in_pairs(Lowering *l, const Shape *shape, const Shape *const *children,
                               uint32_t count, LowerContext context)
 {
@@ -124,7 +124,7 @@ static Lowered union_in_pairs(Lowering *l, const Shape *shape, const Shape *cons
     return join_two(l, shape->blend, left, right);
 }
 
-/* `reach` is that of their union, and the context's that of each child. */
+/* Joins shapes; `reach` is that of their union, and the context's that of each child. */
 static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
                         uint32_t count, double reach, LowerContext context)
 {
@@ -196,7 +196,7 @@ Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
     return lower_within_boundary(l, shape, context, difference_by_parts);
 }
 
-/* What is in one of two: their union less what they share. */
+/* Lowers what is in one of two shapes: their union less what they share. */
 static Lowered xor_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
     context   = csg_node_context(shape, context);
@@ -205,7 +205,7 @@ static Lowered xor_by_parts(Lowering *l, const Shape *shape, LowerContext contex
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
         return join_two(l, shape->blend, a, b);
     Lowered result = join_two(l, shape->blend, a, b);
-    /* What they share is the complement of: */
+    /* Their common part is the complement of: */
     b               = complement(l, b);
     Lowered shared  = join_two(l, shape->blend, complement(l, a), b);
     result.distance = graph_op2(l->graph, OP_max, result.distance, shared.distance);
@@ -217,7 +217,7 @@ Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
     return lower_within_boundary(l, shape, context, xor_by_parts);
 }
 
-/* All that is seen is of the part that is cut. */
+/* Lowers a clipped shape, of which all that is seen is of the part that is cut. */
 Lowered lower_clip(Lowering *l, const Shape *shape, LowerContext context)
 {
     Lowered    result   = lower_shape(l, shape->children[0], context);

@@ -9,34 +9,35 @@
 
 /* ---- how they are made ---- */
 
-/* Into how many cells a range is cut where the box of a deformed shape is looked for. */
+/* The number of cells into which a range is cut where the box of a deformed shape is looked for. */
 enum { DEFORM_CELLS = 64 };
 
 /* Slopes of weights may cost so much: a quarter of the step. */
 #define COST_OF_WEIGHT 0.25
 
-/* A solid, whose distance is one; false: reported. */
+/* Checks a solid, whose distance is one; false: reported. */
 bool check_solid(ShapeBuilder *builder, const Shape *shape, const DeformArguments *asked);
-/* A solid with an end in every direction. */
+/* Checks a solid with an end in every direction. */
 bool check_deformable(ShapeBuilder *builder, const Shape *shape, const DeformArguments *asked);
-/* The rotation that brings an axis to y; NULL: it is y. */
+/* Returns the rotation that brings an axis to y; NULL: it is y. */
 const Map *raise_axis(ShapeBuilder *builder, Node axis);
 Shape *deformed_shape(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *shape,
                       const DeformArguments *asked);
-/* What the deformation was divided by, at most, if there is a limit: for reports. */
+/* Notes what the deformation was divided by, at most, if there is a limit: for reports. */
 void note_slope(Shape *deformed, double slope);
-/* How far regions reach beyond a box for meshes (builder_region), else 0; and the shape in a box that is larger by that, and
-   by no more than `most`. */
+/* These return how far regions reach beyond a box for meshes (builder_region), else 0; and the
+   shape in a box that is larger by that, and by no more than `most`. */
 double       region_room(const ShapeBuilder *builder, Box box);
 const Shape *in_region(ShapeBuilder *builder, const Shape *shape, double most);
 
-/* (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
+/* Returns (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
 double shear_slope(double b);
-/* Cell `i` of the DEFORM_CELLS of a range. */
+/* Returns cell `i` of the DEFORM_CELLS of a range. */
 Range range_cell(Range range, int i);
-/* The largest distance from the y axis in a box. */
+/* Returns the largest distance from the y axis in a box. */
 double box_radius(Box box);
-/* Deformed in the position to which a rotation brings it, and rotated back; NULL: reported. */
+/* Deforms a shape in the position to which a rotation brings it, and rotates it back; NULL:
+   reported. */
 const Shape *deform_rotated(ShapeBuilder *builder, const Shape *shape, const Map *rotation,
                             MakeDeformed *deform, const DeformArguments *asked);
 
@@ -50,7 +51,7 @@ typedef struct InverseDeformation {
     Node shrink;        /* how much larger things are in the child's space; NODE_NONE: not */
 } InverseDeformation;
 
-/* The child where the deformation is undone, by a distance with the slope 1. */
+/* Lowers the child where the deformation is undone, by a distance with the slope 1. */
 Lowered lower_undone(Lowering *l, const Shape *shape, LowerContext context,
                      const InverseDeformation *inverse);
 /* Finds the distance outside of C as well, from `result`, that in C.  `is_inside`: a condition that
@@ -61,10 +62,10 @@ Lowered with_region(Lowering *l, Lowered result, Node offset, Node is_inside);
 Node cut_distance(Graph *g, Node distance, double width, Node steep, Node *cost);
 /* Tells how far the solid reaches from the y axis. */
 double axis_radius(Box box);
-/* x and z scaled, y another. */
+/* Returns a point with x and z scaled and another y. */
 Node across_scaled(Graph *g, Node point, Node y, Node factor);
 Node radius_of(Graph *g, Node point);
-/* (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
+/* Returns (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
 Node shear_norm(Graph *g, Node b);
 
 static inline Node least(Graph *g, Node a, Node b) { return graph_op2(g, OP_min, a, b); }

@@ -61,8 +61,8 @@ static void report_bump(ShapeBuilder *builder, Span formula_span, Blame blame)
                  "`param` in it a range";
 }
 
-/* The slope of the formula everywhere or, failing that, where the displaced surface can be.  False:
-   there is no bound on that or on its size, which is reported. */
+/* Bounds the slope of the formula everywhere or, failing that, where the displaced surface can be.
+   False: there is no bound on that or on its size, which is reported. */
 static bool bound_bump(ShapeBuilder *builder, Shape *displaced, Span formula_span, Steepness *slope)
 {
     Box  regions[2] = {box_infinite, displaced->box};
@@ -153,7 +153,7 @@ static Node cut_to_sides(Graph *g, Node distance, Node point, const Sides *sides
     return most(g, distance, around);
 }
 
-/* d - amplitude * formula, over the sum of both slopes. */
+/* Lowers d - amplitude * formula, over the sum of both slopes. */
 Lowered lower_displace(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph       *g     = l->graph;

@@ -74,7 +74,7 @@ static Node nearest_in(Graph *g, Node point, Box box)
     return graph_op3(g, OP_clamp, point, least, most);
 }
 
-/* A bound on the distance at the point's nearest point in C, brought out to the point. */
+/* Returns a bound on the distance at the point's nearest point in C, brought out to the point. */
 static Node extend_from_box(Graph *g, Node bound, Box box)
 {
     if (!box_is_finite(box))
@@ -100,8 +100,9 @@ static Node at_nearest(ShapeBuilder *builder, Node formula, Box box)
 
 static Node opposite(Graph *g, Node a) { return graph_op1(g, OP_neg, a); }
 
-/* Outside of the box that holds all zeros the polynomial is not looked at: thousands of units away
-   its value is too large for single precision, or what is left of numbers that cancel. */
+/* Bounds the distance outside of the box that holds all zeros.  The polynomial is not looked at
+   there: thousands of units away its value is too large for single precision, or what is left of
+   numbers that cancel. */
 static Node near_zeros(ShapeBuilder *builder, Node distance, ZeroBox zeros)
 {
     Graph *g = builder->graph;
@@ -236,7 +237,7 @@ static const Shape *restrict_primitive(ShapeBuilder *builder, const Shape *shape
     return restricted;
 }
 
-/* The children over the same box, grown by what the CSG node may reach around. */
+/* Returns the children over the same box, grown by what the CSG node may reach around. */
 static const Shape *restrict_csg_node(ShapeBuilder *builder, const Shape *shape, Box box,
                                       bool uniform)
 {
@@ -311,7 +312,7 @@ const Shape *restrict_shape(ShapeBuilder *builder, const Shape *shape, Box box, 
     return rules[shape->kind](builder, shape, box, uniform);
 }
 
-/* A field in a tree of infinite slope that has no bound. */
+/* Returns a field in a tree of infinite slope that has no bound. */
 static const Shape *find_unbounded(const Shape *shape)
 {
     while (shape->child_count > 0) {

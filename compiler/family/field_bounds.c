@@ -30,14 +30,14 @@
 #include "compiler/graph/symbolic/local.h"
 #include "compiler/shape/slope.h"
 
-/* Into how many cells a region is cut for slopes: of gradients, which decide how long all steps
-   are, and of heads, of which there are many. */
+/* The numbers of cells into which a region is cut for slopes: of gradients, which decide how long
+   all steps are, and of heads, of which there are many. */
 enum { CELLS = 512, HEAD_CELLS = 32 };
 
 /* Keeps quotients finite; below every coefficient that counts in single precision. */
 static const double TINY = 1e-30;
 
-/* Slope over a box; inf when there is no bound. */
+/* Returns a slope over a box; inf when there is no bound. */
 static double slope_over(ShapeBuilder *builder, Node node, Box box, uint32_t cells)
 {
     Node   root  = node;
@@ -147,8 +147,9 @@ static Terms terms_of(ShapeBuilder *builder, Node formula, Box box)
     return terms;
 }
 
-/* (|head + m| - h) / slope for a rest in `range` = m +- h; NODE_NONE: the slope has no bound.  It is
-   written by the ends of the range, since where one of them is small nothing may cancel. */
+/* Returns (|head + m| - h) / slope for a rest in `range` = m +- h; NODE_NONE: the slope has no
+   bound.  It is written by the ends of the range, since where one of them is small nothing may
+   cancel. */
 static Node head_distance(ShapeBuilder *builder, Node head, Range range, Box box)
 {
     Graph *g     = builder->graph;
@@ -162,7 +163,7 @@ static Node head_distance(ShapeBuilder *builder, Node head, Range range, Box box
     return divide_by_slope(g, size, slope);
 }
 
-/* The longest by all heads; NODE_NONE: the formula is not such a sum. */
+/* Returns the longest by all heads; NODE_NONE: the formula is not such a sum. */
 static Node by_heads(ShapeBuilder *builder, Node formula, Box box)
 {
     Graph *g     = builder->graph;
@@ -274,7 +275,7 @@ static bool is_on_its_way(const TrialRay *ray)
     return ray->count == 0 || ray->retreats || (ray->radius > 0 && ray->count < MAX_STEPS);
 }
 
-/* Where its step ends; false: beyond the box. */
+/* Finds where the step of a ray ends; false: beyond the box. */
 static bool step_end(const TrialMarch *m, const TrialRay *ray, double point[3])
 {
     bool inside = true;
@@ -305,7 +306,7 @@ static void take_distance(const TrialMarch *m, TrialRay *ray, double distance)
     ray->step     = fmax(fmax(distance, m->least), 2 * distance / (1 - ray->change));
 }
 
-/* All rays that are on their way take a step; returns how many were. */
+/* Moves all rays that are on their way by a step; returns how many were. */
 static uint32_t step_rays(const TrialMarch *m, const LaneTape *tape, const LaneWork *work,
                           TrialRay *rays)
 {
@@ -352,7 +353,7 @@ static Trial trial_new(const TrialMarch *m, Node distance)
     return trial;
 }
 
-/* Rays take their steps, no more than `most` together; false: these do not suffice. */
+/* Marches rays by no more than `most` steps together; false: these do not suffice. */
 static bool march_rays(const TrialMarch *m, const Trial *trial, double most, TrialRay *rays)
 {
     NodeValue *values = arena_new_array(m->scratch, NodeValue, trial->tape.graph->count);
@@ -371,7 +372,7 @@ static bool march_rays(const TrialMarch *m, const Trial *trial, double most, Tri
     return true;
 }
 
-/* Multiply-adds of all steps by a distance; infinite if they are `most` or more. */
+/* Returns the multiply-adds of all steps by a distance; infinite if they are `most` or more. */
 static double trial_march_cost(const TrialMarch *m, Node distance, double most)
 {
     const ArenaMark mark  = arena_mark(m->scratch);
@@ -387,7 +388,7 @@ static double trial_march_cost(const TrialMarch *m, Node distance, double most)
     return steps * trial.cost;
 }
 
-/* Multiply-adds of a step. */
+/* Returns the multiply-adds of a step. */
 static double step_cost(const TrialMarch *m, Node distance)
 {
     const ArenaMark mark = arena_mark(m->scratch);
@@ -412,16 +413,16 @@ static TrialMarch trial_march_new(ShapeBuilder *builder, Box box)
 
 /* ---- the choice ---- */
 
-/* The larger of a distance and a bound that knows no sign.  The sign is that of the formula, of
-   which single precision may leave nothing in the distance. */
+/* Returns the larger of a distance and a bound that knows no sign.  The sign is that of the
+   formula, of which single precision may leave nothing in the distance. */
 static Node lengthened(Graph *g, Node formula, Node distance, Node bound)
 {
     Node size = graph_op2(g, OP_max, graph_op1(g, OP_abs, distance), bound);
     return mul(g, graph_op1(g, OP_sign, formula), size);
 }
 
-/* The cheapest of some distances (NODE_NONE: not there), if it is clearly cheaper than the one that
-   there is already; *cost follows. */
+/* Returns the cheapest of some distances (NODE_NONE: not there), if it is clearly cheaper than the
+   one that there is already; *cost follows. */
 static Node cheapest(const TrialMarch *march, Node present, const Node *others, int count,
                      double *cost)
 {
@@ -439,7 +440,7 @@ static Node cheapest(const TrialMarch *march, Node present, const Node *others, 
     return best;
 }
 
-/* The cheapest by local slopes; NODE_NONE: none is cheaper than the bound that there is. */
+/* Returns the cheapest by local slopes; NODE_NONE: none is cheaper than the bound that there is. */
 static Node cheapest_local(ShapeBuilder *builder, const TrialMarch *march, Node formula,
                            Node distance, Box box, double slope, double cost)
 {

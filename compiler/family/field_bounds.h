@@ -13,8 +13,8 @@ typedef struct FieldBounds {
     Node sharp;     /* a longer one that is not, or NODE_NONE */
 } FieldBounds;
 
-/* The bounds that cost rays least, of an expression that has this slope over the box.  `uniform`:
-   near the surface the distance shall be about right everywhere, if possible. */
+/* Returns the bounds that cost rays least, of an expression that has this slope over the box.
+   `uniform`: near the surface the distance shall be about right everywhere, if possible. */
 FieldBounds field_bounds(ShapeBuilder *builder, Node formula, double slope, Box box, bool uniform);
 
 #endif

@@ -26,7 +26,7 @@ const Shape *make_revolve(ShapeBuilder *builder, const Shape *figure, Node offse
     solid->values[0] = offset;
     solid->figure    = false;
     Range x          = range_add(figure->box.axis[0], node_range(builder, offset, 0));
-    /* What crosses the axis is cut by it: the distance inside the cut is only a bound. */
+    /* The axis cuts a figure that crosses it: the distance inside the cut is only a bound. */
     solid->exact = figure->exact && x.low >= 0;
     solid->box   = builder_box(builder, solid);
     return solid;

@@ -18,7 +18,7 @@ static Node pair(ShapeBuilder *builder, double a, double b)
     return graph_constant(builder->graph, TYPE_VEC2, (double[]){a, b});
 }
 
-/* julia_radius for a |c| of frame time: Newton's steps stay above the root. */
+/* Returns julia_radius for a |c| of frame time: Newton's steps stay above the root. */
 static Node radius_node(ShapeBuilder *builder, Node c, uint32_t power)
 {
     Graph *g    = builder->graph;
@@ -40,7 +40,7 @@ static Node radius_node(ShapeBuilder *builder, Node c, uint32_t power)
     return r;
 }
 
-/* The largest |c| for all values of the parameters. */
+/* Returns the largest |c| for all values of the parameters. */
 static double largest_size(ShapeBuilder *builder, Node c)
 {
     double size = 0;

@@ -44,7 +44,7 @@ static void copy_trace(Lowering *l, size_t first, const Shape *iteration)
     }
 }
 
-/* Tables of instance groups in it would be those of all iterations. */
+/* Lowers an iteration without tables of instance groups, which would be those of all iterations. */
 Lowered lower_iteration(Lowering *l, const Shape *shape, LowerContext context)
 {
     struct LoweredGroups *groups = l->groups;

@@ -57,7 +57,7 @@ const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32
 
 /* ---- how it is lowered ---- */
 
-/* exp(-4 x), lowered to be 0 at 1. */
+/* Returns exp(-4 x), lowered to be 0 at 1. */
 static Node faded(Graph *g, Node x)
 {
     double end   = real_exp(-4);
@@ -100,7 +100,7 @@ enum { FACE_POINTS = 7, FACE_LEVELS = 3 };
 /* Beyond it, steps would be too short, and a box shows. */
 static const double MAX_STRETCH = 12;
 
-/* The values of parameters in the middle of their ranges. */
+/* Returns the values of parameters in the middle of their ranges. */
 static NodeValue *middle_parameters(const Graph *g, Arena *scratch)
 {
     NodeValue *values = arena_new_array(scratch, NodeValue, g->parameters.count + 1);
@@ -115,7 +115,7 @@ static NodeValue *middle_parameters(const Graph *g, Arena *scratch)
     return values;
 }
 
-/* A point `above` face `face` of a box, by two numbers from 0 to 1. */
+/* Finds a point `above` face `face` of a box, by two numbers from 0 to 1. */
 static void point_above(Box box, int face, double u, double v, double above, double point[3])
 {
     int   axis = face / 2, first = (axis + 1) % 3, second = (axis + 2) % 3;

@@ -80,8 +80,8 @@ Lowered lower_offset(Lowering *l, const Shape *shape, LowerContext context)
     return result;
 }
 
-/* What is nowhere negative.  A gradient is that of the solid: it does not reverse at the open
-   surface. */
+/* Makes an open surface, which is nowhere negative.  A gradient is that of the solid: it does not
+   reverse at the open surface. */
 static Lowered thin_open_surface(Lowering *l, Lowered solid)
 {
     Graph *g    = l->graph;
@@ -124,15 +124,16 @@ static bool surface_asks_front(Lowering *l, const Surface *surface)
     return asks;
 }
 
-/* 0 where a number is negative, else 1. */
+/* Returns 0 where a number is negative, else 1. */
 static Node is_positive(Graph *g, Node number)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1);
     return graph_op3(g, OP_select, graph_op2(g, OP_less, number, zero), zero, one);
 }
 
-/* Which side of an open surface without thickness is seen: the normal is on the side of the ray, the gradient of
-   the solid on its outside.  The solid itself is 0 there, and its sign rounding. */
+/* Returns which side of an open surface without thickness is seen: the normal is on the side of the
+   ray, the gradient of the solid on its outside.  The solid itself is 0 there, and its sign
+   rounding. */
 static Node front_of_thin(Lowering *l, const Shape *solid, LowerContext context)
 {
     Graph   *g             = l->graph;

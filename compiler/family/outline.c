@@ -16,7 +16,7 @@ static bool is_equal(const OutlineShape *shape, const Curves *curves, FillRule r
            memcmp(shape->drawn.items, curves->items, curves->count * sizeof *curves->items) == 0;
 }
 
-/* Equal contours have one outline. */
+/* Returns the outline of equal contours, if there is one. */
 static OutlineShape *find_outline(const ShapeBuilder *builder, const Curves *curves, FillRule rule)
 {
     for (size_t i = 0; i < builder->outlines.count; i++)

@@ -20,7 +20,7 @@ const Shape *make_smooth(ShapeBuilder *builder, const Shape *shape, Node width, 
     return smooth;
 }
 
-/* All that a material computes, its colour first. */
+/* Makes a tape of all that a material computes, its colour first. */
 static Tape material_tape(const Graph *graph, const Material *material, Arena *arena)
 {
     const Node all[] = {
@@ -91,7 +91,7 @@ const Shape *make_paint(ShapeBuilder *builder, const Shape *shape, const Materia
 
 /* ---- how it is lowered ---- */
 
-/* What a material leaves open stays. */
+/* Paints with the properties that a material has; the others stay. */
 static void paint_with(Lowering *l, Node *property, Node paint, Substitution with)
 {
     if (paint == NODE_NONE)
@@ -100,7 +100,7 @@ static void paint_with(Lowering *l, Node *property, Node paint, Substitution wit
     *property    = lower_footprints(l->graph, painted, l->scratch);
 }
 
-/* A tangent that no material gives is that of `u`. */
+/* Sets the tangent: one that no material gives is that of `u`. */
 static void paint_tangent(Lowering *l, const Material *material, Node point, Surface *surface)
 {
     if (material->tangent == NODE_NONE)

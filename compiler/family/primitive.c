@@ -52,8 +52,8 @@ const Shape *make_empty(ShapeBuilder *builder, Span span)
 
 /* ---- how it is lowered ---- */
 
-/* A number with this value and this gradient: with n and the rest w held constant, dot(n, q) + w
-   changes with the point q as a plane does. */
+/* Returns a number with this value and this gradient: with n and the rest w held constant, dot(n,
+   q) + w changes with the point q as a plane does. */
 static Node with_gradient(Lowering *l, Node value, Node n, Node point)
 {
     Graph *g     = l->graph;
@@ -64,8 +64,8 @@ static Node with_gradient(Lowering *l, Node value, Node n, Node point)
     return graph_op2(g, OP_add, along, w);
 }
 
-/* What has a formula f has its gradient from that: the bound by which it is marched costs many
-   times as much.  NODE_NONE: the formula has no derivative. */
+/* Returns the gradient by the formula f: the bound by which it is marched costs many times as
+   much.  NODE_NONE: the formula has no derivative. */
 static Node tangent_by_formula(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph       *g    = l->graph;
@@ -94,7 +94,7 @@ static bool is_signed_length(const Graph *g, Node distance)
     return false;
 }
 
-/* Such a shape is looked at a thousandth of its coordinates to each side. */
+/* Returns the gradient by differences at a thousandth of the coordinates to each side. */
 static Node tangent_by_differences(Lowering *l, const Shape *shape, LowerContext context,
                                    Node distance)
 {

@@ -160,7 +160,7 @@ static Node within_lattice(Graph *g, const Lattice *cells, Node number)
                                    : graph_op3(g, OP_clamp, number, cells->low, cells->high);
 }
 
-/* Coordinate within the nearest cell. */
+/* Returns the coordinate within the nearest cell. */
 static Node in_cell(Graph *g, const Lattice *cells, Node *number)
 {
     Node ratio = graph_op2(g, OP_div, cells->shifted, cells->period);
@@ -170,8 +170,8 @@ static Node in_cell(Graph *g, const Lattice *cells, Node *number)
     return graph_op2(g, OP_sub, cells->shifted, start);
 }
 
-/* Coordinate within the neighbour cell on the side where the point is; the same cell again
-   where there is no neighbour. */
+/* Returns the coordinate within the neighbour cell on the side where the point is; the same cell
+   again where there is no neighbour. */
 static Node in_neighbour(Graph *g, const Lattice *cells, Node local, Node number, Node *next)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1), minus = graph_number(g, -1);
@@ -182,7 +182,7 @@ static Node in_neighbour(Graph *g, const Lattice *cells, Node local, Node number
     return graph_op2(g, OP_sub, cells->shifted, start);
 }
 
-/* Distance to the wall of the nearest existing neighbour, plus the margin behind it. */
+/* Returns the distance to the wall of the nearest existing neighbour, plus the margin behind it. */
 static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node number)
 {
     Node half  = graph_number(g, 0.5);
@@ -202,19 +202,20 @@ static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node numbe
 }
 
 /*
- * Which neighbour counts changes in the middle of a cell.  Of exact distances the cell's own is the
- * least there.  Of bounds either neighbour's may be, and where something above needs the slope, the
- * distance must not jump.  So it is limited: in the middle of a cell to the distance to the sides
- * of the next copy's box, and copies' distances are made no less than that.  From there the limit
- * grows with the coordinate, and it is the same on both sides of a wall.
+ * Tells whether the distance of copies needs a limit.  Which neighbour counts changes in the middle
+ * of a cell.  Of exact distances the cell's own is the least there.  Of bounds either neighbour's
+ * may be, and where something above needs the slope, the distance must not jump.  So it is limited:
+ * in the middle of a cell to the distance to the sides of the next copy's box, and copies'
+ * distances are made no less than that.  From there the limit grows with the coordinate, and it is
+ * the same on both sides of a wall.
  */
 static bool needs_limit(const Shape *content, LowerContext context)
 {
     return context.lipschitz && !content->exact;
 }
 
-/* What a cell is called: whole numbers from 0 on an axis with a count, in the range of the leaf.
-   NODE_NONE: nobody asks. */
+/* Returns the number of a cell: whole numbers from 0 on an axis with a count, in the range of the
+   leaf.  NODE_NONE: nobody asks. */
 static Node cell_number(Graph *g, const Shape *shape, const Lattice *cells, Node number)
 {
     if (shape->values[1] == NODE_NONE)
@@ -247,8 +248,8 @@ static Node limit_in_cell(Graph *g, const Lattice *cells, Range content, Node lo
     return graph_op2(g, OP_add, offset, next);
 }
 
-/* With limits the distance is small far from all copies; that to the sides of their box is not, and
-   it is a bound. */
+/* Cuts a distance to its limit.  With limits it is small far from all copies; that to the sides of
+   their box is not, and it is a bound. */
 static Lowered cut_to_limit(Lowering *l, const Shape *shape, LowerContext context, Lowered result,
                             Node limit)
 {
@@ -264,8 +265,8 @@ static Lowered cut_to_limit(Lowering *l, const Shape *shape, LowerContext contex
     return result;
 }
 
-/* The copy in the point's own cell, joined with those in the neighbour cells that count: at
-   most one on each axis, so the cells of a corner. */
+/* Joins the copy in the point's own cell with those in the neighbour cells that count: at most one
+   on each axis, so the cells of a corner. */
 static Lowered join_neighbours(Lowering *l, const Shape *shape, LowerContext context,
                                const CellAxis axes[3])
 {
@@ -348,7 +349,7 @@ static bool ends_across(Box box)
     return range_is_finite(box.axis[0]) && range_is_finite(box.axis[2]);
 }
 
-/* Rotation about y that brings an angle to the x axis. */
+/* Returns a rotation about y that brings an angle to the x axis. */
 static Node rotate_about_y(Graph *g, Node point, double angle)
 {
     double c = real_cos(angle), s = real_sin(angle);
@@ -410,8 +411,8 @@ typedef struct Sector {
     double half, angle, margin;
 } Sector;
 
-/* x sin(half) + factor |z| cos(half): with -1 the distance to the nearer wall, and with 1 what is
-   the same in the middle and grows from there. */
+/* Returns x sin(half) + factor |z| cos(half): with -1 the distance to the nearer wall, and with 1
+   what is the same in the middle and grows from there. */
 static Node across_sector(Graph *g, const Sector *sector, Node local, double factor)
 {
     Node z = graph_component(g, local, 2), x = graph_component(g, local, 0);
@@ -423,14 +424,15 @@ static Node across_sector(Graph *g, const Sector *sector, Node local, double fac
     return graph_op2(g, OP_add, along, lateral);
 }
 
-/* Distance to the nearer wall, plus the margin behind it; or what takes its place as a limit. */
+/* Returns the distance to the nearer wall, plus the margin behind it; or what takes its place as a
+   limit. */
 static Node sector_wall(Graph *g, const Sector *sector, Node local, double factor)
 {
     Node wall = across_sector(g, sector, local, factor);
     return graph_op2(g, OP_add, wall, graph_number(g, sector->margin));
 }
 
-/* The content, seen from a place in its sector or next to it. */
+/* Lowers the content, seen from a place in its sector or next to it. */
 static Lowered lower_in_sector(Lowering *l, const Shape *shape, LowerContext context,
                                const Sector *sector, Node local)
 {

@@ -69,7 +69,7 @@ static uint32_t count_inversions(const Shape *krs)
     return count;
 }
 
-/* What is inverted must not be endless; reported at the first inversion after it. */
+/* Refuses kernels that are inverted and endless, at the first inversion after them. */
 static bool check_kernels(ShapeBuilder *builder, const Shape *krs)
 {
     bool                 good      = true;
@@ -165,7 +165,7 @@ static SequenceState *sequence_state_new(Lowering *l, const Shape *krs, LowerCon
     return state;
 }
 
-/* What `orbit_trap` and `orbit_step` are for the kernels that come next. */
+/* Sets `orbit_trap` and `orbit_step` for the kernels that come next. */
 static void watch_orbit(Lowering *l, SequenceState *state)
 {
     Graph *g       = l->graph;
@@ -184,7 +184,7 @@ static void watch_orbit(Lowering *l, SequenceState *state)
     state->nearest    = graph_op2(g, OP_min, length, state->nearest);
 }
 
-/* The next bit of the instance: whether a mirror is passed. */
+/* Adds the next bit of the instance: whether a mirror is passed. */
 static void push_bit(Lowering *l, SequenceState *state, Node behind)
 {
     Op next   = state->krs->levels <= MAX_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
@@ -204,8 +204,8 @@ static void take_mirror(Lowering *l, SequenceState *state, const SequenceStage *
     watch_orbit(l, state);
 }
 
-/* The kernels since the last hull: max(hull, min(a, b)), where nothing waits for what is inside of
-   another hull. */
+/* Joins the kernels since the last hull: max(hull, min(a, b)), where nothing waits for what is
+   inside of another hull. */
 static void leave_hull(Lowering *l, SequenceState *state)
 {
     Node bound      = state->inside == NODE_NONE
@@ -215,8 +215,8 @@ static void leave_hull(Lowering *l, SequenceState *state)
     state->inside   = NODE_NONE;
 }
 
-/* `before`: around what the map is applied to, or NULL.  Where something above moves the surface,
-   it would show how far from a pole the hulls are: then all hulls are used. */
+/* Applies a map; `before`: around what it is applied to, or NULL.  If something above moves the
+   surface, it would show how far from a pole the hulls are: then all hulls are used. */
 static void take_map(Lowering *l, SequenceState *state, const SequenceStage *stage,
                      const LevelBound *before)
 {
@@ -230,8 +230,8 @@ static void take_map(Lowering *l, SequenceState *state, const SequenceStage *sta
     map_chain_append(l, &state->chain, &stage->map, &state->path);
 }
 
-/* Nodes become statements in the order in which they are made.  The next fold is what all other
-   levels wait for: it stands before the kernel, so that a processor has both in sight. */
+/* Prepares the next fold before the kernel.  Nodes become statements in the order in which they are
+   made, and the next fold is what all other levels wait for: so a processor has both in sight. */
 static void prepare_fold(Lowering *l, const SequenceState *state, const SequenceStage *next)
 {
     if (next && next->kind == SEQUENCE_REFLECT)
@@ -299,7 +299,7 @@ static SequenceState *enter_sphere(Lowering *l, SequenceState *state, uint32_t i
     return behind;
 }
 
-/* What the stages of a state make of the kernels that they have met. */
+/* Returns the kernels that the stages of a state have met, joined. */
 static Lowered end_state(Lowering *l, SequenceState *state)
 {
     Lowered result        = state->result;

@@ -12,7 +12,7 @@
 /* The part of the smallest factor that is left at the ends of the region, which is longer than the shape. */
 static const double LEFT_AT_ENDS = 0.5;
 
-/* The factor so far beyond the end that has one, in heights. */
+/* Returns the factor so far beyond the end that has one, in heights. */
 static Node factor_beyond(Graph *g, Node here, Node there, double beyond)
 {
     Node change = sub(g, here, there);
@@ -63,8 +63,8 @@ typedef struct Frustum {
     double height;
 } Frustum;
 
-/* (radius, y) of the nearest point of the frustum to one at (r, y): of the slanted side, or of the disc at its height or the nearest
-   end, where it is itself if it is inside. */
+/* Returns (radius, y) of the nearest point of the frustum to one at (r, y): of the slanted side, or
+   of the disc at its height or the nearest end, where it is itself if it is inside. */
 static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y, Node *is_inside)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1);
@@ -88,7 +88,7 @@ static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y, Node *is
     return graph_op3(g, OP_select, nearer, disc, slant);
 }
 
-/* (x, y, z) -> (x / s, y, z / s) with s = scale(y), whose slope is `rise`. */
+/* Undoes (x, y, z) -> (x / s, y, z / s) with s = scale(y), whose slope is `rise`. */
 static void undo_taper(Lowering *l, Node point, Node scale, Node rise, InverseDeformation *inverse)
 {
     Graph *g    = l->graph;

@@ -9,7 +9,8 @@
 
 /* ---- how it is made ---- */
 
-/* Each slice of the box is rotated by angles of its own, in any case within a cylinder. */
+/* Bounds a twisted box.  Each slice is rotated by angles of its own, in any case within a
+   cylinder. */
 static Box twist_box(Box box, Range rate)
 {
     double radius = box_radius(box);

@@ -28,7 +28,7 @@ bool content_varies(Lowering *l, const Shape *repeat)
     return depends_on_leaf(l->graph, inner.distance, repeat->values[1], l->scratch);
 }
 
-/* How nodes are copied. */
+/* The arguments of a copy. */
 typedef struct Copying {
     Lowering     *l;
     CopyWithLeaf *copy;
@@ -50,7 +50,7 @@ static void copy_surface(const Copying *c, Surface *surface)
 #include "krs/surface.def"
 }
 
-/* What counts as a constant in the content does so in its copies. */
+/* Marks copies of what counts as a constant in the content. */
 static void copy_held(const Copying *c, size_t first)
 {
     Nodes *held = c->l->held_constant;
@@ -81,7 +81,8 @@ static Node in_cell_with(Lowering *l, Node node, const void *user)
     return graph_replace_leaf(l->graph, node, cell->leaf, cell->numbers, l->scratch);
 }
 
-/* Tables of instance groups are for all cells alike, so varied content has none. */
+/* Lowers varied content, which has no tables of instance groups, since these are for all cells
+   alike. */
 Lowered lower_in_cell(Lowering *l, const Shape *repeat, LowerContext context, Node numbers,
                       bool operand)
 {

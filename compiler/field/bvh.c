@@ -328,7 +328,7 @@ double bvh_distance(const Bvh *bvh, const double point[3], double radius, uint32
     return nearest.distance;
 }
 
-/* The nearest point of a segment. */
+/* Finds the nearest point of a segment. */
 static void segment_nearest(const double a[3], const double b[3], const double point[3],
                             double nearest[3])
 {

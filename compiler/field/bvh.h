@@ -23,7 +23,7 @@ typedef struct Bvh {
     size_t    node_count, triangle_count;
 } Bvh;
 
-/* Memory for a tree of so many triangles is in the arena. */
+/* Makes memory in the arena for a tree of so many triangles. */
 void bvh_new(Bvh *bvh, const double (*vertices)[3], const uint32_t (*triangles)[3], size_t count,
              Arena *arena);
 /* Frees what is large of it. */
@@ -33,7 +33,7 @@ void bvh_free(Bvh *bvh, size_t count, Arena *arena);
    whether none did. */
 typedef bool BvhVisit(void *user, uint32_t triangle, const double corners[3][3]);
 bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *visit, void *user);
-/* The same for those whose boxes meet a box. */
+/* Does the same for those whose boxes meet a box. */
 bool bvh_visit_box(const Bvh *bvh, const double low[3], const double high[3], BvhVisit *visit,
                    void *user);
 /* Tells whether a triangle comes within the radius of a point, and its nearest point then. */
@@ -45,10 +45,11 @@ bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t 
 /* Tells whether any does, and the nearest then. */
 bool bvh_find_nearest(const Bvh *bvh, const double point[3], double radius, uint32_t *found);
 
-/* How far it is, and `found` then; the radius if none is nearer than that.  The radius may be infinite. */
+/* Returns the distance of the nearest triangle, `found` then; the radius if none is nearer than
+   that.  The radius may be infinite. */
 double bvh_distance(const Bvh *bvh, const double point[3], double radius, uint32_t *found);
 
-/* The nearest point of a triangle. */
+/* Finds the nearest point of a triangle. */
 void triangle_nearest(const double corners[3][3], const double point[3], double nearest[3]);
 
 #endif

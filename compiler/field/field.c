@@ -7,7 +7,7 @@
 
 /* ---- lane tapes ---- */
 
-/* The least distance of what is meshed, cut by the zones of the scene. */
+/* Makes the tape of the least distance of what is meshed, cut by the zones of the scene. */
 static LaneTape make_tape(const MeshField *field, Arena *arena)
 {
     const MeshSolid *solid = field->solid;
@@ -20,7 +20,7 @@ static LaneTape make_tape(const MeshField *field, Arena *arena)
     return tape;
 }
 
-/* Bytes that a pruned tape may take while it is made. */
+/* Returns the bytes that a pruned tape may take while it is made. */
 static size_t bytes_of_region(const LaneTape *tape)
 {
     return 65536 +
@@ -101,7 +101,7 @@ static bool box_has(const Box *box, const double point[3])
     return true;
 }
 
-/* The shortest tape that is right at all points. */
+/* Returns the shortest tape that is right at all points. */
 static const LaneTape *tape_at(const MeshField *field, const double (*points)[3], size_t count)
 {
     for (size_t r = field->region_count; r > 0; r--) {
@@ -127,7 +127,7 @@ static const LaneTape *tape_in(const MeshField *field, const Box *box)
 
 /* ---- points ---- */
 
-/* The distance to the surface of the box, negative inside. */
+/* Returns the distance to the surface of the box, negative inside. */
 static double distance_to_cut(const MeshField *field, const double point[3])
 {
     double outside = 0, inside = -INFINITY;
@@ -194,7 +194,7 @@ static Range range_around(double middle, Box box)
     return (Range){middle - radius, middle + radius};
 }
 
-/* What cuts the components: its values in a box. */
+/* Returns the range in a box of what cuts the components. */
 static Range range_of_cuts(const MeshField *field, Box box)
 {
     double middle[3];
@@ -219,7 +219,8 @@ Range field_range(const MeshField *field, Box box)
                      range_of_cuts(field, box));
 }
 
-/* Inside, one side of the box is the nearest; false: one does not know which. */
+/* Finds the slope of the cutting box, of which one side is the nearest inside; false: one does not
+   know which. */
 static bool slope_of_cut(const MeshField *field, Box box, LaneSlope *slope)
 {
     Range nearest = range_of(-INFINITY);
@@ -298,8 +299,9 @@ static void enter(MeshField *field, const LaneTape *outer, Box box)
     field->region_count++;
 }
 
-/* To enter a box takes several runs of the tape around it, so the new tape must be much shorter: it is not where it was
-   short, nor in boxes of about the same size. */
+/* The steps up to which a tape is short.  To enter a box takes several runs of the tape around it,
+   so the new tape must be much shorter: it is not where it was short, nor in boxes of about the
+   same size. */
 enum { SHORT = 40 };
 
 static bool is_worth_entering(const MeshField *field, Box box)

@@ -42,7 +42,7 @@ typedef struct MeshField {
     char        *spare;  /* as much memory as that of a region */
 } MeshField;
 
-/* What it needs to answer; frame, solid and box are set, and the frame is up to date. */
+/* Makes what a field needs to answer; frame, solid and box are set, and the frame is up to date. */
 void field_open(MeshField *field, Arena *arena);
 
 /* Enters a box, of which only what is within the last one entered is looked at, and leaves it.  False: there is
@@ -53,23 +53,25 @@ bool field_enter(MeshField *field, Box box);
 void field_focus(MeshField *field, Box box);
 void field_narrow(MeshField *field, Box box);
 void field_leave(MeshField *field);
-/* The tape of the box that was entered last. */
+/* Returns the tape of the box that was entered last. */
 const LaneTape *field_tape(const MeshField *field);
 
 /* Finds distances at up to MAX_FIELD_POINTS points. */
 void   field_distances(const MeshField *field, const double (*points)[3], size_t count,
                        double *distances);
 double field_distance(const MeshField *field, const double point[3]);
-/* The unit gradient, by differences over `step`; false and 0 where there is none. */
+/* Finds the unit gradient, by differences over `step`; false and 0 where there is none. */
 bool field_normal(const MeshField *field, const double point[3], double step, double normal[3]);
 
-/* All values in a box. */
+/* Returns the range of all values in a box. */
 Range field_range(const MeshField *field, Box box);
-/* That and the ranges of its derivatives by x, y and z; false: there are none, or no value is 0. */
+/* Finds that and the ranges of the derivatives by x, y and z; false: there are none, or no value is
+   0. */
 bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope);
 /* Tells where the distance comes from in the box that was entered last, as LaneStep has it. */
 uint32_t field_origin(const MeshField *field, Box box);
-/* And the ranges of its second derivatives; false: there are none, or the first may jump. */
+/* Finds these and the ranges of the second derivatives; false: there are none, or the first may
+   jump. */
 bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slope,
                    LaneHessian *hessian);
 
@@ -98,13 +100,16 @@ typedef struct FieldPieces {
 
 /* Finds the pieces in the box that was entered last; false: it is not made like that. */
 bool field_pieces(MeshField *field, Box box, FieldPieces *pieces);
-/* -1 or 1 where pieces tell that all of a box of the region is inside or outside; 0: they do not. */
+/* Returns -1 or 1 where pieces tell that all of a box of the region is inside or outside; 0: they
+   do not. */
 int field_side(MeshField *field, Box box);
-/* Their values at up to MAX_FIELD_POINTS points in that box: values[i * count] and so on are those of point i. */
+/* Computes the values of pieces at up to MAX_FIELD_POINTS points in that box: values[i * count] and
+   so on are those of point i. */
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,
                         const double (*points)[3], size_t point_count, double *values);
 
-/* The slopes of the first piece, before its sign, in a part of that box which is no point; as of lane_slopes_run. */
+/* Finds the slopes of the first piece, before its sign, in a part of that box which is no point; as
+   of lane_slopes_run. */
 bool field_piece_slope(const MeshField *field, const FieldPieces *pieces, Box part,
                        LaneSlope *slope);
 

@@ -40,7 +40,7 @@ static bool find_greatest(const LaneTape *tape, uint32_t operand, FieldFaces *fa
     return add_face(faces, operand);
 }
 
-/* What is the greatest of some numbers, of which one is 0. */
+/* Finds the greatest of some numbers, of which one is 0. */
 static bool find_above_zero(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
                             FieldFaces *faces, bool *zero)
 {

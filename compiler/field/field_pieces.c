@@ -63,7 +63,7 @@ static void remove_term(Sum *sum, uint32_t k)
     }
 }
 
-/* False: there is no room, or it is no number. */
+/* Adds a term; false: there is no room, or it is no number. */
 static bool add_term(const LaneTape *tape, Sum *sum, uint32_t operand, double weight)
 {
     if (operand & LANE_SCALAR) {
@@ -162,9 +162,10 @@ static bool add_piece(Finding *f, const Sum *sum)
 
 /* ---- distances to boxes ---- */
 
-/* length(max(q, 0)) + min(greatest q, 0) is above 0 where some q is, and else the greatest, if all that are not in the
-   length are nowhere above 0.  So its sum with an offset has the sign of that of the greatest, unless the offset is below 0
-   and the length has several: then it is rounded. */
+/* Finds the faces of a distance.  length(max(q, 0)) + min(greatest q, 0) is above 0 where some q
+   is, and else the greatest, if all that are not in the length are nowhere above 0.  So its sum
+   with an offset has the sign of that of the greatest, unless the offset is below 0 and the length
+   has several: then it is rounded. */
 static bool find_faces(const Finding *f, const LaneStep *step, double offset, FieldFaces *inside)
 {
     for (int k = 0; k < 2; k++) {
@@ -213,7 +214,7 @@ static bool decides_nothing(const Finding *f, const Sum *sum, int choice)
     return sure && (choice == PIECE_MAX ? value.high < 0 : value.low > 0);
 }
 
-/* A minimum or maximum of two, of which one may be left out. */
+/* Adds a minimum or maximum of two, of which one may be left out. */
 static bool add_pair(Finding *f, const Sum sums[2], int choice)
 {
     for (int k = 0; k < 2; k++)
@@ -222,7 +223,7 @@ static bool add_pair(Finding *f, const Sum sums[2], int choice)
     return find_pieces(f, &sums[0]) && find_pieces(f, &sums[1]) && add_step(f, choice);
 }
 
-/* The sum with another term in the place of one; false: there is no room. */
+/* Adds the sum with another term in the place of one; false: there is no room. */
 static bool replace_term(const Finding *f, const Sum *sum, uint32_t k, uint32_t operand,
                          double factor, Sum *replaced)
 {
@@ -232,7 +233,7 @@ static bool replace_term(const Finding *f, const Sum *sum, uint32_t k, uint32_t 
     return add_term(f->tape, replaced, operand, weight);
 }
 
-/* The lesser or greater of two sums, where a term is that of two numbers times factors. */
+/* Adds the lesser or greater of two sums, where a term is that of two numbers times factors. */
 static bool add_choice(Finding *f, const Sum *sum, uint32_t k, const uint32_t operands[2],
                        const double factors[2], bool greater)
 {
@@ -242,7 +243,7 @@ static bool add_choice(Finding *f, const Sum *sum, uint32_t k, const uint32_t op
            add_pair(f, sums, greater == (sum->weights[k] > 0) ? PIECE_MAX : PIECE_MIN);
 }
 
-/* A term that is how far a number is from another one, at least or at most. */
+/* Adds a term that is how far a number is from another one, at least or at most. */
 static bool add_distance(Finding *f, const Sum *sum, uint32_t k, uint32_t number, double from)
 {
     Range range = range_of_operand(f, number);
@@ -257,7 +258,7 @@ static bool add_distance(Finding *f, const Sum *sum, uint32_t k, uint32_t number
     return add_pair(f, sums, sum->weights[k] > 0 ? PIECE_MAX : PIECE_MIN);
 }
 
-/* How far a number is from the nearer one of two multiples of a period. */
+/* Adds the distance of a number from the nearer one of two multiples of a period. */
 static bool add_wave(Finding *f, const Sum *sum, uint32_t k, const LaneWave *wave)
 {
     return wave->last - wave->first == 1 &&
@@ -289,7 +290,8 @@ static bool add_box(Finding *f, const FieldFaces *faces, double sign, double off
     return added > 0;
 }
 
-/* The operand that a product or quotient has beside a scalar, which is multiplied to the factor; NODE_NONE: there is none. */
+/* Returns the operand that a product or quotient has beside a scalar, which is multiplied to the
+   factor; NODE_NONE: there is none. */
 static uint32_t scaled_operand(const Finding *f, const LaneStep *step, double *factor)
 {
     for (int k = step->op == OP_div; k < 2; k++) {
@@ -305,7 +307,7 @@ static uint32_t scaled_operand(const Finding *f, const LaneStep *step, double *f
     return NODE_NONE;
 }
 
-/* The one that a choice takes all over the box; NODE_NONE: either may be. */
+/* Returns the one that a choice takes all over the box; NODE_NONE: either may be. */
 static uint32_t chosen_operand(const Finding *f, const LaneStep *step)
 {
     Range condition = range_of_operand(f, step->operands[0]);
@@ -314,7 +316,7 @@ static uint32_t chosen_operand(const Finding *f, const LaneStep *step)
                                  : NODE_NONE;
 }
 
-/* A term that is a sum, or a number times a scalar. */
+/* Adds a term that is a sum, or a number times a scalar. */
 static bool add_linear(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
 {
     double   weight = sum->weights[k];
@@ -338,9 +340,9 @@ static bool add_linear(Finding *f, const Sum *sum, uint32_t k, const LaneStep *s
            find_pieces(f, &parts);
 }
 
-/* The operand that has the sign of a step, or NODE_NONE: of a product or quotient with what is above 0, of a sign times what is
-   nowhere below, since a maximum of 0 and anything is a number, at least, whether that is sure or not; and of what is clamped
-   between numbers below and above 0. */
+/* Returns the operand that has the sign of a step, or NODE_NONE: of a product or quotient with what
+   is above 0, of a sign times what is nowhere below, since a maximum of 0 and anything is a number,
+   at least, whether that is sure or not; and of what is clamped between numbers below and above 0. */
 static uint32_t operand_of_sign(const Finding *f, const LaneStep *step)
 {
     if (step->op == OP_clamp)
@@ -360,8 +362,8 @@ static uint32_t operand_of_sign(const Finding *f, const LaneStep *step)
     return NODE_NONE;
 }
 
-/* 1 if a choice is nowhere above 0 where its condition holds and nowhere below 0 elsewhere, -1 if it is the other way round;
-   0: the condition does not tell its sign. */
+/* Returns 1 if a choice is nowhere above 0 where its condition holds and nowhere below 0 elsewhere,
+   -1 if it is the other way round; 0: the condition does not tell its sign. */
 static double sign_of_choice(const Finding *f, const LaneStep *step)
 {
     Range chosen = range_of_operand(f, step->operands[1]),
@@ -389,7 +391,7 @@ static bool add_conditions(Finding *f, const LaneStep *step, double sign)
            add_step(f, both == (sign > 0) ? PIECE_MAX : PIECE_MIN);
 }
 
-/* A number that is below 0 where a condition holds and above 0 where it does not. */
+/* Adds a number that is below 0 where a condition holds and above 0 where it does not. */
 static bool add_condition(Finding *f, uint32_t operand, double sign)
 {
     const LaneStep *step       = lane_step_of(f->tape, operand);
@@ -422,7 +424,7 @@ static bool add_line(Finding *f, const LaneStep *step, const double line[3], dou
     return sum.count > 0 && find_pieces(f, &sum);
 }
 
-/* The distance to an outline, by one or two of its lines. */
+/* Adds the distance to an outline, by one or two of its lines. */
 static bool add_outline(Finding *f, const LaneStep *step, double factor, double offset)
 {
     OutlineLines lines;
@@ -435,7 +437,7 @@ static bool add_outline(Finding *f, const LaneStep *step, double factor, double 
              add_step(f, lines.convex == (factor > 0) ? PIECE_MAX : PIECE_MIN)));
 }
 
-/* What is a number times a factor alone: its sign, where nothing is added, may be that of simpler ones. */
+/* Adds a number times a factor alone: its sign, if nothing is added, may be that of simpler ones. */
 static bool add_alone(Finding *f, const LaneStep *step, double factor, double offset)
 {
     FieldFaces faces;

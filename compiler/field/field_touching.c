@@ -56,7 +56,8 @@ static Range range_of_operand(const Forms *forms, uint32_t operand)
     return lane_range_at(forms->tape, forms->ranges, operand);
 }
 
-/* The one that is the lesser or the greater all over the box; NODE_NONE: either may be, or the step is no choice. */
+/* Returns the one that is the lesser or the greater all over the box; NODE_NONE: either may be, or
+   the step is no choice. */
 static uint32_t decided_operand(const Forms *forms, const LaneStep *step)
 {
     if (!field_is_lesser(step) && !field_is_greater(step))
@@ -68,7 +69,7 @@ static uint32_t decided_operand(const Forms *forms, const LaneStep *step)
     return NODE_NONE;
 }
 
-/* The operand that a step is times the factor, all over the box; NODE_NONE: it is none. */
+/* Returns the operand that a step is times the factor, all over the box; NODE_NONE: it is none. */
 static uint32_t scaled_operand(const Forms *forms, const LaneStep *step, double *factor)
 {
     uint32_t whole = lane_sum_of_cuts(forms->tape, forms->ranges, step);
@@ -180,7 +181,7 @@ static void find_children(Tree *tree)
     tree->root = stack[0];
 }
 
-/* What one choice alone compares: pieces, and other choices. */
+/* Finds what one choice alone compares: pieces, and other choices. */
 static void find_leaves(const Tree *tree, int at, int choice, int *leaves, int *count)
 {
     if (tree->pieces->steps[at] != choice) {
@@ -315,7 +316,7 @@ static void leave(Left *left, int at, uint32_t operands[MAX_PIECES][PIECE_VALUES
     }
 }
 
-/* All that is left, with what is beside pairs where there is room. */
+/* Finds all operands that are left, with those beside pairs as far as there is room. */
 static Left find_left(const Tree *tree, uint32_t operands[MAX_PIECES][PIECE_VALUES])
 {
     Left left;

@@ -12,10 +12,10 @@ typedef struct Gradient {
     double middle[3], direction[3], least, most, across;
 } Gradient;
 
-/* False: the value does not grow along any direction that is known. */
+/* Finds the gradient; false: the value does not grow along any direction that is known. */
 bool find_gradient(const LaneSlope *slope, Gradient *gradient);
 
-/* The box of some corners, wider by a margin. */
+/* Returns the box of some corners, wider by a margin. */
 Box corners_box(const double (*corners)[3], size_t count, double margin);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "compiler/base/vec.h"
 
-/* The next place, by false position, and now and then in the middle. */
+/* Finds the next place, by false position, and now and then in the middle. */
 static void place_root(RootSearch *search, int round, double point[3])
 {
     double width   = search->high - search->low;

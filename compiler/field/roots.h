@@ -14,7 +14,8 @@ typedef struct RootSearch {
     bool   done;
 } RootSearch;
 
-/* Up to MAX_FIELD_POINTS of them, until they are between `low` and `high` that are so near to each other. */
+/* Finds up to MAX_FIELD_POINTS roots, until they are between `low` and `high` that are so near to
+   each other. */
 void find_roots(const MeshField *field, RootSearch *searches, size_t count, double enough);
 
 #endif

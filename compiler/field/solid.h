@@ -18,11 +18,12 @@ typedef struct MeshSolid {
     const double (*copy)[4]; /* where in the scene it is once; NULL: it is where it is */
 } MeshSolid;
 
-/* All components, or those that are `wanted`, by their index among the lowered. */
+/* Makes a solid of all components, or of those that are `wanted`, by their index among the
+   lowered. */
 void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *solid);
 /* Tells whether they have one material, which is the same everywhere. */
 bool has_one_material(const KrsScene *scene, const bool *wanted);
-/* Bytes of `roots` that is enough. */
+/* Returns the bytes of `roots` that suffice. */
 size_t solid_root_bytes(const KrsScene *scene);
 
 #endif

@@ -19,7 +19,7 @@ static Node body_of(const Stepping *s, uint32_t function, uint32_t body)
     return instances->bodies.items[instances->functions.items[function].first_body + body];
 }
 
-/* Its result is a state, or what joins the states; sums change evenly. */
+/* Adds the steps of a call, whose result is a state, or what joins the states; sums change evenly. */
 static bool call_steps(const Stepping *s, const Expr *call)
 {
     uint32_t                number   = (uint32_t)s->graph->items[call->operands[0]].number[0];

@@ -39,7 +39,7 @@ static void parse_file(Files *files, File *file)
     file->tokens = (Tokens){0};
 }
 
-/* "folder/used.krs" for a `use "used.krs"` in "folder/file.krs". */
+/* Returns "folder/used.krs" for a `use "used.krs"` in "folder/file.krs". */
 static const char *resolve_path(Files *files, const char *from, const char *path)
 {
     const char *slash = path[0] == '/' ? NULL : strrchr(from, '/');
@@ -95,7 +95,7 @@ static File *find_file(const Files *files, const char *path)
 
 static bool names_library(const Syntax *use) { return strncmp(use->name, "std/", 4) == 0; }
 
-/* The text of a file of the library, or NULL. */
+/* Reads the text of a file of the library, or NULL. */
 static const char *read_library(const char *path, size_t *length)
 {
     for (const EmbeddedFile *file = library_files; file->name; file++)
@@ -225,7 +225,7 @@ static const char *path_of(const Files *files, uint32_t source)
     return "";
 }
 
-/* 0: reported. */
+/* Reads a file of data; 0: reported. */
 static uint32_t read_data(Files *files, const char *path, Span place)
 {
     Loaded   text   = loader_read(files->loader, path);

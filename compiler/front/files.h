@@ -60,10 +60,10 @@ void files_lex(Files *files);
 void files_parse(Files *files);
 /* Reads the files that the scene uses, directly or through others.  Mistakes are reported. */
 void files_load_used(Files *files);
-/* The file that a `use` of another names; NULL: it was not read. */
+/* Returns the file that a `use` of another names; NULL: it was not read. */
 const File *files_used(Files *files, const File *from, const Syntax *use);
-/* The number of the source with the text of a file that source `from` reads, named at `place`; 0: it
-   cannot be read, which is reported. */
+/* Returns the number of the source with the text of a file that source `from` reads, named at
+   `place`; 0: it cannot be read, which is reported. */
 uint32_t files_load_data(Files *files, uint32_t from, const char *name, Span place);
 /* Checks the names of each file (names.h); those in `builtin` need no definition. */
 void files_check_names(Files *files, const char *const *builtin, size_t count);

@@ -55,7 +55,7 @@ typedef struct Layout {
     } columns;
 } Layout;
 
-/* The column behind a piece. */
+/* Returns the column behind a piece. */
 static uint32_t end_from(const Piece *piece)
 {
     return (piece->many_lines ? 0 : piece->from) + piece->width;
@@ -99,7 +99,7 @@ static void join_column(Layout *l, size_t above, size_t below)
     l->columns.items[pieces[below].column - 1].wide |= is_wide(&l->pieces, below);
 }
 
-/* The piece that begins the next line, or their number. */
+/* Returns the piece that begins the next line, or their number. */
 static size_t next_line(const Pieces *pieces, size_t first)
 {
     do
@@ -172,7 +172,7 @@ static bool begins_statement(const Layout *l, size_t index)
            (before->kind == TOKEN_RIGHT_BRACE && !goes_on(l->pieces.items[index].kind));
 }
 
-/* The line of a comment that stands below another one behind words, and goes on with it. */
+/* Returns the line of a comment that stands below another one behind words, and goes on with it. */
 static const Piece *comment_above(const Layout *l, size_t index)
 {
     const Piece *piece = &l->pieces.items[index];
@@ -297,7 +297,7 @@ static void add_blanks(Text *out, uint32_t count)
         text_add_bytes(out, " ", 1);
 }
 
-/* A comment of many lines, without blanks at the ends of lines. */
+/* Writes a piece; a comment of many lines has no blanks at the ends of lines. */
 static void write_piece(const Piece *piece, const char *text, Text *out)
 {
     for (uint32_t at = piece->start, end; at < piece->end; at = end) {

@@ -17,7 +17,7 @@ typedef struct Reader {
 
 bool is_line_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-/* The characters of bytes [start, end), which are UTF-8. */
+/* Returns the characters of bytes [start, end), which are UTF-8. */
 static uint32_t count_characters(const char *text, uint32_t start, uint32_t end)
 {
     uint32_t count = 0;
@@ -90,7 +90,7 @@ Pieces read_pieces(uint32_t source, const Sources *sources, Arena *arena)
     return pieces;
 }
 
-/* Past blanks before the end of a line, which do not count in comments. */
+/* Skips blanks before the end of a line, which do not count in comments. */
 static uint32_t skip_last_blanks(const char *text, uint32_t at, uint32_t end)
 {
     uint32_t behind = at;

@@ -32,12 +32,12 @@ typedef struct Pieces {
 /* Tells whether nothing is seen of a character at the end of a line. */
 bool is_line_blank(char c);
 
-/* The pieces of a source without mistakes. */
+/* Reads the pieces of a source without mistakes. */
 Pieces read_pieces(uint32_t source, const Sources *sources, Arena *arena);
 /* Tells whether both texts have the same words and comments. */
 bool pieces_equal(const Pieces *a, const Pieces *b);
 
-/* The word before piece `index`, past comments, or NULL. */
+/* Returns the word before piece `index`, past comments, or NULL. */
 const Piece *word_before(const Pieces *pieces, size_t index);
 bool         opens(PieceKind kind);
 bool         closes(PieceKind kind);

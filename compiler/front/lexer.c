@@ -24,7 +24,7 @@ typedef struct Lexer {
     Tokens      tokens;
     Text        doc;     /* the `///` lines since the last token */
     Text        scratch; /* the number or string being read */
-    /* What find_beginnings knows of a token by its first byte. */
+    /* The properties of a token by its first byte, as find_beginnings fills them. */
     bool    begins[256];    /* whether something can begin with it */
     bool    lookalike[256]; /* whether a lookalike can */
     uint8_t sign[256];      /* the first kind of token that is a sign and begins with it */
@@ -32,7 +32,7 @@ typedef struct Lexer {
 
 /* ---- characters ---- */
 
-/* ASCII only, whatever the locale. */
+/* Tells whether a character is a digit of ASCII, whatever the locale. */
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_letter(char c)
 {
@@ -41,7 +41,7 @@ static bool is_letter(char c)
 static bool is_word(char c) { return is_letter(c) || is_digit(c); }
 static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/* The byte that is `ahead` bytes behind the next one; NUL beyond the end. */
+/* Returns the byte that is `ahead` bytes behind the next one; NUL beyond the end. */
 static char peek(const Lexer *lexer, uint32_t ahead)
 {
     return ahead < lexer->length - lexer->at ? lexer->text[lexer->at + ahead] : '\0';
@@ -141,8 +141,8 @@ static void skip_text(Lexer *lexer, uint32_t end)
     }
 }
 
-/* The offset of the end of the line that is being read.  It is stored, so that a line with many strings is searched
-   once. */
+/* Returns the offset of the end of the line that is being read.  It is stored, so that a line with
+   many strings is searched once. */
 static uint32_t find_line_end(Lexer *lexer)
 {
     if (lexer->line_end > lexer->at)
@@ -153,7 +153,7 @@ static uint32_t find_line_end(Lexer *lexer)
     return lexer->line_end;
 }
 
-/* `///` begins documentation, `//` and `////` do not. */
+/* Skips a comment of a line; `///` begins documentation, `//` and `////` do not. */
 static void skip_line_comment(Lexer *lexer)
 {
     uint32_t end = find_line_end(lexer);

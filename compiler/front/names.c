@@ -144,7 +144,7 @@ static void warn_of_coordinate(Checker *c, const char *name, Span span)
     diag->label = "from here on it means this";
 }
 
-/* `seen` is where the name is seen. */
+/* Defines a name; `seen` is where it is seen. */
 static void define(Checker *c, const Syntax *syntax, Span seen, CheckedDefinition *definition)
 {
     const char *name = syntax->name;
@@ -168,7 +168,7 @@ static void define_local(Checker *c, const Syntax *syntax, Span seen)
 
 /* ---- uses ---- */
 
-/* The nearest visible name; those of inner scopes come first. */
+/* Returns the nearest visible name; those of inner scopes come first. */
 static const char *suggest(Checker *c, const char *name)
 {
     struct {
@@ -237,7 +237,8 @@ static void walk_children(Checker *c, const Syntax *syntax)
         walk(c, syntax->children[i]);
 }
 
-/* A clause sees the variables of the clauses before it, the element sees those of all clauses. */
+/* Walks a comprehension: a clause sees the variables of the clauses before it, the element sees
+   those of all clauses. */
 static void walk_comprehension(Checker *c, const Syntax *syntax)
 {
     for (uint32_t i = 1; i < syntax->count; i++) {
@@ -271,7 +272,8 @@ static void check_properties(Checker *c, const Syntax *syntax)
     leave_scope(c);
 }
 
-/* A function, shape or material.  A default sees the parameters before it, the body sees all of them. */
+/* Walks a function, shape or material.  A default sees the parameters before it, the body sees all
+   of them. */
 static void walk_function(Checker *c, const Syntax *syntax)
 {
     enter_scope(c);
@@ -284,7 +286,7 @@ static void walk_function(Checker *c, const Syntax *syntax)
     check_properties(c, syntax);
 }
 
-/* In blocks a name is known only behind its definition. */
+/* Walks a block, in which a name is known only behind its definition. */
 static void walk_block(Checker *c, const Syntax *syntax)
 {
     enter_scope(c);
@@ -337,7 +339,8 @@ static void walk(Checker *c, const Syntax *syntax)
 
 /* ---- circles ---- */
 
-/* What is called may call itself; other definitions may not need their own value. */
+/* Tells whether a definition may need itself: functions may call themselves, other definitions may
+   not need their own value. */
 static bool may_need_itself(const CheckedDefinition *definition)
 {
     return syntax_is_function(definition->syntax);
@@ -360,8 +363,8 @@ static void close_circle(DefinitionStack *open, const CheckedDefinition *first, 
     } while (last != first);
 }
 
-/* Tarjan's algorithm from one definition.  It does not recurse, since chains of definitions may be
-   long. */
+/* Finds circles by Tarjan's algorithm from one definition.  It does not recurse, since chains of
+   definitions may be long. */
 static void find_components(Checker *c, CheckedDefinition *root, uint32_t *numbers,
                             uint32_t *circles)
 {

@@ -70,7 +70,7 @@ static void parse_statements(Parser *p, size_t opener, ParseFunction *statement,
     expect_closer(p, TOKEN_RIGHT_BRACE, opener, "a statement or `}`");
 }
 
-/* What differs between a `for` or `if` in a krs block and one elsewhere. */
+/* The differences between a `for` or `if` in a krs block and one elsewhere. */
 typedef struct BlockRules {
     ParseFunction *block, *branch; /* parse the `{ ... }`, and an `if` behind `else` */
     const char    *for_example, *if_example;

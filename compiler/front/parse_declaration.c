@@ -11,8 +11,8 @@
 
 /* ---- definitions ---- */
 
-/* The index of a `[` that begins a range whose `in` is missing, as in `1 [0, 2]`: behind a number, and
-   with a comma, which no index has.  0: there is none in the value that begins here. */
+/* Returns the index of a `[` that begins a range whose `in` is missing, as in `1 [0, 2]`: behind a
+   number, and with a comma, which no index has. 0: there is none in the value that begins here. */
 static size_t find_bare_range(const Parser *p)
 {
     size_t   found = 0;
@@ -69,7 +69,7 @@ static void report_kind(Parser *p, const Token *word)
                                           : "the default of a parameter stands behind `=`";
 }
 
-/* What stands behind the colon. */
+/* Parses the kind behind the colon. */
 static ParameterKind parse_kind(Parser *p)
 {
     const Token *word = expect_label(p, "a kind of value");
@@ -127,7 +127,7 @@ static void parse_parameters(Parser *p, const char *what, const char *example)
     expect_closer(p, TOKEN_RIGHT_PAREN, opener, "`,` or `)` after a parameter");
 }
 
-/* What follows the parameters of a function. */
+/* Parses what follows the parameters of a function. */
 static Syntax *finish_value(Parser *p, Span start, size_t first, const Token *name)
 {
     if (kind_here(p) == TOKEN_LEFT_BRACE)
@@ -139,7 +139,7 @@ static Syntax *finish_value(Parser *p, Span start, size_t first, const Token *na
     return finish_named(p, SYNTAX_DEF, start, first, name);
 }
 
-/* What follows the name of a function. */
+/* Parses what follows the name of a function. */
 static Syntax *finish_def(Parser *p, Span start, size_t first, const Token *name)
 {
     parse_parameters(p, "`(` after the name of a function",
@@ -156,7 +156,8 @@ Syntax *parse_def(Parser *p)
     return finish_def(p, start, first, expect_name(p, "of a function"));
 }
 
-/* `let f(x) = ...;` and `shape f(x) = ...;` go on as a `def`, after reporting that they are one. */
+/* Reports that `let f(x) = ...;` or `shape f(x) = ...;` is a function, and goes on as if it began
+   with `def`. */
 static void report_function(Parser *p, Span start, SynonymForm form)
 {
     Diag *diag = report_at(p, DIAG_UNEXPECTED_TOKEN, start, "a function is defined by `def`");

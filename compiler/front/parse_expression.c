@@ -64,7 +64,7 @@ static Syntax *parse_if_then_else(Parser *p)
 
 /* ---- operators ---- */
 
-/* A node of the operator that was just read and its two operands. */
+/* Returns a node of the operator that was just read and its two operands. */
 static Syntax *binary(Parser *p, const Token *op, Syntax *left, Syntax *right)
 {
     size_t first = begin_children(p);

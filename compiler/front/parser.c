@@ -113,7 +113,7 @@ Diag *report_at(Parser *p, DiagCode code, Span span, const char *message)
     return p->failed ? &p->diags->scrap : diag_add(p->diags, code, span, "%s", message);
 }
 
-/* The span of the current token; at the end of the file, the end of the last token. */
+/* Returns the span of the current token; at the end of the file, the end of the last token. */
 static Span span_here(const Parser *p)
 {
     Span span = token_here(p)->span;

@@ -44,10 +44,11 @@ typedef Syntax *ParseFunction(Parser *p);
 typedef enum BlockKind { SCENE_BLOCK, KRS_BLOCK } BlockKind;
 
 /* ---- tokens ---- */
-/* The kinds of the current token and of the one after it; TOKEN_ERROR after a failure. */
+/* These return the kinds of the current token and of the one after it; TOKEN_ERROR after a
+   failure. */
 TokenKind kind_here(const Parser *p);
 TokenKind kind_after(const Parser *p);
-/* The current token and the one before it, even after a failure. */
+/* These return the current token and the one before it, even after a failure. */
 const Token *token_here(const Parser *p);
 const Token *token_before(const Parser *p);
 /* Moves to the next token and returns the one that was current; accept() only if it has a kind. */
@@ -90,17 +91,17 @@ void leave(Parser *p);
 bool block_is_left(const Parser *p, size_t opener, BlockKind kind);
 /* Goes, after a mistake, behind a declaration with a block that stands where none may. */
 void skip_declaration(Parser *p);
-/* Skip, after a failure, the rest of the statement, or property, that began at `start`. */
+/* Skips, after a failure, the rest of the statement, or property, that began at `start`. */
 void recover_statement(Parser *p, Level start);
 void recover_property(Parser *p, Level start);
 
 /* ---- nodes ---- */
 size_t begin_children(const Parser *p);
 void   add_child(Parser *p, Syntax *child);
-/* A node from `start` to the last token that was read, with the children added since `first`.  An
-   expression in which something failed is a SYNTAX_ERROR. */
+/* Returns a node from `start` to the last token that was read, with the children added since
+   `first`.  An expression in which something failed is a SYNTAX_ERROR. */
 Syntax *finish(Parser *p, SyntaxKind kind, Span start, size_t first, const Token *name);
-/* The same for a kind that needs a name: a SYNTAX_ERROR if that is NULL. */
+/* Returns the same for a kind that needs a name: a SYNTAX_ERROR if that is NULL. */
 Syntax *finish_named(Parser *p, SyntaxKind kind, Span start, size_t first, const Token *name);
 Syntax *error_node(Parser *p);
 

@@ -57,8 +57,8 @@ static const Synonym *find_row(SynonymPlace place, const char *word, const char 
 
 bool is_synonym(SynonymPlace place, const char *word) { return find_row(place, word, "") != NULL; }
 
-/* The place that is looked at where a word has no row of its own: names may be statements, methods
-   of names, and so on. */
+/* Returns the place that is looked at where a word has no row of its own: names may be statements,
+   methods of names, and so on. */
 static SynonymPlace other_place(SynonymPlace place)
 {
     switch (place) {
@@ -124,7 +124,7 @@ bool explain_name(Diags *diags, Diag *diag, const char *name)
     return true;
 }
 
-/* The part of a path behind its last slash and before its last point. */
+/* Returns the part of a path behind its last slash and before its last point. */
 static const char *stem(Diags *diags, const char *path)
 {
     const char *slash = strrchr(path, '/');

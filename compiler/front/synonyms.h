@@ -31,9 +31,9 @@ typedef struct Synonym {
     const char  *word, *owner, *from, *instead, *meaning, *example;
 } Synonym;
 
-/* The rows, for tests; NULL behind the last. */
+/* Returns the rows, for tests; NULL behind the last. */
 const Synonym *synonym_row(size_t index);
-/* What a form is called by, in a scene that leads to its row; its help. */
+/* Returns the text of a form, in a scene that leads to its row; and its help. */
 const char *form_written(SynonymForm form);
 const char *form_example(SynonymForm form);
 const char *form_help(Diags *diags, SynonymForm form);
@@ -44,10 +44,11 @@ bool is_synonym(SynonymPlace place, const char *word);
    of the row, "" where the place has none. */
 bool explain_word(Diags *diags, Diag *diag, SynonymPlace place, const char *word,
                   const char *owner);
-/* The same for an argument called `word` of a function, or .method, that has other parameters. */
+/* Does the same for an argument called `word` of a function, or .method, that has other
+   parameters. */
 bool explain_parameter(Diags *diags, Diag *diag, const char *word, const char *owner,
                        const char *const *parameters, size_t count);
-/* The same for a name that may also be defined in a file of the library that is not used. */
+/* Does the same for a name that may also be defined in a file of the library that is not used. */
 bool explain_name(Diags *diags, Diag *diag, const char *name);
 /* Suggests a file of the library for a `use` of one that is not there. */
 void explain_file(Diags *diags, Diag *diag, const char *path);

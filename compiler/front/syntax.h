@@ -62,7 +62,7 @@ typedef enum SyntaxKind {
     SYNTAX_KIND_COUNT
 } SyntaxKind;
 
-/* What a parameter takes: kinds.def. */
+/* The kind of values that a parameter takes: kinds.def. */
 typedef enum ParameterKind {
     KIND_ANY,
 #define KIND(name, latest, many, check, wanted) KIND_##name,
@@ -89,10 +89,10 @@ struct Syntax {
 /* Most levels of an expression, so that functions may walk the tree by recursion. */
 enum { SYNTAX_MOST_LEVELS = 1000 };
 
-/* "points"; NULL for KIND_ANY. */
+/* Returns "points"; NULL for KIND_ANY. */
 const char *parameter_kind_name(ParameterKind kind);
 
-/* "comprehension", for dumps. */
+/* Returns "comprehension", for dumps. */
 const char *syntax_kind_name(SyntaxKind kind);
 
 /* Tells whether a definition is called: a `def`, a shape, a material with a list of parameters. */

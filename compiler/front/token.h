@@ -24,7 +24,7 @@ typedef struct Token {
     };
 } Token;
 
-/* What messages call a token: "`let`", "a number", "the end of the file". */
+/* Returns what messages call a token: "`let`", "a number", "the end of the file". */
 const char *token_kind_text(TokenKind kind);
 
 /* Tells whether a keyword begins a statement; behind `.` and before `:` such words are names. */
@@ -40,7 +40,7 @@ typedef struct Tokens {
    only where the parser expects them. */
 Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, Arena *arena);
 
-/* 0xrrggbb as linear light. */
+/* Converts 0xrrggbb to linear light. */
 void linear_from_srgb(uint32_t rgb, double linear[3]);
 
 /* Writes a token in each line, for `krs dump --after=lex`. */

@@ -8,7 +8,8 @@
 
 #include <math.h>
 
-/* How far each is above the least one, which is returned, in widths; none farther than one, where all are alike. */
+/* Finds how far each is above the least one, which is returned, in widths; none farther than one,
+   where all are alike. */
 static double heights_above_least(const double *distances, uint32_t count, double width,
                                   double heights[MAX_SHARERS])
 {
@@ -27,8 +28,9 @@ static double heights_above_least(const double *distances, uint32_t count, doubl
     return least;
 }
 
-/* With j of them below the threshold l, which is the mean of their heights and 1 / j, one more at the height h < l takes
-   (l - h) / (j + 1) from the threshold, and j / (j + 1) (l - h)^2 / 2 from the result. */
+/* Finds the shares of a quadratic blend.  With j of them below the threshold l, which is the mean
+   of their heights and 1 / j, one more at the height h < l takes (l - h) / (j + 1) from the
+   threshold, and j / (j + 1) (l - h)^2 / 2 from the result. */
 BlendShares shares_quadratic(const double *distances, uint32_t count, double width)
 {
     double       heights[MAX_SHARERS], taken = 0, second = 0;

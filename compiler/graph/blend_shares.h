@@ -6,7 +6,7 @@
 
 #include "compiler/graph/graph.h"
 
-/* Only the nearest operands have shares, no more than that. */
+/* The operands that may have shares: the nearest ones. */
 enum { MAX_SHARERS = 8 };
 
 /* The result of a blend, and the threshold below which operands have a share. */
@@ -19,7 +19,7 @@ typedef struct BlendShares {
 typedef BlendShares FindShares(const double *distances, uint32_t count, double width);
 FindShares          shares_quadratic, shares_cubic;
 
-/* What belongs to an operation that is such a minimum of vectors: the same of two numbers, of one
+/* The properties of an operation that is such a minimum of vectors: the same of two numbers, of one
    vector and of two, and how its shares are found.  Other operations have zeros. */
 typedef struct SharingOp {
     Op          of_two, of_four, of_eight;

@@ -19,16 +19,16 @@ static inline Node neg(Graph *g, Node a) { return graph_op1(g, OP_neg, a); }
 /* Tells whether a node is this constant; of vectors only 0 is known. */
 bool is_number(const Graph *g, Node node, double value);
 
-/* a + b, a b and a vector times a number, without what is 0 or 1; a a is a square. */
+/* These return a + b, a b and a vector times a number, without what is 0 or 1; a a is a square. */
 Node plus(Graph *g, Node a, Node b);
 Node times(Graph *g, Node a, Node b);
 Node stretch(Graph *g, Node vector, Node by);
 
-/* max(node, least) */
+/* Returns max(node, least). */
 Node at_least(Graph *g, Node node, double least);
-/* The binary logarithm of the k-th root of a number >= 0. */
+/* Returns the binary logarithm of the k-th root of a number >= 0. */
 Node log_of_root(Graph *g, Node number, uint32_t k);
-/* The k-th root of a number >= 0. */
+/* Returns the k-th root of a number >= 0. */
 Node root_of(Graph *g, Node number, uint32_t k);
 
 #endif

@@ -14,7 +14,7 @@
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/texture.h"
 
-/* What leaves get their values from. */
+/* The sources of the values of leaves. */
 typedef struct Inputs {
     const NodeValue *parameters;
     const double    *point, *normal;
@@ -28,7 +28,7 @@ typedef struct Inputs {
     const NodeValue *states;
 } Inputs;
 
-/* Zero has no sign here either (op_evaluate). */
+/* Returns four numbers, in which zero has no sign (op_evaluate). */
 static NodeValue all_of(const double v[4])
 {
     return (NodeValue){{v[0] + 0.0, v[1] + 0.0, v[2] + 0.0, v[3] + 0.0}};
@@ -58,7 +58,8 @@ static NodeValue (*const leaf_values[OP_COUNT])(const Expr *e, const Inputs *in)
 
 NodeValue leaf_unseen(const Expr *leaf) { return leaf_values[leaf->op](leaf, &(Inputs){0}); }
 
-/* Straight from operands to result, without copies, where there is a row of numbers. */
+/* Computes an operation straight from operands to result, without copies, if it is a row of
+   numbers. */
 static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *result,
                            const Expr *nodes)
 {
@@ -85,7 +86,7 @@ static void tape_run_node(const Graph *graph, Node node, NodeValue *values)
     run_row(&graph->items[node], values, &values[node], graph->items);
 }
 
-/* The guard at `i`: how many elements it leaves out. */
+/* Returns the guard at `i`: how many elements it leaves out. */
 static size_t run_guard(const Tape *tape, size_t i, NodeValue *values)
 {
     const Expr *e     = &tape->graph->items[tape->nodes[i]];
@@ -159,7 +160,7 @@ Node tape_frame_infinite(const Tape *tape, const NodeValue *values)
 
 static uint32_t whole(const NodeValue *value) { return (uint32_t)value->v[0]; }
 
-/* OP_row */
+/* Evaluates OP_row. */
 static NodeValue read_table(const Graph *graph, const Expr *e, const NodeValue *values)
 {
     uint32_t column = whole(&values[e->operands[0]]), instance = whole(&values[e->operands[1]]);

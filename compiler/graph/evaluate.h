@@ -17,9 +17,9 @@ typedef struct Tape {
     size_t          frame_count; /* the first frame_count of them are compile or frame time */
     const uint32_t *skips;       /* NULL, or how many to skip at each when it is a guard that leaves
                               something out */
-    /* What each instance function (instance_table.h) that is called does at an instance, by its number.  What
-       they need of the frame is on the tape that calls them.  Others are empty.  These tapes know each other as
-       well, but count none as theirs. */
+    /* The tape of each instance function (instance_table.h) that is called, by its number: what it
+       does at an instance.  What they need of the frame is on the tape that calls them.  Others are
+       empty.  These tapes know each other as well, but count none as theirs. */
     const struct Tape *functions;
     uint32_t           function_count;
     /* Instance group functions have the list of one cell, as in shaders, so a distance is at most the cell's
@@ -31,21 +31,23 @@ typedef struct Tape {
 
 Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
 
-/* The same, but what a guard leaves out is not run, and its values are then of no use.  A guard
-   stands on it twice: before what it may leave out, and after. */
+/* Returns the same, but what a guard leaves out is not run, and its values are then of no use.  A
+   guard stands on it twice: before what it may leave out, and after. */
 Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
 
 /* Tells how many nodes it has at points, those of functions that it calls included. */
 size_t tape_operations(const Tape *tape);
 
-/* What it costs at each point, in multiply-adds; what depends on the frame does not count. */
+/* Returns the multiply-adds of a tape at each point; what depends on the frame does not count. */
 double tape_flops(const Tape *tape);
-/* The same of one of its nodes; of a call for a list of usual length. */
+/* Returns the same of one of its nodes; of a call for a list of usual length. */
 double tape_node_flops(const Tape *tape, Node node);
-/* About that of a tape on which instances of groups are parts by themselves, and rows constants. */
+/* Returns about that of a tape on which instances of groups are parts by themselves, and rows
+   constants. */
 double tape_flops_separate(const Tape *tape);
 
-/* Iterations of the loops that its shaders have within operations and over instances of groups, at most. */
+/* Returns the iterations of the loops that its shaders have within operations and over instances of
+   groups, at most. */
 uint32_t tape_loops(const Tape *tape);
 
 /* Returns where on the tape a node is that the roots need. */
@@ -66,17 +68,17 @@ bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values
 Node tape_frame_infinite(const Tape *tape, const NodeValue *values);
 /* Runs the rest at a point; tape_run_frame has filled `values`. */
 void tape_run_point(const Tape *tape, const double point[3], NodeValue *values);
-/* The same on a surface that has this normal there, seen by pixels of this radius. */
+/* Does the same on a surface that has this normal there, seen by pixels of this radius. */
 void tape_run_surface(const Tape *tape, const double point[3], const double normal[3],
                       double footprint, NodeValue *values);
-/* The same, seen by a ray of this direction, which may be NULL, and no pixel. */
+/* Does the same, seen by a ray of this direction, which may be NULL, and no pixel. */
 void tape_run_seen(const Tape *tape, const double point[3], const double normal[3],
                    const double view[3], NodeValue *values);
 
-/* The value of a leaf that is the same at all points, where nobody looks. */
+/* Returns the value of a leaf that is the same at all points, where nobody looks. */
 NodeValue leaf_unseen(const Expr *leaf);
-/* Only one operation of it, which reads tables or textures; tape_run_frame has filled `values`, where
-   those of its operands change. */
+/* Runs a single operation of a tape, which reads tables or textures; tape_run_frame has filled
+   `values`, where those of its operands change. */
 NodeValue tape_run_reader(const Tape *tape, Node node, const NodeValue *operands,
                           NodeValue *values);
 

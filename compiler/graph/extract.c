@@ -18,8 +18,8 @@ static Node copy_node(Graph *part, const Tape *tape, const Node *copies, Node no
                                  : graph_op(part, e->op, operands);
 }
 
-/* Nodes keep their order: of the two that come next on the tape, of the frame and of the point, the
-   older one is copied first. */
+/* Copies nodes in their order: of the two that come next on the tape, of the frame and of the
+   point, the older one is copied first. */
 static void copy_nodes(Graph *part, const Tape *tape, Node *copies)
 {
     size_t frame = 0, point = tape->frame_count;

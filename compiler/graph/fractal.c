@@ -52,7 +52,7 @@ uint32_t fractal_loops(Op op, double iterations)
     return (uint32_t)iterations;
 }
 
-/* |w|^p + |c| <= |w| for some |w|, as long as |c| is at most this. */
+/* Returns the greatest |c| with |w|^p + |c| <= |w| for some |w|. */
 double mandelbulb_core(double power)
 {
     double r = real_pow(power, -1 / (power - 1));
@@ -69,7 +69,7 @@ static double norm(const double *v, int size)
     return sqrt(sum);
 }
 
-/* (a + b s) (c + d s), where s * s = -square. */
+/* Computes (a + b s) (c + d s), where s * s = -square. */
 static void multiply(double result[2], const double a[2], const double b[2], double square)
 {
     double real = a[0] * b[0] - square * a[1] * b[1];
@@ -89,7 +89,7 @@ static void raise(double result[2], const double base[2], int power, double squa
     }
 }
 
-/* z^power + c: a power of a + v is A + B v. */
+/* Computes z^power + c: a power of a + v is A + B v. */
 static void julia_step(double z[4], const double c[4], int power)
 {
     double raised[2], square = z[1] * z[1] + z[2] * z[2] + z[3] * z[3];
@@ -99,8 +99,8 @@ static void julia_step(double z[4], const double c[4], int power)
         z[i] = raised[1] * z[i] + c[i];
 }
 
-/* White and Nylander's power, its poles on the y axis: the angles from the axis and about it
-   times `power`, by powers of complex numbers.  Returns |sin(power t) / sin t| |w|^(power - 1). */
+/* Computes White and Nylander's power, its poles on the y axis: the angles from the axis and about
+   it times `power`, by powers of complex numbers.  Returns |sin(power t) / sin t| |w|^(power - 1). */
 static double triplex_step(double w[3], const double c[3], int power)
 {
     double across   = real_hypot(w[0], w[2]), tilt[2], turn[2];
@@ -122,7 +122,7 @@ static int iterations_of(const NodeValue *range, const NodeValue *settings)
     return count > 0 ? (int)count : 0;
 }
 
-/* How near the iterates come to the origin (at most 1), and which of them the nearest is, as a
+/* The least distance of the iterates from the origin (at most 1), and which of them it is, as a
    share of all. */
 typedef struct Trap {
     double nearest, which;
@@ -138,7 +138,7 @@ static NodeValue trap_value(Trap trap) { return (NodeValue){{trap.nearest, trap.
 
 /* ---- Julia sets ---- */
 
-/* The radius around z whose image f keeps within x: (|z|^p + x)^(1/p) - |z| without loss. */
+/* Returns the radius around z whose image f keeps within x: (|z|^p + x)^(1/p) - |z| without loss. */
 static double step_back(double size, double x, int power)
 {
     double sum = 1, lower = 1, root = real_pow(real_pow(size, power) + x, 1.0 / power);

@@ -11,16 +11,16 @@
 
 enum { MAX_POWER = 16, MAX_ITERATIONS = 64 };
 
-/* The least R that an orbit of z^power + c does not come back from: R^power = R + |c|. */
+/* Returns the least R that an orbit of z^power + c does not come back from: R^power = R + |c|. */
 double julia_radius(double c, uint32_t power);
-/* The same for the Mandelbulb, whatever the point. */
+/* Returns the same for the Mandelbulb, whatever the point. */
 double mandelbulb_radius(uint32_t power);
 
-/* The `evaluate` columns of ops.def.  Operands: point, c (Julia sets), (power, most iterations),
-   (iterations, escape radius). */
+/* These return the `evaluate` columns of ops.def.  Operands: point, c (Julia sets), (power, most
+   iterations), (iterations, escape radius). */
 NodeValue evaluate_julia(const NodeValue *o, uint32_t size);
 NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size);
-/* Operands: point, (power, most iterations), (iterations, escape radius). */
+/* Evaluates a Mandelbulb; operands: point, (power, most iterations), (iterations, escape radius). */
 NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size);
 NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size);
 
@@ -29,7 +29,7 @@ NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size);
 enum { UNROLLED_JULIA = 32 };
 uint32_t fractal_loops(Op op, double iterations);
 
-/* Radius of a ball about the origin that every Mandelbulb of this power contains. */
+/* Returns the radius of a ball about the origin that every Mandelbulb of this power contains. */
 double mandelbulb_core(double power);
 /* Outside of this many escape radii the ball of that radius serves as the solid. */
 #define MANDELBULB_NEAR 1.15

@@ -101,7 +101,7 @@ static GraphType map_type(const GraphType *operands, uint32_t count)
     return type;
 }
 
-/* The type a letter of a signature stands for; `vector` and `any` are 0 until one is met. */
+/* Tells whether a type fits the letter of a signature; `vector` and `any` are 0 until one is met. */
 static bool letter_fits(char letter, GraphType type, GraphType *vector, GraphType *any)
 {
     switch (letter) {
@@ -258,7 +258,7 @@ bool graph_known_finite(const Graph *graph, Node node)
 
 /* ---- operations ---- */
 
-/* The constant that e is when all its operands are; NODE_NONE when it is not a finite one. */
+/* Returns the constant that e is when all its operands are; NODE_NONE when it is not a finite one. */
 static Node fold_constant(Graph *graph, const Expr *e)
 {
     for (int i = 0; i < e->operand_count; i++)
@@ -280,14 +280,14 @@ static Node fold_constant(Graph *graph, const Expr *e)
     return graph_constant(graph, e->type, value.v);
 }
 
-/* The earliest that the value of an operation is known, but for constants. */
+/* Returns the earliest that the value of an operation is known, but for constants. */
 static uint8_t earliest_time(Op op)
 {
     return op_has_traits(op, READS_TABLES) ? TIME_POINT : TIME_FRAME;
 }
 
-/* The node of e, whose operands are in place; its binding time is the latest of theirs, or the
-   frame's for what is constant and not finite: shaders have no literal for it. */
+/* Returns the node of e, whose operands are in place; its binding time is the latest of theirs, or
+   the frame's for what is constant and not finite: shaders have no literal for it. */
 static Node operation(Graph *graph, Expr e)
 {
     Node folded = fold_constant(graph, &e);
@@ -361,7 +361,7 @@ Node graph_component(Graph *graph, Node vector, uint32_t index)
 
 /* ---- powers ---- */
 
-/* base ^ n for n >= 1, bit by bit from the highest. */
+/* Returns base ^ n for n >= 1, bit by bit from the highest. */
 static Node power_positive(Graph *graph, Node base, uint32_t n)
 {
     uint32_t bit = 1;

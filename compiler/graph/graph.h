@@ -26,7 +26,7 @@ typedef enum GraphType {
     TYPE_UINT
 } GraphType;
 
-/* When a node's value is known; a node is as late as its latest operand. */
+/* The time at which a node's value is known; a node is as late as its latest operand. */
 typedef enum BindingTime { TIME_COMPILE, TIME_FRAME, TIME_POINT } BindingTime;
 
 typedef enum Op {
@@ -40,7 +40,7 @@ typedef enum Op {
 
 enum { MAX_OPERANDS = 4 };
 
-/* What may be taken for granted of an operation, as bits: ops.def. */
+/* The traits of an operation, as bits: ops.def. */
 typedef enum OpTraits {
     NO_TRAITS     = 0,
     STAYS_FINITE  = 1,
@@ -108,7 +108,7 @@ typedef struct Graph {
     uint32_t marks;
 } Graph;
 
-/* An empty graph whose parameter 0 is `time`, in (-inf, inf). */
+/* Returns an empty graph whose parameter 0 is `time`, in (-inf, inf). */
 Graph *graph_new(Arena *arena);
 
 /* intern.c: the node of an expression, new if there is none; its operands and time are right. */
@@ -136,30 +136,31 @@ Node graph_vec3(Graph *graph, double x, double y, double z);
 Node graph_bool(Graph *graph, bool value);
 Node graph_uint(Graph *graph, uint32_t value);
 Node graph_parameter(Graph *graph, uint32_t slot, GraphType type);
-/* A number of the frame that is known now, and told apart from others by its index alone. */
+/* Returns a number of the frame that is known now, and told apart from others by its index alone. */
 Node graph_parameterised(Graph *graph, GraphType type, const double *numbers, uint32_t index);
-/* That of another graph, of which this is the expression. */
+/* Copies a leaf of another graph. */
 Node graph_copy_leaf(Graph *graph, const Expr *leaf);
 Node graph_leaf(Graph *graph, Op op); /* one whose type is the same everywhere */
-/* A leaf of point time that is told apart from others by its index. */
+/* Returns a leaf of point time that is told apart from others by its index. */
 Node graph_indexed_leaf(Graph *graph, Op op, GraphType type, uint32_t index);
 
-/* An operation on as many operands as its row says (asserted, with their types).  Operands that
-   are all constant are folded by op_evaluate, unless the result is not finite: then the node
-   stays, for whoever wants to report it.  What reads tables is never folded.  Where one operand
-   of a componentwise row is a FLOAT and another a vector, the FLOAT is spread (OP_splat2..4). */
+/* These return an operation on as many operands as its row says (asserted, with their types).
+   Operands that are all constant are folded by op_evaluate, unless the result is not finite: then
+   the node stays, for whoever wants to report it.  What reads tables is never folded.  Where one
+   operand of a componentwise row is a FLOAT and another a vector, the FLOAT is spread
+   (OP_splat2..4). */
 Node graph_op(Graph *graph, Op op, const Node *operands);
 Node graph_op1(Graph *graph, Op op, Node a);
 Node graph_op2(Graph *graph, Op op, Node a, Node b);
 Node graph_op3(Graph *graph, Op op, Node a, Node b, Node c);
 Node graph_op4(Graph *graph, Op op, Node a, Node b, Node c, Node d);
-/* Component `index` (0..3) of a vector; of a FLOAT, component 0 is itself. */
+/* Returns component `index` (0..3) of a vector; component 0 of a FLOAT is itself. */
 Node graph_component(Graph *graph, Node vector, uint32_t index);
-/* base ^ exponent: by multiplication where the exponent is a small constant integer, by square
-   roots where it is 1/2 or -1/2, else OP_pow. */
+/* Returns base ^ exponent: by multiplication where the exponent is a small constant integer, by
+   square roots where it is 1/2 or -1/2, else OP_pow. */
 Node graph_power(Graph *graph, Node base, Node exponent);
 
-/* The type that an operation on these operands has, or 0 when it is not defined for them. */
+/* Returns the type that an operation on these operands has, or 0 when it is not defined for them. */
 GraphType graph_op_type(Op op, const GraphType *operands, uint32_t count);
 
 const char *graph_op_name(Op op);
@@ -170,12 +171,12 @@ bool graph_known_component(const Graph *graph, Node node, uint32_t component, do
 /* Tells whether all are known, and finite. */
 bool graph_known_finite(const Graph *graph, Node node);
 
-/* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
+/* Returns the row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);
 bool        op_has_traits(Op op, OpTraits traits);
 /* Tells whether the operand says how it works, not where: an exponent or a count. */
 bool op_has_setting(Op op, int operand);
-/* What an operation costs, in multiply-adds of one component, as measured on lavapipe. */
+/* Returns the cost of an operation, in multiply-adds of one component, as measured on lavapipe. */
 double op_cost(Op op, GraphType type, const GraphType *operands);
 
 /* A copy of `root` (and all it needs) in the same graph, with leaves replaced: OP_POINT by
@@ -186,26 +187,26 @@ typedef struct Substitution {
 /* Makes a substitution of the point alone. */
 Substitution substitute_point(Node point);
 Node         graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch);
-/* A copy with one leaf replaced by a node of its type. */
+/* Returns a copy with one leaf replaced by a node of its type. */
 Node graph_replace_leaf(Graph *graph, Node root, Node leaf, Node by, Arena *scratch);
 
-/* A copy of all that `roots` need, in a graph of its own with the same parameters; the roots are
-   renumbered in place.  The work grows with what they need, not with the graph. */
+/* Returns a copy of all that `roots` need, in a graph of its own with the same parameters; the
+   roots are renumbered in place.  The work grows with what they need, not with the graph. */
 Graph *graph_extract(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
-/* The same with all functions of instance groups, so that it can be evaluated. */
+/* Returns the same with all functions of instance groups, so that it can be evaluated. */
 Graph *graph_extract_with_instances(const Graph *graph, Node *roots, size_t root_count,
                                     Arena *arena);
 
-/* The same of roots that do not depend on the point, with its x in the place of a leaf; the copies of
-   the roots go to `copies`. */
+/* Returns the same of roots that do not depend on the point, with its x in the place of a leaf; the
+   copies of the roots go to `copies`. */
 Graph *graph_extract_along(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
                            Node *copies, Arena *arena);
 
 /* Asserts what every pass must keep: operands first, types right, arity right, times right. */
 void graph_validate(const Graph *graph, const char *pass);
 
-/* One needed node a line, "%12 vec3 point = sub %3 %11  ; file:line:column", then functions of instance groups
-   with their bodies, then the roots, each as "root %12"; `sources` may be NULL. */
+/* Prints one needed node a line, "%12 vec3 point = sub %3 %11 ; file:line:column", then functions
+   of instance groups with their bodies, then the roots, each as "root %12"; `sources` may be NULL. */
 void graph_print(const Graph *graph, const Sources *sources, const Node *roots, size_t root_count,
                  Text *out);
 

@@ -63,7 +63,7 @@ static double outside_cell(const Grid *grid, int axis, uint32_t cell, double coo
     return outside(low, low + grid->size, coordinate);
 }
 
-/* The first of the instances from `first` on in an ascending list. */
+/* Returns the first of the instances from `first` on in an ascending list. */
 static const uint32_t *list_from(const uint32_t *list, const uint32_t *end, uint32_t first)
 {
     while (list < end) {
@@ -91,7 +91,8 @@ static double far_side(const Grid *grid, int axis, uint32_t cell, double coordin
     return fmax(coordinate - low, low + grid->size - coordinate);
 }
 
-/* The cells of a row along x that are not farther than `away` along it, and not all within `clear`. */
+/* Adds the cells of a row along x that are not farther than `away` along it, and not all within
+   `clear`. */
 static void add_row(const Grid *grid, size_t row, double x, double away, double clear,
                     NearInstances *near)
 {

@@ -28,9 +28,9 @@ typedef struct Grid {
 } Grid;
 
 /*
- * The list for a point, of *count instances.  No other instance is nearer than *clearance, after all that
- * `reach` allows for.  Outside of the grid the list is empty, and the clearance is the distance to
- * `inner`, which is there larger than some constant.
+ * Returns the list for a point, of *count instances.  No other instance is nearer than *clearance,
+ * after all that `reach` allows for.  Outside of the grid the list is empty, and the clearance is
+ * the distance to `inner`, which is there larger than some constant.
  */
 const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
                           double *clearance);
@@ -40,8 +40,8 @@ size_t grid_cell_count(const Grid *grid);
 /* Tells how far a point is from a box. */
 double distance_to_box(const Box *box, const double point[3]);
 
-/* Which of `count` instances from number `first` on are near a point: bit i % 64 of bits[i / 64] is that
-   of instance first + i. */
+/* The instances that are asked for at once: bit i % 64 of bits[i / 64] tells whether instance first
+   + i is near a point. */
 enum { NEAR_AT_ONCE = 32768 };
 typedef struct NearInstances {
     uint32_t first, count; /* at most NEAR_AT_ONCE */
@@ -56,7 +56,7 @@ void grid_near(const Grid *grid, const double point[3], double radius, double cl
 /* Tells whether all cells are in the ball, so that no instance is left out. */
 bool grid_is_within(const Grid *grid, const double point[3], double radius);
 
-/* The cell along an axis with this coordinate, or the outermost one. */
+/* Returns the cell along an axis with this coordinate, or the outermost one. */
 uint32_t grid_cell_along(const Grid *grid, int axis, double coordinate);
 
 #endif

@@ -87,7 +87,7 @@ static inline uint32_t place_nodes(PlaceKind kind)
     return kind == PLACE_ROTATED ? 5 : kind == PLACE_SHIFT;
 }
 
-/* How many texels of krs_cells the header of a table has for shaders. */
+/* The texels of krs_cells in the header of a table for shaders. */
 enum { GRID_HEADER = 10 };
 /* Tells how many texels, of four numbers each, a row has for shaders.  Tails are one more column. */
 static inline size_t row_texels(const InstanceTable *table)
@@ -141,7 +141,7 @@ typedef struct Instances {
     } bodies, frame_numbers;
 } Instances;
 
-/* Those of a graph, which are made when there are none. */
+/* Returns the instances of a graph, which are made when there are none. */
 Instances *graph_instances(Graph *graph);
 /* Adds a function, whose member first_body is set here, with a body for each of its states, and what joins
    them, if it does.  Returns its number. */
@@ -150,8 +150,9 @@ uint32_t graph_add_instance_function(Graph *graph, InstanceFunction function, co
    the graph. */
 Node *roots_with_bodies(const Graph *graph, const Node *roots, size_t root_count, size_t *count,
                         Arena *arena);
-/* When the pass has made `to` of `from`, and all these nodes are of `to`: copies the roots back, and
-   gives `to` the instance groups of `from` with its own bodies and frame numbers, and its textures. */
+/* Ends a pass that has made `to` of `from`, where all these nodes are of `to`: copies the roots
+   back, and gives `to` the instance groups of `from` with its own bodies and frame numbers, and its
+   textures. */
 void hand_on_instances(Graph *to, const Graph *from, const Node *all, Node *roots,
                        size_t root_count);
 /* Copies tables and functions into an arena as well, when that of the original is to be freed. */
@@ -160,15 +161,15 @@ void instances_keep(Instances *instances, Arena *arena);
 bool instances_vary(const Instances *instances);
 /* Tells whether there is a column for what is taken from the point along this axis. */
 bool relocates_along(const InstanceTable *table, int axis);
-/* The nodes of a column, one for each row; NULL: its numbers are known. */
+/* Returns the nodes of a column, one for each row; NULL: its numbers are known. */
 const Node *column_nodes(const Instances *instances, const InstanceTable *table, uint32_t column);
 
 /* ---- Leaves and calls; `table_number` is the index of the table, `function` that of the function ---- */
 
 Node graph_instance_leaf(Graph *graph, Op op, uint32_t table_number); /* but OP_STATE */
-/* State `state` of a function, which is made with these types. */
+/* Returns state `state` of a function, which is made with these types. */
 Node graph_state(Graph *graph, GraphType type, uint32_t function, uint32_t state);
-/* A number of the row `row`, a UINT node: FLOAT. */
+/* Returns a number of the row `row`, a UINT node: FLOAT. */
 Node graph_row(Graph *graph, uint32_t table_number, uint32_t column, Node instance);
 /* Calls.  OP_instance_distance, FLOAT, OP_instance_list, VEC4, and OP_instance_index, UINT, have the point alone;
    OP_instance_number, FLOAT, and OP_instance_vector, VEC3, also the normal, the footprint and the threshold. */
@@ -176,10 +177,10 @@ Node graph_instance_call(Graph *graph, Op op, uint32_t function, Node point);
 Node graph_instance_surface(Graph *graph, Op op, uint32_t function, Node point, Node normal,
                             Node footprint, Node threshold);
 
-/* The table and the column behind the first operand of OP_row. */
+/* Returns the table and the column behind the first operand of OP_row. */
 static inline uint32_t row_table(uint32_t id) { return id / MAX_TABLE_COLUMNS; }
 static inline uint32_t row_column(uint32_t id) { return id % MAX_TABLE_COLUMNS; }
-/* The function and its state behind the index of OP_STATE. */
+/* Returns the function and its state behind the index of OP_STATE. */
 static inline uint32_t function_of(uint32_t index) { return index / MAX_INSTANCE_STATES; }
 static inline uint32_t state_of(uint32_t index) { return index % MAX_INSTANCE_STATES; }
 /* Tells how many bodies a function has. */

@@ -35,7 +35,7 @@ void instance_walk_along(InstanceWalk *walk, const InstanceFunction *function,
     walk->clearance  = INFINITY;
 }
 
-/* What is farther than this cannot be nearer than what is found. */
+/* Returns the distance beyond which nothing is nearer than what is found. */
 static double how_far(const InstanceWalk *walk, double distance)
 {
     return (walk->function->either ? fabs(distance) : distance) * walk->table->stretch;
@@ -48,7 +48,7 @@ static bool may_count(const InstanceWalk *walk, uint32_t instance, double distan
     return !boxes || distance_to_box(&boxes[instance], walk->point) <= how_far(walk, distance);
 }
 
-/* Instances from near.first on.  False: there are none. */
+/* Finds instances from near.first on; false: there are none. */
 static bool find_near(InstanceWalk *walk)
 {
     uint32_t rows = walk->table->rows;
@@ -62,7 +62,7 @@ static bool find_near(InstanceWalk *walk)
     return true;
 }
 
-/* The next bits that are not all 0; false: there are none. */
+/* Finds the next bits that are not all 0; false: there are none. */
 static bool find_bits(InstanceWalk *walk)
 {
     while (walk->bits == 0)
@@ -118,7 +118,7 @@ InstanceStep instance_walk_next(InstanceWalk *walk, double distance, uint32_t *i
                                                         : instance_walk_widen(walk, distance);
 }
 
-/* What the operation behind the bodies makes of the states. */
+/* Returns what the operation behind the bodies makes of the states. */
 static double joined(const InstanceFunction *function, const Graph *graph, const NodeValue *states)
 {
     const Node  body = graph->instances->bodies.items[function->first_body + function->state_count];
@@ -129,7 +129,7 @@ static double joined(const InstanceFunction *function, const Graph *graph, const
     return op_evaluate((Op)e->op, (GraphType)e->type, 0, types, states).v[0];
 }
 
-/* Without an instance the sum is 0. */
+/* Returns the value when the states have ended; without an instance a sum is 0. */
 static double end_of_states(const InstanceFunction *function, const Graph *graph,
                             const NodeValue *states)
 {

@@ -30,24 +30,27 @@ typedef enum InstanceStep {
     INSTANCE_DONE
 } InstanceStep;
 
-/* With `by_cells` only the list counts, as in shaders. */
+/* Begins a walk; with `by_cells` only the list counts, as in shaders. */
 void instance_walk_begin(InstanceWalk *walk, const InstanceFunction *function,
                          const InstanceTable *table, const double point[3], bool by_cells);
-/* Only these instances count. */
+/* Restricts a walk to these instances. */
 void instance_walk_along(InstanceWalk *walk, const InstanceFunction *function,
                          const uint32_t *instances, uint32_t count);
-/* `distance` is the state that is one, after the last instance; anything where there is none. */
+/* Takes the next instance; `distance` is the state that is one, after the last instance; anything
+   where there is none. */
 InstanceStep instance_walk_next(InstanceWalk *walk, double distance, uint32_t *instance);
-/* The same in two parts: an instance, or none before it is known whether more may count; then whether the
-   function begins again.  An earlier distance serves for the first: it finds some instances more. */
+/* These do the same in two parts: an instance, or none before it is known whether more may count;
+   then whether the function begins again.  An earlier distance serves for the first: it finds some
+   instances more. */
 bool         instance_walk_find(InstanceWalk *walk, double distance, uint32_t *instance);
 InstanceStep instance_walk_widen(InstanceWalk *walk, double distance);
-/* What the function is when its states have ended at these numbers: by cells a distance is at most the
-   clearance.  The graph is that of its bodies. */
+/* Returns the value of the function when its states have ended at these numbers: by cells a
+   distance is at most the clearance.  The graph is that of its bodies. */
 NodeValue instance_walk_result(const InstanceWalk *walk, const Graph *graph,
                                const NodeValue *states);
 
-/* How far a curve is at least: it is not farther from its chord than a quarter of its bend. */
+/* Returns the least distance that a curve may have: it is not farther from its chord than a quarter
+   of its bend. */
 double instance_arc_min_distance(const InstanceArc *arc, const double point[2]);
 
 #endif

@@ -9,8 +9,8 @@
 
 static bool has_number(const Expr *e) { return e->op == OP_CONSTANT || e->op == OP_PARAMETERISED; }
 
-/* What makes expressions equal: all but where they were written.  They have operands or numbers, or
-   neither. */
+/* Tells whether expressions are equal, wherever they were written.  They have operands or numbers,
+   or neither. */
 static bool expr_equal(const Expr *a, const Expr *b)
 {
     if (a->op != b->op || a->type != b->type || a->index != b->index)
@@ -39,7 +39,8 @@ static uint32_t expr_hash(const Expr *e)
     return (uint32_t)(hash >> 16);
 }
 
-/* Beside which node it is looked for: its latest operand.  Leaves have none. */
+/* Returns the node beside which an expression is looked for: its latest operand.  Leaves have
+   none. */
 static uint32_t near_of(const Expr *e, uint32_t hash)
 {
     uint32_t near = e->op == OP_PARAMETERISED ? e->index : hash;
@@ -48,7 +49,7 @@ static uint32_t near_of(const Expr *e, uint32_t hash)
     return near;
 }
 
-/* The slot of an equal node, or the empty one where it belongs. */
+/* Returns the slot of an equal node, or the empty one where it belongs. */
 static NearSlot *slot_find(const Graph *graph, const Expr *e, uint32_t hash)
 {
     const uint32_t near = near_of(e, hash);
@@ -144,8 +145,9 @@ static void slots_fill(Graph *graph)
         slot_take(graph, (Node)i, expr_hash(&graph->items[i]));
 }
 
-/* Slots are freed in the reverse order in which they were taken, so that none was passed over by a
-   node that stays.  A larger table was filled in another order, and is filled again. */
+/* Releases nodes.  Slots are freed in the reverse order in which they were taken, so that none was
+   passed over by a node that stays.  A larger table was filled in another order, and is filled
+   again. */
 void graph_release(Graph *graph, GraphMark mark)
 {
     for (size_t i = graph->respanned.count; i-- > mark.respanned;)

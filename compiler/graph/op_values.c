@@ -51,7 +51,8 @@ static NodeValue evaluate_cross(const NodeValue *o, uint32_t size)
     return vector3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
 }
 
-/* Where the sum of squares overflows or loses what is small, hypot goes on. */
+/* Returns the length of a vector; where the sum of squares overflows or loses what is small, hypot
+   goes on. */
 static double length(const NodeValue *a, uint32_t size)
 {
     double sum = 0, whole = fabs(a->v[0]);
@@ -145,7 +146,8 @@ static NodeValue evaluate_cell_polar(const NodeValue *o, uint32_t size)
     return vector3(c * p[0] + s * p[2], p[1], c * p[2] - s * p[0]);
 }
 
-/* The same integer arithmetic as in print/glsl/identity.glsl; every input gives another output. */
+/* Returns the same integer arithmetic as in print/glsl/identity.glsl; every input gives another
+   output. */
 static uint32_t scramble(uint32_t x)
 {
     x = (x ^ (x >> 16)) * 0x7feb352du;
@@ -170,7 +172,7 @@ static double lattice_fraction(double p, uint32_t *cell)
 
 static double fade(double t) { return t * t * t * (t * (6 * t - 15) + 10); }
 
-/* The direction of a lattice point, from what was scrambled of its other coordinates. */
+/* Returns the direction of a lattice point, from what was scrambled of its other coordinates. */
 static uint32_t lattice_bits(uint32_t row, uint32_t cell) { return scramble(row + cell) >> 28; }
 
 static double slope_of_2(uint32_t h, double x, double y)
@@ -262,8 +264,8 @@ static NodeValue evaluate_id_unit(const NodeValue *o, uint32_t size)
 
 /* ---- random numbers of numbers: the same on every machine ---- */
 
-/* SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014) of
-   the bits of the seed; -0 and 0 are one seed. */
+/* Hashes the bits of the seed by SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom
+   number generators", 2014); -0 and 0 are one seed. */
 static uint64_t hash_seed(double seed, uint64_t stream)
 {
     uint64_t bits;
@@ -292,8 +294,8 @@ static NodeValue evaluate_seeded(const NodeValue *o, uint32_t size)
     return number(unit_of_seed(o[0].v[0], stream ? stream + (UINT64_C(1) << 32) : 0));
 }
 
-/* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
-   only, which every machine computes alike. */
+/* Returns a random direction by Marsaglia (1972): a point of the unit disc gives a point of the
+   sphere by products and roots only, which every machine computes alike. */
 static NodeValue evaluate_seeded_direction(const NodeValue *o, uint32_t size)
 {
     const double seed   = o[0].v[0];
@@ -312,7 +314,7 @@ static NodeValue evaluate_seeded_direction(const NodeValue *o, uint32_t size)
 
 /* ---- smooth minima (math.md, section 4); a width of 0 leaves min(a, b) ---- */
 
-/* Infinite distances are as near as equal ones. */
+/* Returns the difference in widths; infinite distances are as near as equal ones. */
 static double widths_between(double a, double b, double width)
 {
     return a == b ? 0 : fabs(a - b) / width;
@@ -373,7 +375,7 @@ static NodeValue evaluate_blend_weight(const NodeValue *o, uint32_t size)
     return number(a == b ? 0.5 : fmin(fmax(0.5 + 0.5 * (b - a) / k, 0), 1));
 }
 
-/* Where nobody looks there are no pixels. */
+/* Evaluates a footprint, which is 0: the host has no pixels. */
 static NodeValue evaluate_footprint(const NodeValue *o, uint32_t size)
 {
     (void)o, (void)size;
@@ -382,7 +384,7 @@ static NodeValue evaluate_footprint(const NodeValue *o, uint32_t size)
 
 /* ---- tables ---- */
 
-/* Only a tape knows the tables and textures of its graph (evaluate.c). */
+/* Refuses operations of tables and textures, which only a tape knows (evaluate.c). */
 static NodeValue evaluate_of_table(const NodeValue *o, uint32_t size)
 {
     (void)o, (void)size;
@@ -422,7 +424,8 @@ static NodeValue (*const evaluates[OP_COUNT])(const NodeValue *o, uint32_t size)
 #include "compiler/graph/ops.def"
 };
 
-/* Zero has no sign: -0 becomes 0, so that 1 / (-1 * 0) does not depend on who multiplied. */
+/* Evaluates an operation.  Zero has no sign: -0 becomes 0, so that 1 / (-1 * 0) does not depend on
+   who multiplied. */
 NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types,
                       const NodeValue *operands)
 {

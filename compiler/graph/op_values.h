@@ -20,8 +20,8 @@ extern MapValue *const map_values[OP_COUNT];
 static inline NodeValue number(double a) { return (NodeValue){{a}}; }
 static inline NodeValue vector3(double x, double y, double z) { return (NodeValue){{x, y, z}}; }
 
-/* What is at 0 may be anywhere inside: there, inside of something else, only the rest can tell how
-   deep. */
+/* Tells whether the bound of a guard decides.  At 0 the point may be anywhere inside: there, inside
+   of something else, only the rest can tell how deep. */
 static inline bool guard_decides(double bound, double least, double far)
 {
     return bound >= fmin(least, far) && bound > fmin(far, 0);
@@ -32,14 +32,14 @@ static inline bool guard_decides(double bound, double least, double far)
 static inline double value_sign(double a) { return (a > 0) - (a < 0); }
 static inline double value_unit(double a) { return fmin(fmax(a, -1), 1); }
 
-/* Exact, unlike a - b * floor(a / b), so that it never leaves [0, b). */
+/* Returns a modulo b exactly, unlike a - b * floor(a / b), so that it never leaves [0, b). */
 static inline double value_mod(double a, double b)
 {
     double rest = fmod(a, b);
     return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
 }
 
-/* The sign of a zero means nothing here. */
+/* Returns the sign of a zero means nothing here. */
 static inline double value_pow(double a, double b) { return real_pow(a + 0.0, b); }
 static inline double value_atan2(double a, double b) { return real_atan2(a + 0.0, b + 0.0); }
 
@@ -51,7 +51,7 @@ static inline double value_smoothstep(double a, double b, double c)
 
 /* ---- the `value` column of blends.def ---- */
 
-/* hg_sdf's fOpUnionStairs: a triangle wave turns the line a + b = k into steps along which
+/* Returns hg_sdf's fOpUnionStairs: a triangle wave turns the line a + b = k into steps along which
    either a or b alone decides; that is why its slope is that of the steeper of them. */
 static inline double value_stairs(double a, double b, double k, double n)
 {

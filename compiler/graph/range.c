@@ -27,7 +27,7 @@ int box_longest_axis(const Box *box)
 
 /* ---- directed rounding ---- */
 
-/* The next number below.  Those of one sign are in the order of their bits. */
+/* Returns the next number below.  Those of one sign are in the order of their bits. */
 static double step_down(double a)
 {
     uint64_t bits;
@@ -39,7 +39,7 @@ static double step_down(double a)
     return a;
 }
 
-/* (a + b) - the exact sum, by Knuth; a + b is finite. */
+/* Returns (a + b) - the exact sum, by Knuth; a + b is finite. */
 static double sum_excess(double a, double b, double sum)
 {
     double part = sum - a;
@@ -107,7 +107,7 @@ double hypot_upward(double a, double b)
     return length + length * 0x1p-51;
 }
 
-/* What the C library computed, wide enough for its errors. */
+/* Returns a range that is wide enough for the errors of the C library. */
 static Range widened(double low, double high)
 {
     if (isnan(low) || isnan(high))
@@ -170,7 +170,7 @@ Range range_inversesqrt(Range a)
     return widened_within(1 / sqrt(a.high), 1 / sqrt(a.low), 0, HUGE_VAL);
 }
 
-/* -1/2 a^(-3/2) */
+/* Returns the range of -1/2 a^(-3/2). */
 Range range_inversesqrt_slope(Range a, Range value)
 {
     return range_mul(range_of(-0.5), range_div(value, range_above(a, 0)));
@@ -226,7 +226,8 @@ Range range_tan(Range a)
     return widened(real_tan(a.low), real_tan(a.high));
 }
 
-/* 1 + tan^2, but for the jump from one end of the line to the other at a pole. */
+/* Returns the range of 1 + tan^2, without the jump from one end of the line to the other at a
+   pole. */
 Range range_tan_slope(Range value)
 {
     if (value.low == -HUGE_VAL)
@@ -242,7 +243,7 @@ Range range_acos(Range a)
     return widened_within(real_acos(unit(a.high)), real_acos(unit(a.low)), 0, 4);
 }
 
-/* 1 / sqrt(1 - a^2), and 0 where a is clamped. */
+/* Returns the range of 1 / sqrt(1 - a^2), and 0 where a is clamped. */
 Range range_asin_slope(Range a)
 {
     Range size = range_abs(a);
@@ -411,7 +412,7 @@ Range range_step(Range edge, Range a) { return (Range){a.low >= edge.high, a.hig
 
 /* ---- three operands ---- */
 
-/* Linear in each operand: the extremes are at the corners. */
+/* Returns the range of a mix, which is linear in each operand: the extremes are at the corners. */
 Range range_mix(Range a, Range b, Range c)
 {
     Range mixed = {HUGE_VAL, -HUGE_VAL};
@@ -425,7 +426,7 @@ Range range_mix(Range a, Range b, Range c)
     return isnan(mixed.low) ? ANYTHING : widened(mixed.low, mixed.high);
 }
 
-/* (c - a) / (b - a), clamped; where a = b it is a step. */
+/* Returns the range of (c - a) / (b - a), clamped; where a = b it is a step. */
 static Range smoothstep_progress(Range a, Range b, Range c)
 {
     Range width = range_sub(b, a);
@@ -437,7 +438,8 @@ static Range smoothstep_progress(Range a, Range b, Range c)
 
 static double smooth(double t) { return t * t * (3 - 2 * t); }
 
-/* Whatever the order of a and b, c beyond both of them on one side decides. */
+/* Tells whether a smoothstep is constant: whatever the order of a and b, c beyond both of them on
+   one side decides. */
 static bool smoothstep_is_flat(Range a, Range b, Range c, Range *value)
 {
     bool rising = a.high <= b.low, falling = b.high < a.low;
@@ -463,7 +465,7 @@ Range range_smoothstep(Range a, Range b, Range c)
     return widened_within(smooth(t.low), smooth(t.high), 0, 1);
 }
 
-/* 6 t (1 - t) times the derivative of t by a, b or c; what divides is b - a. */
+/* Returns the range of 6 t (1 - t) times the derivative of t by a, b or c; what divides is b - a. */
 Range range_smoothstep_slope(Range a, Range b, Range c, int operand)
 {
     Range value, width = range_sub(b, a);

@@ -21,7 +21,7 @@ typedef struct Box {
     Range axis[3];
 } Box;
 
-/* The axis along which it is longest, the first of those: 0, 1 or 2. */
+/* Returns the axis along which it is longest, the first of those: 0, 1 or 2. */
 int box_longest_axis(const Box *box);
 
 #define ANYTHING ((Range){-HUGE_VAL, HUGE_VAL})
@@ -42,7 +42,7 @@ static inline Range range_intersect(Range a, Range b)
     return common.low <= common.high ? common : a;
 }
 
-/* The greatest and the least size of a value. */
+/* Returns the greatest and the least size of a value. */
 static inline double range_largest(Range a) { return max2(fabs(a.low), fabs(a.high)); }
 static inline double range_least(Range a) { return a.low > 0 ? a.low : a.high < 0 ? -a.high : 0; }
 
@@ -90,7 +90,7 @@ Range range_pow(Range a, Range b);
 Range range_pow_slope(Range a, Range b);
 Range range_pow_slope_exponent(Range a, Range value);
 Range range_atan2(Range a, Range b);
-/* numerator / (a^2 + b^2) */
+/* Returns the range of numerator / (a^2 + b^2). */
 Range               range_atan2_slope(Range a, Range b, Range numerator);
 static inline Range range_min(Range a, Range b)
 {
@@ -106,7 +106,7 @@ Range range_mix(Range a, Range b, Range c);
 Range range_smoothstep(Range a, Range b, Range c);
 Range range_smoothstep_slope(Range a, Range b, Range c, int operand);
 
-/* Derivatives of what jumps from one value of `steps` to the next. */
+/* Returns the derivatives of what jumps from one value of `steps` to the next. */
 Range jumps(Range steps);
 Range unless_jumps(Range steps, Range derivative);
 

@@ -24,8 +24,8 @@ static Node substitute_leaf(const Expr *e, Node node, Substitution with)
     return other == NODE_NONE ? node : other;
 }
 
-/* The operation on other operands.  The graph grows meanwhile, so the expression is handed over as a
-   copy. */
+/* Returns the operation on other operands.  The graph grows meanwhile, so the expression is handed
+   over as a copy. */
 static Node with_operands(Graph *graph, Expr e)
 {
     graph->here = e.span;
@@ -111,7 +111,7 @@ static bool note_operation(Window *window, const Graph *graph, Node node)
     return true;
 }
 
-/* False also where more is needed than operands. */
+/* Notes the operands of a node; false also where more is needed than operands. */
 static bool note_operands(Window *window, const Graph *graph, Node node)
 {
     const Expr *e    = &graph->items[node];

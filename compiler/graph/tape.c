@@ -47,7 +47,7 @@ static void set_add(NodeSet *set, Node node, Arena *arena)
 /* Most lists are short: they are sorted as cards are. */
 enum { MAX_CARDS = 32 };
 
-/* Nodes of the same byte keep their order. */
+/* Sorts nodes by a byte; those of the same byte keep their order. */
 static void sort_by_byte(const Node *from, Node *to, size_t count, int shift)
 {
     size_t places[257] = {0};
@@ -91,7 +91,7 @@ static void sort_nodes(NodeSet *set, Arena *arena)
     }
 }
 
-/* The frame's numbers in the column that OP_row reads. */
+/* Adds the frame's numbers in the column that OP_row reads. */
 static void add_column(NodeSet *set, const Graph *graph, const Expr *row, Arena *arena)
 {
     uint32_t             id    = (uint32_t)graph->items[row->operands[0]].number[0];
@@ -101,7 +101,7 @@ static void add_column(NodeSet *set, const Graph *graph, const Expr *row, Arena 
         set_add(set, nodes[i], arena);
 }
 
-/* What the roots need, ascending. */
+/* Returns what the roots need, ascending. */
 static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
 {
     NodeSet set = {0};
@@ -120,7 +120,7 @@ static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_co
 
 /* ---- instance functions ---- */
 
-/* The number of the function that a call names. */
+/* Returns the number of the function that a call names. */
 static uint32_t called_function(const Graph *graph, const Expr *call)
 {
     return (uint32_t)graph->items[call->operands[0]].number[0];
@@ -139,7 +139,7 @@ static void note_calls(Tape *functions, size_t end, const Graph *graph, const No
         }
 }
 
-/* What a function does at each instance; what that needs of the frame is added to `frame`. */
+/* Fills the tape of a function at each instance; what that needs of the frame is added to `frame`. */
 static void fill_function(Tape *functions, uint32_t id, const Graph *graph, NodeSet *frame,
                           Arena *arena)
 {
@@ -158,8 +158,8 @@ static void fill_function(Tape *functions, uint32_t id, const Graph *graph, Node
     functions[id] = (Tape){.graph = graph, .nodes = nodes, .count = count, .functions = functions};
 }
 
-/* The functions that the nodes of a set call, and those that these call, which have smaller numbers;
-   what they need of the frame joins the set. */
+/* Returns the functions that the nodes of a set call, and those that these call, which have smaller
+   numbers; what they need of the frame joins the set. */
 static Tape *find_functions(const Graph *graph, NodeSet *set, Arena *arena)
 {
     size_t count     = graph->instances->functions.count;

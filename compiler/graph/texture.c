@@ -36,7 +36,7 @@ static uint32_t two_halves(const float *numbers)
 static double low_half(uint32_t bits) { return float_from_half((uint16_t)bits); }
 static double high_half(uint32_t bits) { return float_from_half((uint16_t)(bits >> 16)); }
 
-/* Two samples of a gray picture, four of a colour. */
+/* Packs two samples of a gray picture, four of a colour. */
 static void pack_texel(bool gray, const float *samples, TexelBits bits)
 {
     bits[0] = gray ? bits_of_float(samples[0]) : two_halves(samples);
@@ -78,7 +78,7 @@ static Samples samples_new(uint32_t width, uint32_t height, uint32_t size, Arena
                      size};
 }
 
-/* What texel `to` of a level covers of the `count` texels of the finer one: from, and until, where
+/* The part of the `count` texels of the finer level that texel `to` covers: from, and until, where
    half as many are in the level. */
 typedef struct Cover {
     double   low, high;
@@ -148,14 +148,14 @@ static void put_level(Texture *texture, uint32_t level, const Samples *samples)
 
 /* ---- what is known of level 0 ---- */
 
-/* The texel beside the last one of `count`. */
+/* Returns the texel beside the last one of `count`. */
 static uint32_t beside(TextureWrap wrap, uint32_t i, uint32_t count)
 {
     return i + 1 < count ? i + 1 : wrap == WRAP_REPEAT ? 0 : i;
 }
 
-/* In a square between the middles of four texels the gradient is largest in a corner: it is made of
-   the difference of a side and that of one across to it. */
+/* Notes the slope in a square between the middles of four texels.  The gradient is largest in a
+   corner: it is made of the difference of a side and that of one across to it. */
 static void note_square(Texture *texture, const NodeValue corners[2][2])
 {
     const TextureLevel *size = &texture->levels[0];
@@ -234,7 +234,7 @@ Texture texture_new(const float *samples, uint32_t width, uint32_t height, bool 
 /* Beyond this single precision has no fractions. */
 static const double FARTHEST_PLACE = 1073741824;
 
-/* A coordinate in [0, 1] of the picture that stands there. */
+/* Returns a coordinate in [0, 1] of the picture that stands there. */
 static double wrapped(TextureWrap wrap, double t)
 {
     t = fmin(fmax(t, -FARTHEST_PLACE), FARTHEST_PLACE);
@@ -268,7 +268,7 @@ static NodeValue mix_values(NodeValue a, NodeValue b, double share)
     return a;
 }
 
-/* Bilinear. */
+/* Interpolates a level bilinearly. */
 static NodeValue level_value(const Texture *texture, uint32_t level, const double uv[2])
 {
     const TextureLevel *at = &texture->levels[level];

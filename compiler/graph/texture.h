@@ -19,7 +19,7 @@
 #include "compiler/graph/graph.h"
 #include "compiler/graph/range.h"
 
-/* What is outside of the picture: the picture again, its edge, or its mirror image. */
+/* The content outside of the picture: the picture again, its edge, or its mirror image. */
 typedef enum TextureWrap { WRAP_REPEAT, WRAP_CLAMP, WRAP_MIRROR, WRAP_COUNT } TextureWrap;
 
 typedef uint32_t TexelBits[2];
@@ -28,12 +28,12 @@ typedef uint32_t TexelBits[2];
 enum { TEXTURE_CHANNELS = 4 };
 enum { MAX_TEXTURE_LEVELS = 16, MAX_TEXTURE_SIDE = 1 << 15, MAX_TEXELS = 1 << 24 };
 
-/* What a node of OP_texture knows of the pixel: its long side, in u and v; how many taps it has; and the
-   width of each, in texels of level 0. */
+/* The components of what a node of OP_texture knows of the pixel: its long side, in u and v; how
+   many taps it has; and the width of each, in texels of level 0. */
 enum { TEXTURE_LONG_U, TEXTURE_LONG_V, TEXTURE_TAPS, TEXTURE_WIDTH };
 enum { MAX_TEXTURE_TAPS = 3 };
 
-/* How many texels of krs_cells the header of a texture has for shaders. */
+/* The texels of krs_cells in the header of a texture for shaders. */
 enum { TEXTURE_HEADER = 1 + MAX_TEXTURE_LEVELS };
 
 typedef struct TextureLevel {
@@ -57,7 +57,7 @@ typedef struct Texture {
     double slope_of_first, slope_of_all;
 } Texture;
 
-/* Those of a scene, which its graphs share. */
+/* The textures of a scene, which its graphs share. */
 typedef struct Textures {
     struct {
         Texture *items;
@@ -71,13 +71,13 @@ typedef struct Textures {
 Texture texture_new(const float *samples, uint32_t width, uint32_t height, bool gray,
                     TextureWrap wrap, Arena *arena, Arena *scratch);
 
-/* The texture that a node of OP_texture or OP_texture_gray reads. */
+/* Returns the texture that a node of OP_texture or OP_texture_gray reads. */
 const Texture *texture_of(const Graph *graph, const Expr *e);
-/* The value at a place, for pixels of a width in texels of level 0. */
+/* Returns the value at a place, for pixels of a width in texels of level 0. */
 NodeValue texture_value(const Texture *texture, const double uv[2], double width);
-/* The same for a pixel with a long side. */
+/* Returns the same for a pixel with a long side. */
 NodeValue texture_mean(const Texture *texture, const double uv[2], const double pixel[4]);
-/* Nodes: a VEC4, or the first channel of a gray texture as a FLOAT. */
+/* Adds a node of a texture: a VEC4, or the first channel of a gray texture as a FLOAT. */
 Node               graph_texture(Graph *graph, Op op, uint32_t texture, Node uv, Node pixel);
 static inline bool is_texture(Op op) { return op == OP_texture || op == OP_texture_gray; }
 

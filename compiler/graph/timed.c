@@ -48,7 +48,7 @@ static bool is_timed(const Graph *graph, const Expr *e, const bool *timed)
            (is_call((Op)e->op) && is_timed_call(graph, e, timed));
 }
 
-/* Operands come first, but bodies of functions need not. */
+/* Marks what depends on time.  Operands come first, but bodies of functions need not. */
 void graph_mark_timed(const Graph *graph, bool *timed)
 {
     bool changes = true;

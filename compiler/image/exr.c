@@ -64,7 +64,7 @@ static int place_of(bool gray, const char *name)
     return -1;
 }
 
-/* Colours, or the gray, and alpha; other channels are left out. */
+/* Finds the channels of colours, or the gray, and alpha; other channels are left out. */
 static bool find_channels(ExrReader *reader)
 {
     const exr_attr_chlist_t *channels;
@@ -164,7 +164,7 @@ static bool read_pixels(ExrReader *reader)
     return exr_try(reader, exr_chunks_read(&chunks, reader->lines));
 }
 
-/* Opened again for each of the two looks. */
+/* Opens the file, once for each of the two looks. */
 static bool look(ExrReader *reader, bool (*at)(ExrReader *reader))
 {
     bool good = begin(reader) && at(reader);

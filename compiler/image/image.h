@@ -9,7 +9,7 @@
 
 #include "compiler/base/arena.h"
 
-/* How bright the numbers of a file are. */
+/* The meaning of the numbers of a file as brightness. */
 typedef enum ImageSpace {
     SPACE_OF_FILE, /* PNG: sRGB; EXR: linear */
     SPACE_SRGB,
@@ -28,7 +28,7 @@ typedef struct Image {
     const char *fault; /* why it cannot be read */
 } Image;
 
-/* False: `fault` says why. */
+/* Reads a picture; false: `fault` says why. */
 bool image_read(Image *image, const unsigned char *bytes, size_t length);
 
 /* ---- what the forms share ---- */

@@ -69,7 +69,7 @@ static png_voidp allocate(png_structp png, png_alloc_size_t size)
 
 static void release(png_structp png, png_voidp memory) { (void)png, (void)memory; }
 
-/* All forms become 1 to 4 channels of 8 or 16 bits. */
+/* Asks for 1 to 4 channels of 8 or 16 bits, whatever the form. */
 static void ask_for_samples(PngReader *reader)
 {
     png_set_expand(reader->png); /* palettes, fewer bits, a transparent colour */

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What is no number is 0, and what is infinite is the largest. */
+/* Sets what is no number to 0, and what is infinite to the largest number. */
 static void make_finite(Image *image)
 {
     const size_t count = image_pixels(image) * image_channels(image);

@@ -42,7 +42,7 @@ static bool lower_parts(Blending *b, const PartJoin *join)
     return true;
 }
 
-/* The nearest of all operands. */
+/* Returns the nearest of all operands. */
 static Nearest nearest_operands(const Blending *b, bool pairs)
 {
     Graph  *g       = b->l->graph;

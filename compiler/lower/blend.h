@@ -6,8 +6,8 @@
 
 #include "compiler/lower/instance_groups.h"
 
-/* The blend of the parts, or of their complements, none of which may then be nowhere: where one is, `nowhere`
-   is set, and the result is not all. */
+/* Lowers the blend of the parts, or of their complements, none of which may then be nowhere: where
+   one is, `nowhere` is set, and the result is not all. */
 Lowered lower_blend(Lowering *l, PartJoin join, LowerContext context, bool *nowhere);
 
 #endif

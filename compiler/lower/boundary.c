@@ -54,7 +54,7 @@ typedef struct Gathering {
 
 static bool gather(Gathering *g, const Shape *shape, Curves *curves);
 
-/* A number that is known now; false: it is not. */
+/* Finds a number that is known now; false: it is not. */
 static bool known(Gathering *g, Node node, uint32_t component, double *number)
 {
     for (uint32_t i = g->iteration_count; i > 0; i--)
@@ -196,7 +196,7 @@ static double length_of(const Curves *curves)
     return length;
 }
 
-/* The union of some parts. */
+/* Gathers the union of some parts. */
 static bool gather_union(Gathering *g, const Shape *shape, uint32_t first, Curves *curves)
 {
     for (uint32_t i = first; i < shape->child_count; i++) {
@@ -243,7 +243,7 @@ static bool gather_difference(Gathering *g, const Shape *shape, Curves *curves)
 
 /* ---- outlines that grow ---- */
 
-/* The unit normal on the right of a curve, where the outside is. */
+/* Finds the unit normal on the right of a curve, where the outside is. */
 static void outside_at(const Curve *curve, double t, double normal[2])
 {
     double tangent[2];
@@ -259,7 +259,7 @@ static void away(const double at[2], const double normal[2], double by, double p
     point[1] = at[1] + by * normal[1];
 }
 
-/* The tangent of a quarter of the angle that an arc turns by; of lines 0. */
+/* Returns the tangent of a quarter of the angle that an arc turns by; of lines 0. */
 static double bulge_of(const Curve *curve)
 {
     double first[2], last[2];
@@ -270,8 +270,8 @@ static double bulge_of(const Curve *curve)
     return curve->radius > 0 ? real_tan(0.25 * turn) : 0;
 }
 
-/* What lies beside a curve, to the right of it.  Of an arc around what is outside no more than up to its centre:
-   what is beyond that is nearer to the ends. */
+/* Draws what lies beside a curve, to the right of it.  Of an arc around what is outside no more
+   than up to its centre: what is beyond that is nearer to the ends. */
 static void draw_beside(Path *path, const Curve *curve, double by)
 {
     double bulge  = bulge_of(curve), normals[2][2], ends[2][2];
@@ -290,7 +290,7 @@ static void draw_beside(Path *path, const Curve *curve, double by)
 
 static double angle_of(const double v[2]) { return real_atan2(v[1], v[0]); }
 
-/* The sector around the end of a curve, up to the next curve to its right. */
+/* Draws the sector around the end of a curve, up to the next curve to its right. */
 static void draw_corner(Path *path, const Curves *curves, const Curve *curve, double by,
                         double size)
 {
@@ -301,7 +301,7 @@ static void draw_corner(Path *path, const Curves *curves, const Curve *curve, do
         if (real_hypot(other->from[0] - curve->to[0], other->from[1] - curve->to[1]) > 1e-8 * size)
             continue;
         outside_at(other, 0, next);
-        /* What is outside there; from half of a turn on it has a sector. */
+        /* The outside there has a sector from half of a rotation on. */
         double angle = M_PI + angle_of(next) - angle_of(normal);
         angle        = remainder(angle - M_PI, 2 * M_PI) + M_PI;
         least        = fmin(least, angle);
@@ -376,7 +376,7 @@ static bool gather_shell(Gathering *g, const Shape *shape, Curves *curves)
 
 /* ---- copies ---- */
 
-/* What is in dot(u, p) <= w, and its mirror image. */
+/* Gathers what is in dot(u, p) <= w, and its mirror image. */
 static bool gather_mirror(Gathering *g, const Shape *shape, Curves *curves)
 {
     double u[2], w;
@@ -446,7 +446,7 @@ static bool gather_iteration(Gathering *g, const Shape *shape, Curves *curves)
     return good;
 }
 
-/* The outline of a figure, with the inside on its left; false: it is not known. */
+/* Gathers the outline of a figure, with the inside on its left; false: it is not known. */
 static bool gather(Gathering *g, const Shape *shape, Curves *curves)
 {
     if (shape->blend.width != NODE_NONE)
@@ -585,7 +585,8 @@ static Node square_to_line(Graph *g, const Curve *line, Node point)
     return graph_op2(g, OP_dot, away, away);
 }
 
-/* Mirrored at its middle, an arc has one end; what is beyond that is nearest to it. */
+/* Returns the squared distance to an arc.  Mirrored at its middle, it has one end; what is beyond
+   that is nearest to it. */
 static Node square_to_arc(Graph *g, const Arc *arc, Node point)
 {
     double middle[2] = {real_cos(arc->middle), real_sin(arc->middle)},

@@ -19,7 +19,7 @@ struct Boundary *boundary_new(Arena *arena);
 Lowered lower_within_boundary(Lowering *l, const Shape *csg_node, LowerContext context,
                               LowerShape *by_parts);
 
-/* The outline of a figure, with the inside on its left; false: it is not known. */
+/* Finds the outline of a figure, with the inside on its left; false: it is not known. */
 bool boundary_outline(Graph *graph, const Shape *figure, Arena *arena, Curves *curves);
 
 #endif

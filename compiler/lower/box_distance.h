@@ -7,7 +7,7 @@
 #include "compiler/graph/graph.h"
 #include "compiler/shape/box.h"
 
-/* The distance to a finite box, 0 inside. */
+/* Returns the distance to a finite box, 0 inside. */
 Node box_distance(Graph *graph, Node point, Box box);
 /* Tells how far outside of a box a point is along an axis, at most; negative inside.  Axes along which
    the box is infinite do not count; NODE_NONE when these are all. */

@@ -13,7 +13,7 @@
 /* The least step, in parts of the distance from the origin and of 1: where nobody looks, a pixel has
    no size, and nearer points have no difference in single precision. */
 static const double MIN_STEP = 1e-4;
-/* What |d|^2 is at least. */
+/* The least that |d|^2 counts as. */
 static const double MIN_SQUARE = 1e-30;
 
 static Node step_of(Graph *g, Pixel pixel)
@@ -26,7 +26,8 @@ static Node step_of(Graph *g, Pixel pixel)
     return graph_op2(g, OP_max, pixel.radius, least);
 }
 
-/* Two unit vectors across a normal and each other.  The axis is one that the normal is not near to. */
+/* Finds two unit vectors across a normal and each other.  The axis is one that the normal is not
+   near to. */
 static void find_tangents(Graph *g, Node normal, Node tangents[2])
 {
     Node x = graph_component(g, normal, 0), half = graph_number(g, 0.6);

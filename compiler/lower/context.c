@@ -118,7 +118,7 @@ Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context)
     l->thin        = thin && rays_pass(shape);
     Lowered result = rules[shape->kind].lower(l, shape, context);
     l->thin        = thin;
-    /* Only smooth mirrors and bumps change the normal. */
+    /* Smooth mirrors and bumps alone change the normal. */
     if (result.distance != NODE_NONE && context.smoothing == NODE_NONE && !shape->smooth)
         result.surface.normal = context.normal;
     if (l->surfaces && result.surface.front == NODE_NONE)

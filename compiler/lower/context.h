@@ -8,9 +8,9 @@
 
 #include "compiler/shape/shape.h"
 
-/* What is known of the surface at a hit (surface.def).  `color` is NODE_NONE while nothing has been
-   painted.  `normal` is in the space of the shape that was lowered.  It need not be a unit vector:
-   see unit_normal. */
+/* The properties of the surface at a hit (surface.def).  `color` is NODE_NONE while nothing has
+   been painted.  `normal` is in the space of the shape that was lowered.  It need not be a unit
+   vector: see unit_normal. */
 typedef struct Surface {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            Node name;
@@ -73,21 +73,21 @@ typedef struct LowerContext {
     Node smoothing; /* width over which a mirror turns normals; NODE_NONE: mirrors are sharp */
 } LowerContext;
 
-/* The context outside of all shapes, for a lowering without surfaces. */
+/* Returns the context outside of all shapes, for a lowering without surfaces. */
 LowerContext context_new(Node point, bool lipschitz);
 
 /* The empty set. */
 extern const Lowered lowered_nothing;
 
-/* The same context at another point; the same context with `lipschitz` set and distances that are
-   right everywhere, or as far as `more` beyond what was asked for. */
+/* These return the same context at another point; the same context with `lipschitz` set and
+   distances that are right everywhere, or as far as `more` beyond what was asked for. */
 LowerContext context_at(LowerContext context, Node point);
 LowerContext context_lipschitz(LowerContext context);
 LowerContext context_lipschitz_within(LowerContext context, double more);
 /* Returns the context with `lipschitz` set, where distances are divided by `factor`, at most,
    before they are used. */
 LowerContext context_divided(LowerContext context, double factor);
-/* The reach behind a map that enlarges by `scale`. */
+/* Returns the reach behind a map that enlarges by `scale`. */
 double reach_behind(const Graph *graph, double reach, Node scale);
 
 /* Most nodes that one shape may add to the graph. */

@@ -47,7 +47,7 @@ Pixel pixel_of(Graph *g, Node expression, Arena *scratch)
     return pixel;
 }
 
-/* The part of a gradient that steps across the ray see. */
+/* Returns the part of a gradient that steps across the ray see. */
 static Node seen_gradient(Graph *g, Pixel pixel, Node gradient)
 {
     Node cosine = graph_op2(g, OP_dot, pixel.normal, pixel.view);
@@ -70,7 +70,7 @@ static Node width_of(Graph *g, Node expression, Arena *scratch)
     return graph_op2(g, OP_mul, width, length);
 }
 
-/* The long side of that ellipse, and its width across. */
+/* Returns the long side of that ellipse, and its width across. */
 static Node axes_of(Graph *g, Node place, Arena *scratch)
 {
     Pixel pixel = pixel_of(g, place, scratch);

@@ -44,7 +44,7 @@ static InstanceDistance distance_of_columns(const InstanceGroup *group, const Gr
     return distance;
 }
 
-/* What the lanes need of each instance. */
+/* Returns the numbers that the lanes need of each instance. */
 static double *scalars_of(const InstanceDistance *distance, const LaneTape *lanes,
                           const InstanceTable *table, Arena *scratch)
 {
@@ -77,7 +77,7 @@ enum { TEXELS_OF_HOST = 64 };
 /* Most texels of all entries of refined lists, and by how much those are more than the coarse ones. */
 enum { MAX_TEXELS = 1 << 23, LISTS_GROW = 16 };
 
-/* False: that would take too long, or too much memory. */
+/* Sifts the cells; false: that would take too long, or too much memory. */
 static bool sift(const GridBlend *blend, const Box *boxes, Grid *coarse, const InstanceTable *table,
                  Arena *scratch)
 {
@@ -86,7 +86,8 @@ static bool sift(const GridBlend *blend, const Box *boxes, Grid *coarse, const I
            coarse->first[grid_cell_count(coarse)] <= 4 * most;
 }
 
-/* The grid, and large cells with lists of the instances that act there: by their boxes if that is possible. */
+/* Makes the grid, and large cells with lists of the instances that act there: by their boxes if
+   that is possible. */
 static bool make_coarse(GridBlend *blend, const Box *boxes, Grid *coarse, InstanceTable *table,
                         Arena *scratch)
 {

@@ -43,7 +43,7 @@ typedef struct Search {
 
 /* ---- parts ---- */
 
-/* What is noted before a part is lowered. */
+/* The state that is noted before a part is lowered. */
 typedef struct PartMark {
     GraphMark graph;
     uint32_t  made;
@@ -78,7 +78,7 @@ static bool lower_own(const PartFinder *finder, uint32_t part, Node roots[PART_R
     return lower_part(finder, finder->parts[part], finder->outer->groups, roots);
 }
 
-/* The nodes of the frame in the first `slots` slots. */
+/* Returns the nodes of the frame in the first `slots` slots. */
 static Node *frame_nodes(const Search *search, uint32_t slots, size_t *count)
 {
     Node *nodes = arena_new_array(search->scratch, Node, 4 * (size_t)slots + 1);
@@ -133,7 +133,7 @@ static uint16_t *candidate_slot(Search *search, uint64_t hash)
     return &search->slots[slot];
 }
 
-/* NULL: instances with this hash are lowered again. */
+/* Finds the candidate of a hash; NULL: instances with this hash are lowered again. */
 static Candidate *find_candidate(Search *search, uint64_t hash)
 {
     uint16_t number = *candidate_slot(search, hash);
@@ -248,7 +248,7 @@ static InstanceGroup *new_group(Search *search, const Node *roots)
     return &search->groups.items[search->groups.count - 1];
 }
 
-/* An instance that is lowered again. */
+/* Groups the instances like one that is lowered again. */
 static void group_part(Search *search, uint32_t part)
 {
     Node           roots[PART_ROOTS];
@@ -265,7 +265,7 @@ static void group_part(Search *search, uint32_t part)
         group_add(group, part, search->contents.items, search->scratch);
 }
 
-/* All instances of a candidate, of which the first is lowered again. */
+/* Groups all instances of a candidate, of which the first is lowered again. */
 static void group_candidate(Search *search, const Candidate *candidate)
 {
     const InstanceGroup *noted = &candidate->group;

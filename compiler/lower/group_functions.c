@@ -97,7 +97,7 @@ typedef struct InstanceInBody {
     Node distance, property, number;
 } InstanceInBody;
 
-/* An instance in the body of a function; `root` is a property that is wanted, too. */
+/* Returns an instance in the body of a function; `root` is a property that is wanted, too. */
 static InstanceInBody instance_in_body(const InstanceGroup *group, const GroupJoin *join,
                                        uint32_t root)
 {
@@ -131,8 +131,9 @@ static double slope_of(const InstanceGroup *group, const GroupJoin *join)
     return isfinite(slope) ? slope : 0;
 }
 
-/* A blend that fades, -k log of the sum of e^(-d / k).  States are the least distance m, the sum of
-   e^((m - d) / k), k, and d for shaders: one power for each instance, and one logarithm for all. */
+/* Makes a blend that fades, -k log of the sum of e^(-d / k).  States are the least distance m, the
+   sum of e^((m - d) / k), k, and d for shaders: one power for each instance, and one logarithm for
+   all. */
 static uint32_t make_sum(const InstanceGroup *group, const GroupJoin *join)
 {
     Graph         *g          = join->graph;
@@ -164,8 +165,8 @@ static uint32_t make_sum(const InstanceGroup *group, const GroupJoin *join)
     return graph_add_instance_function(g, function, bodies);
 }
 
-/* A function whose states are the nearest distances, the width and, of pairs, the number of steps.  Without
-   `joined` it joins them as the blend does, else to what that makes of the states. */
+/* Makes a function whose states are the nearest distances, the width and, of pairs, the number of
+   steps.  Without `joined` it joins them as the blend does, else to what that makes of the states. */
 static uint32_t make_of_nearest(const InstanceGroup *group, const GroupJoin *join, bool pairs,
                                 uint32_t listed, bool threshold)
 {
@@ -199,7 +200,8 @@ static uint32_t make_of_nearest(const InstanceGroup *group, const GroupJoin *joi
     return graph_add_instance_function(g, function, bodies);
 }
 
-/* One after the other: sharp CSG nodes, and blends for which the order means nothing. */
+/* Joins instances one after the other: by sharp CSG nodes, and blends for which the order means
+   nothing. */
 static uint32_t make_row(const InstanceGroup *group, const GroupJoin *join)
 {
     Graph           *g        = join->graph;
@@ -243,7 +245,7 @@ static uint32_t make_nearest(const InstanceGroup *group, const GroupJoin *join)
     return graph_add_instance_function(g, function, bodies);
 }
 
-/* The weighted mean of a property, or without one (PART_DISTANCE) the sum of shares. */
+/* Makes the weighted mean of a property, or without one (PART_DISTANCE) the sum of shares. */
 static uint32_t make_property(const InstanceGroup *group, const GroupJoin *join, uint32_t root)
 {
     Graph         *g         = join->graph;
@@ -296,7 +298,7 @@ static Node call_distance(const GroupJoin *join, uint32_t function, LowerContext
     return graph_instance_call(join->graph, op, function, context.point);
 }
 
-/* The wanted roots of one instance, or of all where they do not vary, where the context is. */
+/* Copies the wanted roots of one instance, or of all where they do not vary, where the context is. */
 static void copy_outside(const InstanceGroup *group, const GroupJoin *join, Node instance,
                          LowerContext context, const bool *wanted, Node *roots)
 {

@@ -31,7 +31,7 @@ static InstanceGroup instances_with(const PartFinder *finder, uint32_t first, co
 
 enum { PART_COMPONENT = PART_SURFACE + offsetof(Surface, component) / sizeof(Node) };
 
-/* False: it is empty, too large, or has functions of its own. */
+/* Lowers a shared iteration; false: it is empty, too large, or has functions of its own. */
 static bool lower_shared(const PartFinder *finder, const Shape *iteration, Node roots[PART_ROOTS])
 {
     Graph       *graph     = finder->outer->graph;
@@ -71,8 +71,8 @@ static bool only_in_slots(const IteratedGroup *t, const Template *template)
 
 /* ---- what is in the slots ---- */
 
-/* The numbers of one element in all instances; `from` is that of the first, and the next follow after
-   `step`.  False: some are not finite. */
+/* Fills the numbers of one element in all instances; `from` is that of the first, and the next
+   follow after `step`.  False: some are not finite. */
 static bool fill_element(SlotElement *to, const double *from, size_t step, size_t count,
                          Arena *scratch)
 {
@@ -131,7 +131,7 @@ static bool fill_iterated(const PartFinder *finder, InstanceGroup *group, const 
     return true;
 }
 
-/* What all instances have, and the number of each component. */
+/* Fills what all instances have, and the number of each component. */
 static void fill_others(const PartFinder *finder, InstanceGroup *group, const IteratedGroup *t,
                         const SlotContent *contents)
 {

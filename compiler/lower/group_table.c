@@ -113,7 +113,7 @@ static bool columns_equal(const InstanceGroup *group, const Column *a, const Col
     return true;
 }
 
-/* The column with these numbers, new if there is none; NO_COLUMN: there are too many. */
+/* Returns the column with these numbers, new if there is none; NO_COLUMN: there are too many. */
 static uint32_t add_column(InstanceGroup *group, uint32_t slot, uint32_t element, uint8_t axis)
 {
     Column column = {slot, element, column_hash(group, slot, element), axis};
@@ -223,7 +223,7 @@ static void fill_known(const InstanceGroup *group, InstanceTable *table, uint32_
             entry_at(group, i, source->slot, source->element).number;
 }
 
-/* Some instances may have known numbers there. */
+/* Fills a column of the frame, in which some instances may have known numbers. */
 static void fill_of_frame(const InstanceGroup *group, Graph *graph, InstanceTable *table,
                           uint32_t column)
 {
@@ -288,7 +288,7 @@ void group_make_table(InstanceGroup *group, const GroupJoin *join, const Box *bo
 
 /* ---- slots ---- */
 
-/* What is in the place of a column. */
+/* The expressions in the place of a column. */
 typedef struct ColumnReader {
     Node (*read)(const struct ColumnReader *reader, Graph *graph, uint32_t column);
     uint32_t table_number, first;
@@ -305,7 +305,7 @@ static Node read_parameter(const ColumnReader *reader, Graph *graph, uint32_t co
     return graph_parameter(graph, reader->first + column, TYPE_FLOAT);
 }
 
-/* What varies is read, the rest is as in the first instance. */
+/* Returns an element of a slot: it is read if it varies, and else that of the first instance. */
 static Node slot_element(const InstanceGroup *group, Graph *graph, const ColumnReader *reader,
                          uint32_t slot, uint32_t element)
 {

@@ -34,7 +34,7 @@ bool may_guard(const Lowering *l, const Shape *krs, uint32_t stage, LowerContext
            isfinite(bound->ball.radius) && box_is_finite(bound->box);
 }
 
-/* What a distance behind the maps is outside of the sequence. */
+/* Returns what a distance behind the maps is outside of the sequence. */
 static Node distance_outside(Lowering *l, const MapChain *chain, Node distance)
 {
     Lowered behind  = lowered_nothing;
@@ -42,7 +42,7 @@ static Node distance_outside(Lowering *l, const MapChain *chain, Node distance)
     return map_chain_out(l, chain, behind).distance;
 }
 
-/* The distance from which on the bound suffices.  It is negative, so that the bound always
+/* Returns the distance from which on the bound suffices.  It is negative, so that the bound always
    suffices, where the box is smaller than a pixel. */
 static Node far_from(Lowering *l, const GuardSite *site)
 {

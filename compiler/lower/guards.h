@@ -15,8 +15,8 @@ typedef struct GuardSite {
 
 /* Tells whether a guard goes before a stage of the sequence `krs`. */
 bool may_guard(const Lowering *l, const Shape *krs, uint32_t stage, LowerContext context);
-/* The distance to a sequence with guards at these sites, from the outermost to the innermost.
-   `whole` is the distance without guards. */
+/* Returns the distance to a sequence with guards at these sites, from the outermost to the
+   innermost.  `whole` is the distance without guards. */
 Node guard_at_sites(Lowering *l, const GuardSite *guard_sites, uint32_t count, Node whole);
 
 #endif

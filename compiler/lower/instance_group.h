@@ -12,15 +12,15 @@
 /* The expressions of a part: its distance, and a node for each row of surface.def. */
 enum { PART_DISTANCE, PART_SURFACE, PART_ROOTS = 1 + sizeof(Surface) / sizeof(Node) };
 
-/* What the context of parts has in place of what is around the CSG node. */
+/* The leaves that the context of parts has in place of what is around the CSG node. */
 typedef struct PartLeaves {
     Node point, normal, footprint, level, instance, smoothing;
 } PartLeaves;
 
 PartLeaves part_leaves(Graph *graph);
 
-/* What instances have in one element of a slot, as lists.  They are empty as long as all instances have
-   what the first one has; that of nodes also as long as all numbers are known. */
+/* The values of instances in one element of a slot, as lists.  They are empty as long as all
+   instances have what the first one has; that of nodes also as long as all numbers are known. */
 typedef struct SlotElement {
     double number; /* of the first */
     Node   node;   /* NODE_NONE: it is known */
@@ -57,7 +57,7 @@ typedef struct InstanceGroup {
 #define NO_COLUMN   UINT32_MAX
 #define NO_FUNCTION UINT32_MAX
 
-/* How the instances of a group are joined. */
+/* The way in which the instances of a group are joined. */
 typedef struct GroupJoin {
     Graph     *graph;
     Arena     *scratch;
@@ -87,7 +87,8 @@ typedef struct InstanceGroups {
     size_t         count, capacity;
 } InstanceGroups;
 
-/* What is needed later is made in the arena.  Groups may be smaller than asked for. */
+/* Finds the groups; what is needed later is made in the arena.  Groups may be smaller than asked
+   for. */
 InstanceGroups find_groups(const PartFinder *finder, Arena *arena);
 /* Lowers what a part is where parts are, with these groups.  False: it is empty, or too large. */
 bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredGroups *groups,
@@ -110,10 +111,10 @@ void group_make_table(InstanceGroup *group, const GroupJoin *join, const Box *bo
 /* group_cells.c: gives a table with all its numbers a grid and its cells; `boxes` are of its rows. */
 void group_make_cells(const InstanceGroup *group, const GroupJoin *join, const Box *boxes,
                       double reach, double margin, InstanceTable *table);
-/* The nodes in the slots, for the instance whose number is that node; without one (NODE_NONE) of what
-   does not vary. */
+/* Fills the nodes in the slots, for the instance whose number is that node; without one (NODE_NONE)
+   of what does not vary. */
 void group_slots(const InstanceGroup *group, Graph *graph, Node instance, Node *slots);
-/* The same, with a parameter in the place of each column: those from slot `first` on. */
+/* Does the same, with a parameter in the place of each column: those from slot `first` on. */
 void group_slots_of_parameters(const InstanceGroup *group, Graph *graph, uint32_t first,
                                Node *slots);
 
@@ -132,9 +133,9 @@ bool group_has_functions(const InstanceGroup *group, const GroupJoin *join);
 bool group_mixes(const InstanceGroup *group, const GroupJoin *join);
 /* Tells whether its instances differ in anything but their distances. */
 bool group_varies(const InstanceGroup *group, const GroupJoin *join);
-/* What is asked of the instances of a group where the context is: what they are joined to; of blends also
-   their nearest distances, their threshold, the sum of their shares below one, and what is mixed by
-   these. */
+/* These return what is asked of the instances of a group where the context is: what they are joined
+   to; of blends also their nearest distances, their threshold, the sum of their shares below one,
+   and what is mixed by these. */
 Node    group_distance(InstanceGroup *group, const GroupJoin *join, LowerContext context);
 Nearest group_nearest(InstanceGroup *group, const GroupJoin *join, bool pairs,
                       LowerContext context);
@@ -142,7 +143,7 @@ Node    group_threshold(InstanceGroup *group, const GroupJoin *join, LowerContex
 Node group_share(InstanceGroup *group, const GroupJoin *join, Node threshold, LowerContext context);
 Surface group_surface(InstanceGroup *group, const GroupJoin *join, Node threshold,
                       LowerContext context);
-/* The instances of a group, joined, where the context is, by themselves. */
+/* Returns the instances of a group, joined, where the context is, by themselves. */
 Lowered group_lower(InstanceGroup *group, const GroupJoin *join, bool surfaces,
                     LowerContext context);
 

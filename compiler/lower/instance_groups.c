@@ -62,7 +62,8 @@ static bool is_worth_it(const PartFinder *finder, const InstanceGroup *group)
 
 void lowered_groups_made(LoweredGroups *groups) { groups->made++; }
 
-/* The context of parts.  Whether there is a level, an instance and a smoothing is as outside. */
+/* Returns the context of parts.  Whether there is a level, an instance and a smoothing is as
+   outside. */
 static LowerContext context_of_parts(const PartLeaves *leaves, LowerContext outer)
 {
     LowerContext context = outer;
@@ -77,8 +78,8 @@ static LowerContext context_of_parts(const PartLeaves *leaves, LowerContext oute
 
 /* ---- tables ---- */
 
-/* How many widths above a result an instance is that has no share: a width above the least one, which is no
-   more than a width above the result. */
+/* The widths above a result at which an instance has no share: a width above the least one, which
+   is no more than a width above the result. */
 static const double MIXING_REACH = 2;
 
 static double blended_reach(const InstanceGroup *group, const GroupJoin *join)
@@ -102,8 +103,8 @@ static double for_bounds(const PartFinder *finder, const InstanceGroup *group)
     return 1;
 }
 
-/* Up to which distance that of a group must be right.  Groups are joined with each other and with the
-   other parts by the same blend; one that has all parts is not. */
+/* Returns the distance up to which that of a group must be right.  Groups are joined with each
+   other and with the other parts by the same blend; one that has all parts is not. */
 static double needed_reach(const PartFinder *finder, const InstanceGroups *groups,
                            const Blend *blend)
 {
@@ -134,8 +135,8 @@ static bool is_rotated(const Graph *g, const Map *map)
            is_of_frame(g, map->rows[1]) || is_of_frame(g, map->rows[2]);
 }
 
-/* The transformation that moves a part, seen through what leaves boxes as they are; NULL: nothing that
-   depends on the frame does. */
+/* Returns the transformation that moves a part, seen through what leaves boxes as they are; NULL:
+   nothing that depends on the frame does. */
 static const Shape *moved_by(const Graph *g, const Shape *part)
 {
     while (part->kind == SHAPE_PAINT || part->kind == SHAPE_SMOOTH)
@@ -146,7 +147,7 @@ static const Shape *moved_by(const Graph *g, const Shape *part)
     return is_rotated(g, map) || is_of_frame(g, map->shift) ? part : NULL;
 }
 
-/* A box that is rotated and scaled by known numbers. */
+/* Returns a box that is rotated and scaled by known numbers. */
 static Box rotate_box(const Graph *g, const Map *map, Box box)
 {
     const Node       nodes[]   = {map->scale, map->rows[0], map->rows[1], map->rows[2]};

@@ -22,7 +22,7 @@ void lowered_groups_take_few(LoweredGroups *groups);
 /* Says that the graph's nodes are needed for something else than the shape that is lowered. */
 void lowered_groups_made(LoweredGroups *groups);
 
-/* What a CSG node joins, which is sharp or a blend: its parts or their complements. */
+/* The parts or complements that a CSG node joins, sharply or by a blend. */
 typedef struct PartJoin {
     const Shape        *csg_node;
     const Shape *const *parts;
@@ -31,7 +31,7 @@ typedef struct PartJoin {
     double              reach; /* LowerContext.reach of all parts together */
 } PartJoin;
 
-/* Sharply joins those parts that are many and alike.  The others are left in *join. */
+/* Joins those parts sharply that are many and alike.  The others are left in *join. */
 Lowered lower_groups(Lowering *l, PartJoin *join, LowerContext context);
 
 #endif

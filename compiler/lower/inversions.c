@@ -5,7 +5,7 @@
  */
 #include "compiler/lower/lower.h"
 
-/* What the column `image` of shapes.def says of each kind. */
+/* Each of these is what the column `image` of shapes.def says of a kind. */
 
 static bool inverts_none(const Shape *shape)
 {

@@ -7,7 +7,7 @@
 #include "compiler/lower/context.h"
 #include "compiler/lower/nearest.h"
 
-/* The union of two lowered shapes, sharp or blended. */
+/* Joins two lowered shapes, sharply or by a blend. */
 Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b);
 
 /* Lowers an operand of a shape, such as a blend, that needs distances other than 0.  They are at

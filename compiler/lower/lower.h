@@ -28,10 +28,10 @@ typedef struct RootInfo {
     bool        limited;            /* the range holds for answers to queries, too */
 } RootInfo;
 extern const RootInfo root_info[ROOT_COUNT];
-/* The value of a root where no material and no shape sets it. */
+/* Returns the value of a root where no material and no shape sets it. */
 Node root_otherwise(Graph *graph, ComponentRoot root);
 
-/* In all of these `instances` are those of the scene (instance_groups.h), or NULL. */
+/* All of these take the instances of the scene (instance_groups.h) as `instances`, or NULL. */
 
 /* Lowers a shape at the point OP_POINT and sets roots[ROOT_COUNT].  `number` is that of the component,
    from 1, where the shape's parts have none of their own (Shape.shown).  *place, unless NULL, is where its
@@ -40,24 +40,24 @@ Node root_otherwise(Graph *graph, ComponentRoot root);
 bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
                      struct LoweredGroups *groups, Arena *scratch, Node *roots, Node *place);
 
-/* Its distance alone, and nothing else of it; as ROOT_DISTANCE. */
+/* Lowers the distance of a shape alone, and nothing else of it; as ROOT_DISTANCE. */
 bool lower_solid(Graph *graph, const Shape *shape, struct LoweredGroups *groups, Arena *scratch,
                  Node *distance);
 
 /*
- * A distance for marching that replaces ROOT_DISTANCE where branches save time.  OP_guard skips
- * levels of sequences that are far away compared with their size, or smaller than OP_FOOTPRINT.
- * The result is a bound and positive in the same places as ROOT_DISTANCE, but often smaller, and it
- * jumps.  It is `plain`, which is ROOT_DISTANCE, when the graph would be too large.
+ * Lowers a distance for marching that replaces ROOT_DISTANCE where branches save time.  OP_guard
+ * skips levels of sequences that are far away compared with their size, or smaller than
+ * OP_FOOTPRINT. The result is a bound and positive in the same places as ROOT_DISTANCE, but often
+ * smaller, and it jumps.  It is `plain`, which is ROOT_DISTANCE, when the graph would be too large.
  */
 Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredGroups *groups,
                    Arena *scratch);
 
 /*
- * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape.  Inside it
- * is negative: how far the ray may go before it can leave.  It is at least the distance, and much
- * more where the shape is given by polynomials or has open surfaces.  Else it is `plain`, which is
- * ROOT_DISTANCE.
+ * Returns how far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape.
+ * Inside it is negative: how far the ray may go before it can leave.  It is at least the distance,
+ * and much more where the shape is given by polynomials or has open surfaces.  Else it is `plain`,
+ * which is ROOT_DISTANCE.
  */
 Node lower_along(Graph *graph, const Shape *shape, Node plain, struct LoweredGroups *groups,
                  Arena *scratch);
@@ -65,9 +65,9 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, struct LoweredGro
 bool reaches_inversion(const Shape *shape);
 
 /*
- * The gradient of a function that is about ROOT_DISTANCE near the surface, and in `near` that
- * function.  The gradient is a VEC3 of any length.  False when an operation has no derivative, or
- * when the graph would be too large.
+ * Lowers the gradient of a function that is about ROOT_DISTANCE near the surface, and in `near`
+ * that function.  The gradient is a VEC3 of any length.  False when an operation has no derivative,
+ * or when the graph would be too large.
  */
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near,
                     struct LoweredGroups *groups, Arena *scratch);

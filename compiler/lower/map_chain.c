@@ -56,7 +56,7 @@ Node rotate_behind(Graph *g, const Map *map, Node direction)
     return graph_op4(g, OP_rotate, direction, rows[0], rows[1], rows[2]);
 }
 
-/* R^T offset * factor + pole. */
+/* Returns R^T offset * factor + pole. */
 static Node behind_inversion(Graph *g, const Map *map, Node offset, Node factor)
 {
     offset = graph_op2(g, OP_scale, rotate_behind(g, map, offset), factor);
@@ -184,7 +184,7 @@ Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ba
 
 /* ---- bounds around the poles of sequences ---- */
 
-/* A ball around all positions of a ball whose centre depends on parameters. */
+/* Returns a ball around all positions of a ball whose centre depends on parameters. */
 static Ball ball_about(Lowering *l, Node centre, double radius)
 {
     Ball   ball;
@@ -207,8 +207,8 @@ void pole_bounds_fold(Lowering *l, PoleBounds *pole_bounds, Node normal, Node of
     pole_bounds->within = ball_about(l, centre, pole_bounds->within.radius);
 }
 
-/* A ball around the image of a ball under the inverse of a map.  Its radius is infinite if the pole
-   is not CLEAR of the ball. */
+/* Returns a ball around the image of a ball under the inverse of a map.  Its radius is infinite if
+   the pole is not CLEAR of the ball. */
 static Ball ball_behind(Lowering *l, const Map *map, Ball ball)
 {
     Graph *g      = l->graph;

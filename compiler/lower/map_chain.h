@@ -7,7 +7,7 @@
 #include "compiler/lower/normal.h"
 #include "compiler/shape/map.h"
 
-/* The inverse of a map that is a similarity: R^T (point - shift) / scale. */
+/* Returns the inverse of a map that is a similarity: R^T (point - shift) / scale. */
 Node before_map(Graph *g, const Map *map, Node point);
 
 /* The maps passed so far, from outside inwards, and the point behind them.  Let a ball of radius d
@@ -34,11 +34,11 @@ MapChain map_chain_new(Graph *g, Node point);
 void map_chain_append(Lowering *l, MapChain *chain, const Map *map, NormalPath *path);
 /* Converts distances behind all maps into distances outside. */
 Lowered map_chain_out(Lowering *l, const MapChain *chain, Lowered result);
-/* enter_scale() for all maps of the chain. */
+/* Enters the scales of all maps of the chain (enter_scale). */
 Node enter_map_chain(Lowering *l, const MapChain *chain);
 
-/* A bound, outside of all maps, for the distance to the image of a ball.  `map` is the next map
-   inwards, and the ball contains what it is applied to.  NODE_NONE where there is no bound.
+/* Returns a bound, outside of all maps, for the distance to the image of a ball.  `map` is the next
+   map inwards, and the ball contains what it is applied to.  NODE_NONE where there is no bound.
    `*ball` becomes the slightly larger ball to whose image the result is the distance. */
 Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ball);
 
@@ -51,11 +51,11 @@ typedef struct PoleBounds {
 } PoleBounds;
 
 void pole_bounds_fold(Lowering *l, PoleBounds *pole_bounds, Node normal, Node offset);
-/* Is called before map_chain_append.  `ball` contains what the map is applied to.  Tells whether a
-   hull was added. */
+/* Adds a hull before map_chain_append, and tells whether it did.  `ball` contains what the map is
+   applied to. */
 bool pole_bounds_append(Lowering *l, PoleBounds *pole_bounds, const MapChain *chain, const Map *map,
                         Ball ball);
-/* The smaller or larger of two distances, either of which may be NODE_NONE. */
+/* These return the smaller or larger of two distances, either of which may be NODE_NONE. */
 Node nearer_of(Graph *g, Node a, Node b);
 Node farther_of(Graph *g, Node a, Node b);
 

@@ -32,7 +32,7 @@ static bool is_nowhere(const Graph *g, Node node)
     return e->op == OP_CONSTANT && e->number[0] == NOWHERE;
 }
 
-/* Four in ascending order and one more: the four least of them. */
+/* Returns the four least of four in ascending order and one more. */
 static Node insert(Graph *g, Node four, Node distance)
 {
     Node parts[4];
@@ -95,7 +95,7 @@ Node share_below(Graph *g, Blend blend, Node threshold, Node distance)
     return graph_op3(g, OP_clamp, below, zero, one);
 }
 
-/* Up to four in a vector. */
+/* Returns up to four numbers in a vector. */
 static Node four_of(Graph *g, const Node *distances, uint32_t count)
 {
     Node parts[4];
@@ -118,7 +118,7 @@ static Nearest nearest_of(Graph *g, bool pairs, const Node *distances, uint32_t 
     return nearest;
 }
 
-/* Two and two, so that the graph stays shallow. */
+/* Joins distances two and two, so that the graph stays shallow. */
 static Node join_in_pairs(Graph *g, Blend blend, const Node *distances, uint32_t count)
 {
     if (count == 1)

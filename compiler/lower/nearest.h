@@ -18,14 +18,15 @@ typedef struct Nearest {
 
 Nearest nearest_none(Graph *g, bool pairs);
 Nearest nearest_add(Graph *g, Nearest nearest, Node distance);
-/* All that are in `others` as well. */
+/* Merges all that are in `others` as well. */
 Nearest nearest_merge(Graph *g, Nearest nearest, Nearest others);
-/* The blend of those that are in it; by MANY_IN_ROW it has not all that count. */
+/* Returns the blend of those that are in it; by MANY_IN_ROW it has not all that count. */
 Node nearest_end(Graph *g, Blend blend, Nearest nearest);
-/* The threshold below which operands have a share, and the share of one, from 0 to 1: what surfaces are mixed by. */
+/* These return the threshold below which operands have a share, and the share of one, from 0 to 1:
+   what surfaces are mixed by. */
 Node nearest_threshold(Graph *g, Blend blend, Nearest nearest);
 Node share_below(Graph *g, Blend blend, Node threshold, Node distance);
-/* What separate operands, at least one, are blended to, and their threshold. */
+/* Returns what separate operands, at least one, are blended to, and their threshold. */
 Node blend_distances(Graph *g, Blend blend, const Node *distances, uint32_t count);
 Node blend_threshold(Graph *g, Blend blend, const Node *distances, uint32_t count);
 

@@ -15,7 +15,7 @@ static const double NO_WIDTH = 1e-30;
 /* A normal whose squared length is less has no direction: smooth mirrors have averaged it away. */
 static const double NO_LENGTH = 1e-8;
 
-/* normal - 2 amount (axis . normal) axis: reflected where the amount is 1. */
+/* Returns normal - 2 amount (axis . normal) axis: it is reflected where the amount is 1. */
 static Node mirrored(Graph *g, Node normal, Node axis, Node amount)
 {
     Node along      = graph_op2(g, OP_dot, normal, axis);
@@ -98,7 +98,7 @@ void normal_rotate(Lowering *l, NormalPath *path, const Node rows[3], Node stret
         step->rows[i] = rows[i];
 }
 
-/* The rows of the rotation about y that takes one direction to another, both projected to the
+/* Finds the rows of the rotation about y that takes one direction to another, both projected to the
    plane of x and z. */
 static void rows_about_y(Graph *g, Node from, Node to, Node rows[3])
 {

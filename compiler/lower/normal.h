@@ -21,7 +21,7 @@ typedef struct NormalPath {
     uint32_t     count;
 } NormalPath;
 
-/* A path without steps; at most `most` will be added. */
+/* Returns a path without steps; at most `most` will be added. */
 NormalPath normal_path(Lowering *l, LowerContext context, uint32_t most);
 /* Adds the inverse of x -> stretch * rows * x + shift. */
 void normal_rotate(Lowering *l, NormalPath *path, const Node rows[3], Node stretch);
@@ -43,9 +43,9 @@ void normal_kernel(Lowering *l, NormalPath *path, Lowered outer, Lowered kernel)
 /* Maps a normal back to the space where the path began.  It is the normal of the nearest kernel of
    the path, or `inner` where no kernel is nearest. */
 Node normal_out(Lowering *l, const NormalPath *path, Node inner);
-/* The context behind the steps, at a point in that space. */
+/* Returns the context behind the steps, at a point in that space. */
 LowerContext context_behind(const NormalPath *path, LowerContext context, Node point);
-/* The normal, scaled to length 1; `otherwise` where its length is almost 0. */
+/* Returns the normal, scaled to length 1; `otherwise` where its length is almost 0. */
 Node unit_normal(Graph *g, Node normal, Node otherwise);
 /* Lowers a shape at a point behind the steps; its normal is mapped back. */
 Lowered lower_behind(Lowering *l, const Shape *child, LowerContext context, const NormalPath *path,

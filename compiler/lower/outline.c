@@ -35,7 +35,7 @@ static Node unit_clamp(Graph *g, Node t)
     return graph_op3(g, OP_clamp, t, zero, one);
 }
 
-/* a b' - a' b */
+/* Returns a b' - a' b. */
 static Node cross_of(Graph *g, Node a, Node b)
 {
     Node y = graph_component(g, b, 1), first = mul(g, graph_component(g, a, 0), y);
@@ -43,8 +43,9 @@ static Node cross_of(Graph *g, Node a, Node b)
     return sub(g, first, second);
 }
 
-/* What the nearest point is `away` from the point at hand, and how the curve goes on there: the side
-   that this is on.  At an end that is the side of the corner's bisector. */
+/* Returns the length of `away` to the nearest point, with the sign of the side on which the
+   point at hand is of the curve that goes on there.  At an end that is the side of the corner's
+   bisector. */
 static Node signed_length(const Row *row, Node t, Node away, Node tangent, Node side)
 {
     Graph *g     = row->graph;
@@ -75,8 +76,8 @@ static Node line_distance(const Row *row)
     return signed_length(row, t, away, tangent, graph_number(g, 1));
 }
 
-/* Newton's method from t = 1 for f3 t^3 + f2 t^2 + f1 t + f0, which is convex there.  Where it falls,
-   what is nearest is at t = 0. */
+/* Returns the largest root of f3 t^3 + f2 t^2 + f1 t + f0, which is convex at t = 1, by Newton's
+   method from there.  Where it falls, what is nearest is at t = 0. */
 static Node largest_root(Graph *g, const Node f[4])
 {
     Node t = graph_number(g, 1), slope2 = add(g, f[2], f[2]);
@@ -118,7 +119,7 @@ static Node curve_distance(const Row *row)
     return signed_length(row, t, nearest, there_tangent, number_of(row, COLUMN_SIDE));
 }
 
-/* What is nearer to 0. */
+/* Returns what is nearer to 0. */
 static Node nearer(Graph *g, Node state, Node distance)
 {
     Node size = graph_op1(g, OP_abs, distance), least = graph_op1(g, OP_abs, state);
@@ -155,7 +156,7 @@ static double distance_to_piece(const void *instances, uint32_t instance, const 
     return fabs(piece_distance(&all->pieces[instance], point));
 }
 
-/* Around the control points. */
+/* Returns the box around the control points. */
 static Box box_of(const Curve *curve)
 {
     Box box = {{{0, 0}, {0, 0}, {0, 0}}};
@@ -178,7 +179,7 @@ static InstanceArc arc_of(const Curve *curve)
     return arc;
 }
 
-/* The sign of clearances in cells that no instance is in. */
+/* Sets the sign of clearances in cells that no instance is in. */
 static void mark_inside(Grid *grid, const Outline *outline, Arena *scratch)
 {
     const uint32_t *count  = grid->cells;

@@ -27,8 +27,8 @@ typedef struct OutlineShape {
     } functions;
 } OutlineShape;
 
-/* The distance at a point of the plane z = 0: exact up to `margin`, beyond it at most the true one.
-   The graph gets a function for each margin. */
+/* Returns the distance at a point of the plane z = 0: exact up to `margin`, beyond it at most the
+   true one.  The graph gets a function for each margin. */
 Node outline_distance(Graph *graph, OutlineShape *shape, double margin, Node point, bool *is_new,
                       Arena *scratch);
 

@@ -49,9 +49,9 @@ static const double TINY     = 1e-30;
 
 /* ---- polynomials ---- */
 
-/* The length w of the interval, limited so that its powers are finite in single precision.  Roots other
-   than square roots, and square roots of these, are compared by their logarithms, and one power of 2
-   is taken in the end: drivers write it as some twenty instructions. */
+/* Returns the length w of the interval, limited so that its powers are finite in single precision.
+   Roots other than square roots, and square roots of these, are compared by their logarithms, and
+   one power of 2 is taken in the end: drivers write it as some twenty instructions. */
 static Node interval_length(Lowering *l, const Series *s)
 {
     Graph *g        = l->graph;
@@ -80,8 +80,8 @@ static double binomial(uint32_t n, uint32_t k)
     return value;
 }
 
-/* (b0 - b_i) n / i from the terms c_k w^k: the descent to the i-th Bernstein coefficient, as the
-   decrease over the whole interval. */
+/* Returns (b0 - b_i) n / i from the terms c_k w^k: the descent to the i-th Bernstein coefficient,
+   as the decrease over the whole interval. */
 static Node fall_towards(Lowering *l, const Node *terms, uint32_t n, uint32_t i)
 {
     Graph *g   = l->graph;
@@ -94,7 +94,7 @@ static Node fall_towards(Lowering *l, const Node *terms, uint32_t n, uint32_t i)
     return sum;
 }
 
-/* The safe step for a series that is positive at t = 0. */
+/* Returns the safe step for a series that is positive at t = 0. */
 static Node safe_step(Lowering *l, const Series *s)
 {
     Graph *g      = l->graph;
@@ -124,8 +124,8 @@ static Node along_series(Lowering *l, Series *s)
     return mul(g, safe_step(l, s), sign);
 }
 
-/* The part of a ray in a box, some of whose sides may be infinite: from `enter`, which is 0 inside,
-   to `leave`.  The ray misses the box where `leave` is less than `enter`. */
+/* Finds the part of a ray in a box, some of whose sides may be infinite: from `enter`, which is 0
+   inside, to `leave`.  The ray misses the box where `leave` is less than `enter`. */
 static void clip_ray(Lowering *l, Box box, Ray ray, Node *enter, Node *leave)
 {
     Graph *g = l->graph;
@@ -159,7 +159,7 @@ static Node clamp_to(Lowering *l, Node point, Box box)
     return graph_op3(l->graph, OP_clamp, point, least, graph_constant(l->graph, TYPE_VEC3, high));
 }
 
-/* The point where a ray enters a box, clamped to the box, since the point is rounded. */
+/* Returns the point where a ray enters a box, clamped to the box, since the point is rounded. */
 static Node entrance(Lowering *l, Box box, Ray ray, Node enter)
 {
     Node offset = graph_op2(l->graph, OP_scale, ray.direction, enter);
@@ -298,7 +298,7 @@ static Node value_part(Lowering *l, const Shape *shape, Node point)
     return value_at(l, shape->children[0], point);
 }
 
-/* The previous point of the ray. */
+/* Returns the previous point of the ray. */
 static Node previous_point(Lowering *l, Ray ray)
 {
     Node offset = graph_op2(l->graph, OP_scale, ray.direction, ray.back);
@@ -320,7 +320,8 @@ static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)
     return graph_op3(g, OP_select, within, ray.back, graph_op2(g, OP_min, ray.back, depth));
 }
 
-/* Parts with open surfaces come last, since their open surfaces are looked for inside of the others only. */
+/* Marches along an intersection.  Parts with open surfaces come last, since their open surfaces are
+   looked for inside of the others only. */
 static Node along_intersection(Lowering *l, const Shape *shape, Ray ray)
 {
     Node all = NODE_NONE;
@@ -339,7 +340,7 @@ static Node along_intersection(Lowering *l, const Shape *shape, Ray ray)
     return all;
 }
 
-/* The least result of the parts from index `first` on. */
+/* Returns the least result of the parts from index `first` on. */
 static Node along_least(Lowering *l, const Shape *shape, uint32_t first, Ray ray)
 {
     Node least = NODE_NONE;
@@ -382,7 +383,8 @@ static Node along_stretch(Lowering *l, const Shape *shape, Ray ray)
     return along(l, shape->children[0], inner);
 }
 
-/* The t up to which the sign does not change; negative if it changed since the previous point. */
+/* Returns the t up to which the sign does not change; negative if it changed since the previous
+   point. */
 static Node along_open_surface(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph *g    = l->graph;
@@ -469,8 +471,8 @@ static Node value_at(Lowering *l, const Shape *shape, Node point)
 
 static bool reaches_polynomial(const Shape *shape) { return rule_of(shape)->reaches(shape); }
 
-/* The t up to which a ray from outside stays outside; negative inside.  NODE_NONE: the empty
-   set. */
+/* Returns the t up to which a ray from outside stays outside; negative inside.  NODE_NONE: the
+   empty set. */
 static Node along(Lowering *l, const Shape *shape, Ray ray)
 {
     l->graph->here = shape->span;

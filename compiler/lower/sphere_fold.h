@@ -16,7 +16,7 @@ typedef struct SphereFold {
                      is endless */
 } SphereFold;
 
-/* `ball` contains what is mirrored. */
+/* Makes the fold; `ball` contains what is mirrored. */
 SphereFold sphere_fold_at(Graph *g, const SequenceStage *stage, Node point, Ball ball);
 /* Converts a distance at `point` into one outside of the mirror. */
 Lowered sphere_fold_out(Lowering *l, const SphereFold *fold, Lowered result);

@@ -41,7 +41,7 @@ Surface choose_surface(Graph *g, Node condition, Surface a, Surface b)
     return chosen;
 }
 
-/* The weighted mean of a and b; weight 1 gives a. */
+/* Returns the weighted mean of a and b; weight 1 gives a. */
 static Node mix_nodes(Graph *g, Node a, Node b, Node weight)
 {
     if (a == NODE_NONE || b == NODE_NONE || a == b)
@@ -49,7 +49,7 @@ static Node mix_nodes(Graph *g, Node a, Node b, Node weight)
     return graph_op3(g, OP_mix, b, a, weight);
 }
 
-/* Materials are mixed where shapes blend.  Levels, instances and coordinates cannot be mixed. */
+/* Mixes materials where shapes blend.  Levels, instances and coordinates cannot be mixed. */
 Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
 {
     Surface mixed;

@@ -6,10 +6,10 @@
 
 #include "compiler/lower/context.h"
 
-/* `a` where the condition holds, else `b`. */
+/* Returns `a` where the condition holds, else `b`. */
 Surface choose_surface(Graph *g, Node condition, Surface a, Surface b);
-/* The weighted mean of both; `weight` 1 gives `a`.  What cannot be mixed is that of `a` where
-   `nearer` holds, else that of `b`. */
+/* Returns the weighted mean of both; `weight` 1 gives `a`.  What cannot be mixed is that of `a`
+   where `nearer` holds, else that of `b`. */
 Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b);
 
 #endif

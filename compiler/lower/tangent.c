@@ -19,7 +19,7 @@
 /* The part of v's gradient that is along the surface, squared: less is none. */
 static const double MIN_SHARE = 1e-4;
 
-/* The vector, or its opposite where a number is below 0. */
+/* Returns the vector, or its opposite where a number is below 0. */
 static Node turned_by_sign(Graph *g, Node vector, Node number)
 {
     Node below = graph_op2(g, OP_less, number, graph_number(g, 0));

@@ -6,10 +6,10 @@
 
 #include "compiler/graph/graph.h"
 
-/* A direction at `point`, which is in the space of some shape, as a unit vector of the scene, or of
-   the instance group that the expressions are of; 0 where it has none. */
+/* Returns a direction at `point`, which is in the space of some shape, as a unit vector of the
+   scene, or of the instance group that the expressions are of; 0 where it has none. */
 Node tangent_outwards(Graph *graph, Node tangent, Node point, Arena *scratch);
-/* The direction in which `u` grows on the surface while `v` stays, likewise. */
+/* Returns the direction in which `u` grows on the surface while `v` stays, likewise. */
 Node tangent_of_uv(Graph *graph, Node uv, Arena *scratch);
 
 #endif

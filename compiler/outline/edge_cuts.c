@@ -118,7 +118,7 @@ static bool refine(const Curve *a, const Curve *b, double *t, double *u, double 
     return distance_between(at, other) <= 0.5 * tolerance;
 }
 
-/* Where the chords cross, both curves do. */
+/* Cuts both curves where the chords cross. */
 static void cut_at_crossing(Cutter *cutter, const Span2 *a, const Span2 *b)
 {
     Making      *making = cutter->making;
@@ -202,7 +202,7 @@ static void find_crossings(Cutter *cutter, const Span2 *a, const Span2 *b, int d
 
 /* ---- pairs ---- */
 
-/* Equal curves, in either direction: they will be merged. */
+/* Tells whether curves are equal, in either direction: they will be merged. */
 static bool is_double(const Edge *a, const Edge *b, double tolerance)
 {
     bool same = (a->from == b->from && a->to == b->to) || (a->from == b->to && a->to == b->from);
@@ -248,7 +248,7 @@ static int compare_boxes(const void *a, const void *b)
     return (x->edge > y->edge) - (x->edge < y->edge);
 }
 
-/* Sorted along the axis, which counts as the first one, along which the edges reach farther. */
+/* Sorts boxes along the axis, which counts as the first one, along which the edges reach farther. */
 static EdgeBox *sorted_boxes(const Making *making, double margin)
 {
     size_t   count  = making->edges.count;
@@ -301,7 +301,7 @@ static int compare_cuts(const void *a, const void *b)
     return (x->knot > y->knot) - (x->knot < y->knot);
 }
 
-/* The part of an edge from t to u, between two knots. */
+/* Adds the part of an edge from t to u, between two knots. */
 static void add_part(Making *making, const Edge *edge, double t, double u, uint32_t from,
                      uint32_t to)
 {

@@ -17,8 +17,8 @@ typedef enum FontSearch {
     FONT_NO_MEMORY
 } FontSearch;
 
-/* The font that a name means, as fontconfig reads it: "DejaVu Serif", "DejaVu Sans:bold".  NULL: a
-   usual one without serifs. */
+/* Returns the font that a name means, as fontconfig reads it: "DejaVu Serif", "DejaVu Sans:bold".
+   NULL: a usual one without serifs. */
 FontSearch font_find(const char *name, FoundFont *found);
 
 #endif

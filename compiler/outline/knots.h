@@ -22,7 +22,7 @@ typedef struct Knots {
     size_t    slot_count;
 } Knots;
 
-/* The knot at a point, new if there is none. */
+/* Returns the knot at a point, new if there is none. */
 uint32_t knot_at(Knots *knots, const double point[2]);
 
 #endif

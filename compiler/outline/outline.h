@@ -12,8 +12,8 @@
 
 #include "compiler/outline/path.h"
 
-/* What is inside: where contours go around, in all, an odd number of times, not 0 times, to the left
-   at least once or at least twice. */
+/* The rule of the inside: where contours go around, in all, an odd number of times, not 0 times, to
+   the left at least once or at least twice. */
 typedef enum FillRule { FILL_EVEN_ODD, FILL_NONZERO, FILL_POSITIVE, FILL_TWICE } FillRule;
 
 /*
@@ -48,12 +48,13 @@ typedef enum OutlineFault {
     OUTLINE_UNRESOLVED /* curves run along each other, all but equal */
 } OutlineFault;
 
-/* The outline of contours.  Lengths below a thousand-millionth of their size count as 0.  `fault_at`
-   is where the fault is. */
+/* Makes the outline of contours.  Lengths below a thousand-millionth of their size count as 0.
+   `fault_at` is where the fault is. */
 OutlineFault outline_make(Outline *outline, const Curves *curves, FillRule rule, Arena *arena,
                           Arena *scratch, double fault_at[2]);
 
-/* The signed distance to a piece: to its nearest point, negative where that has the inside. */
+/* Returns the signed distance to a piece: to its nearest point, negative where that has the
+   inside. */
 double piece_distance(const Piece *piece, const double point[2]);
 
 #endif

@@ -16,7 +16,8 @@ typedef struct Pieces {
 
 /* ---- cutting ---- */
 
-/* A curve from its tangent at t on: half of the derivative there, and the second difference. */
+/* Finds of a curve, from its tangent at t on, half of the derivative there, and the second
+   difference. */
 static void tangent_and_bend(const Curve *curve, double tangent[2], double bend[2])
 {
     for (int k = 0; k < 2; k++) {

@@ -77,12 +77,12 @@ void path_quadratic(Path *path, const double via[2], const double to[2])
     path_line(path, to);
 }
 
-/* Each part of an arc turns by a quarter of a circle at most. */
+/* Draws an arc by parts that each turn by a quarter of a circle at most. */
 void path_arc(Path *path, const double to[2], double bulge)
 {
     double from[2] = {path->at[0], path->at[1]}, turn = 4 * real_atan(bulge);
     double chord[2] = {to[0] - from[0], to[1] - from[1]};
-    /* From the middle of the chord the centre is to the left by this share of the chord. */
+    /* The centre is to the left of the middle of the chord by this share of the chord. */
     double left  = 0.25 * (1 / bulge - bulge);
     int    count = (int)fmax(ceil(fabs(turn) / (0.5 * M_PI) - 1e-9), 1);
     Curve  arc   = {.straight = false};
@@ -145,8 +145,8 @@ static double weight_of(const Curve *curve)
                              : 1;
 }
 
-/* Weighted control points of the part from t to u: its ends and what is between them; t = u: a point.  The
-   third component is the weight. */
+/* Finds the weighted control points of the part from t to u: its ends and what is between them; t =
+   u: a point.  The third component is the weight. */
 static void blossom(const Curve *curve, double t, double u, double point[3])
 {
     double weight = weight_of(curve);
@@ -171,7 +171,8 @@ void curve_point(const Curve *curve, double t, double point[2])
                        : u * u * curve->from[k] + 2 * u * t * curve->via[k] + t * t * curve->to[k];
 }
 
-/* Half of the derivative of a quotient, from the points at both ends of what has the tangent. */
+/* Returns half of the derivative of a quotient, from the points at both ends of what has the
+   tangent. */
 static void arc_tangent(const Curve *curve, double t, double tangent[2])
 {
     double at[3], before[3], behind[3];
@@ -252,7 +253,8 @@ static double newton_root(const double f[4], double t)
 
 static double clamp_unit(double t) { return t < 0 ? 0 : t > 1 ? 1 : t; }
 
-/* From the middle of an arc on, the tangent of half of the angle grows evenly with t. */
+/* Returns the parameter of the nearest point.  From the middle of an arc on, the tangent of half of
+   the angle grows evenly with t. */
 static double arc_nearest(const Curve *curve, const double point[2])
 {
     double middle[2], from[2], at[2];

@@ -32,25 +32,26 @@ typedef struct Path {
     double tolerance;       /* of cubic curves */
 } Path;
 
-/* Each begins where the one before ended.  Contours end where they began: what is left open when
-   the next begins is closed by a line. */
+/* Each of these begins where the one before ended.  Contours end where they began: what is left
+   open when the next begins is closed by a line. */
 void path_move(Path *path, const double to[2]);
 void path_line(Path *path, const double to[2]);
 void path_quadratic(Path *path, const double via[2], const double to[2]);
 void path_cubic(Path *path, const double first[2], const double second[2], const double to[2]);
-/* An arc; `bulge` is the tangent of a quarter of the angle that it turns by, above 0 to the left. */
+/* Draws an arc; `bulge` is the tangent of a quarter of the angle that it turns by, above 0 to the
+   left. */
 void path_arc(Path *path, const double to[2], double bulge);
 void path_close(Path *path);
 
 Curve line_between(const double from[2], const double to[2]);
-/* The point and half of the derivative at t. */
+/* These find the point and half of the derivative at t. */
 void curve_point(const Curve *curve, double t, double point[2]);
 void curve_tangent(const Curve *curve, double t, double tangent[2]);
-/* The part with parameters from t to u. */
+/* Returns the part with parameters from t to u. */
 Curve curve_part(const Curve *curve, double t, double u);
-/* The same backwards. */
+/* Returns the same backwards. */
 Curve curve_reversed(const Curve *curve);
-/* The nearest point's parameter. */
+/* Returns the nearest point's parameter. */
 double curve_nearest(const Curve *curve, const double point[2]);
 
 #endif

@@ -146,8 +146,8 @@ typedef struct End {
     double   angle; /* of the direction in which the edge leaves the knot */
 } End;
 
-/* Where tangents are equal the curves tell which is where: so not the tangent counts, but the way to a point
-   that is near. */
+/* Returns the angle at which an edge leaves.  If tangents are equal the curves tell which is where:
+   so not the tangent counts, but the way to a point that is near. */
 static double leaving_angle(const Edge *edge, bool last)
 {
     const double *at = last ? edge->curve.to : edge->curve.from;
@@ -180,7 +180,7 @@ static End *sorted_ends(const Making *making)
     return ends;
 }
 
-/* Inside is from where an edge begins, around to where one ends. */
+/* Returns the angle of the inside, from where an edge begins, around to where one ends. */
 static double angle_inside(const End *begins, const End *ends)
 {
     double angle = ends->angle - begins->angle;

@@ -18,13 +18,13 @@
 /* `use` in `use`, and gradients that continue others. */
 enum { MAX_REFERENCES = 24, MAX_ENTERED = 400000 };
 
-/* What fills or strokes.  Its colour is sRGB, 0xrrggbb. */
+/* The paint of a fill or stroke.  Its colour is sRGB, 0xrrggbb. */
 typedef struct Paint {
     bool     drawn;
     uint32_t rgb;
 } Paint;
 
-/* What elements inherit. */
+/* The properties that elements inherit. */
 typedef struct State {
     SvgMap    map;
     Paint     fill, line;
@@ -46,7 +46,7 @@ typedef struct Reader {
 
 /* ---- notes ---- */
 
-/* Once for each kind. */
+/* Notes once for each kind what is left out. */
 static void note(Reader *reader, const char *what)
 {
     SvgDrawing *drawing = reader->drawing;
@@ -75,8 +75,8 @@ static const char *property(const Reader *reader, const SvgElement *element, con
     return value && strcmp(value, "inherit") == 0 ? NULL : value;
 }
 
-/* A length in units of the drawing, of which the view has `whole`; what is measured in others is not
-   known here. */
+/* Returns a length in units of the drawing, of which the view has `whole`; what is measured in
+   others is not known here. */
 static double length_in(Reader *reader, const char *text, double whole, double otherwise)
 {
     double number;
@@ -94,7 +94,7 @@ static double view_size(const Reader *reader, int axis)
     return reader->drawing->high[axis] - reader->drawing->low[axis];
 }
 
-/* `axis`: 0 and 1 along the view's width and height, 2 neither. */
+/* Returns a length; `axis`: 0 and 1 along the view's width and height, 2 neither. */
 static double length_of(Reader *reader, const SvgElement *element, const char *name, int axis,
                         double otherwise)
 {
@@ -118,7 +118,7 @@ static bool hexadecimal(const char *digits, uint32_t *rgb)
     return true;
 }
 
-/* rgb(255, 128, 0) or rgb(100%, 50%, 0%) */
+/* Reads rgb(255, 128, 0) or rgb(100%, 50%, 0%). */
 static bool functional(const char *text, uint32_t *rgb)
 {
     *rgb = 0;
@@ -142,8 +142,8 @@ static const char *library_text(const char *name)
     return file->name ? file->text : "";
 }
 
-/* Colours of CSS are declared by the library, `let tomato = #ff6347;`, but for `tan`, which is the
-   tangent in the language. */
+/* Reads a colour of CSS by the library's declaration, `let tomato = #ff6347;`, except for `tan`,
+   which is the tangent in the language. */
 static bool named(const char *name, uint32_t *rgb)
 {
     size_t length = strlen(name);
@@ -186,8 +186,8 @@ typedef struct Mean {
     double sum[4];
 } Mean;
 
-/* Colours change evenly between stops: the mean over a stretch is that of its ends, in terms of what
-   each adds to light that is mixed. */
+/* Adds a stretch between stops, where colours change evenly: the mean is that of its ends, in terms
+   of what each adds to light that is mixed. */
 static void add_stretch(Mean *mean, const Stop *a, const Stop *b, double length)
 {
     for (int end = 0; end < 2; end++) {
@@ -215,7 +215,7 @@ static Stop read_stop(Reader *reader, const SvgElement *element, const Stop *bef
     return stop;
 }
 
-/* The mean along a gradient; false: there is nothing to be seen of it. */
+/* Finds the mean along a gradient; false: there is nothing to be seen of it. */
 static bool mean_of_stops(Reader *reader, const SvgElement *gradient, uint32_t *rgb)
 {
     Mean mean   = {{0}};
@@ -254,7 +254,7 @@ static const char *link_of(const SvgElement *element)
     return link ? link : svg_attribute(element, "xlink:href");
 }
 
-/* `url(#id)`: the mean of a gradient, whose stops may be those of another one. */
+/* Reads `url(#id)`: the mean of a gradient, whose stops may be those of another one. */
 static bool read_reference(Reader *reader, const char *text, Paint *paint)
 {
     const SvgElement *found = svg_referred(&reader->tree, text);
@@ -301,7 +301,7 @@ static bool is_clear(Reader *reader, const SvgElement *element, const char *name
     return number <= 0;
 }
 
-/* The row of a table whose name a property has; without one, what was inherited. */
+/* Returns the row of a table whose name a property has; without one, what was inherited. */
 static int choice_of(Reader *reader, const SvgElement *element, const char *name,
                      const char *const *names, int count, int inherited)
 {
@@ -412,8 +412,8 @@ typedef bool        DrawShape(Reader *reader, const SvgElement *element, SvgPen 
 typedef void        EnterElement(Reader *reader, const SvgElement *element, State state);
 static EnterElement enter_use, enter_svg, enter_children, enter_switch;
 
-/* What elements are: shapes; what has others inside; definitions, which nothing is drawn of; others are
-   left out. */
+/* The kinds of elements: shapes; what has others inside; definitions, which nothing is drawn of;
+   others are left out. */
 static const struct Kind {
     const char   *name;
     DrawShape    *draw;
@@ -466,7 +466,7 @@ static void add_figure(Reader *reader, const Curves *curves, FillRule rule, uint
         array_push(drawing->arena, &drawing->figures, figure);
 }
 
-/* The area first, then the stroke upon it. */
+/* Draws the area first, then the stroke upon it. */
 static void draw_element(Reader *reader, const struct Kind *kind, const SvgElement *element,
                          const State *state)
 {
@@ -571,7 +571,7 @@ static void enter_children(Reader *reader, const SvgElement *element, State stat
         enter(reader, child, state);
 }
 
-/* The first one that is known. */
+/* Draws the first child that is known. */
 static void enter_switch(Reader *reader, const SvgElement *element, State state)
 {
     for (const SvgElement *child = element->first; child; child = child->next)
@@ -606,7 +606,7 @@ static void fit_view(Reader *reader, const SvgElement *element, const double siz
     state->map = svg_product(&state->map, &map);
 }
 
-/* An `svg` in another, or a `symbol` where it is used. */
+/* Draws an `svg` in another, or a `symbol` where it is used. */
 static void enter_view(Reader *reader, const SvgElement *element, const double size[2], State state)
 {
     fit_view(reader, element, size, &state);

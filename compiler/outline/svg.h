@@ -37,7 +37,7 @@ typedef struct SvgDrawing {
     unsigned    fault_line;
 } SvgDrawing;
 
-/* False: it cannot be read.  `arena` of the drawing is set. */
+/* Reads a drawing, whose `arena` is set; false: it cannot be read. */
 bool svg_read(SvgDrawing *drawing, const char *bytes, size_t length);
 
 #endif

@@ -18,7 +18,7 @@ static void skip_blanks(const char **text)
         ++*text;
 }
 
-/* Not what else strtod knows: hexadecimal numbers, infinities. */
+/* Reads a number, but not what else strtod knows: hexadecimal numbers, infinities. */
 bool svg_number(const char **text, double *number)
 {
     char *end;
@@ -205,7 +205,8 @@ static void arc_place(const Arc *arc, double x, double y, double p[2])
     p[1] = arc->center[1] + s * arc->radii[0] * x + c * arc->radii[1] * y;
 }
 
-/* Pieces of 22.5 degrees at most: a cubic curve leaves such an arc by a 10-millionth of its radius. */
+/* Draws an arc by pieces of 22.5 degrees at most: a cubic curve leaves such an arc by a
+   10-millionth of its radius. */
 static void draw_arc(SvgPen *pen, const Arc *arc, const double *end)
 {
     int    count = (int)fmax(ceil(fabs(arc->by) / (M_PI / 8) - 1e-9), 1);
@@ -219,7 +220,7 @@ static void draw_arc(SvgPen *pen, const Arc *arc, const double *end)
     }
 }
 
-/* SVG 1.1, F.6.5 and F.6.6: the arc from one point to another. */
+/* Draws the arc from one point to another by SVG 1.1, F.6.5 and F.6.6. */
 static void draw_arc_between(SvgPen *pen, const double from[2], const double n[7])
 {
     double rx = fabs(n[0]), ry = fabs(n[1]), rotation_angle = n[2] * M_PI / 180,
@@ -285,7 +286,8 @@ static void make_absolute(const PathReader *reader, char letter, int count, doub
             n[i] += reader->at[letter == 'A' ? i - 5 : i % 2];
 }
 
-/* The last control point, mirrored in the current point, if the last piece was of such a kind. */
+/* Finds the last control point, mirrored in the current point, if the last piece was of such a
+   kind. */
 static void mirrored(const PathReader *reader, const char *kinds, double p[2])
 {
     bool mirrors = reader->before && strchr(kinds, reader->before);
@@ -325,7 +327,7 @@ static void draw_piece(PathReader *reader, char letter, double *n, int count)
     reader->before = letter;
 }
 
-/* S and T begin with a control point that the piece before tells: so they are C and Q. */
+/* Draws S and T as C and Q: the piece before tells the first control point. */
 static void draw_smooth(PathReader *reader, char letter, double *n)
 {
     double all[6], p[2];
@@ -335,7 +337,7 @@ static void draw_smooth(PathReader *reader, char letter, double *n)
     draw_piece(reader, letter == 'S' ? 'C' : 'Q', all, letter == 'S' ? 6 : 4);
 }
 
-/* All pieces behind one letter.  What follows the first point of M are lines. */
+/* Draws all pieces behind one letter.  What follows the first point of M are lines. */
 static bool draw_letter(PathReader *reader, char letter)
 {
     bool   relative = islower((unsigned char)letter);

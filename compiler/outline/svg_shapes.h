@@ -11,7 +11,7 @@ typedef struct SvgMap {
     double m[6];
 } SvgMap;
 
-/* What is drawn from one `M` to the next, before the map, for strokes. */
+/* The curves from one `M` to the next, before the map, for strokes. */
 typedef struct SvgSubpath {
     Path path;
     bool drawn, closed; /* something follows its first point; it ends with `Z` */
@@ -36,8 +36,8 @@ void pen_cubic(SvgPen *pen, const double first[2], const double second[2], const
 /* Ends a contour where it began. */
 void pen_close(SvgPen *pen);
 
-/* The next number of a list, whose elements are separated by blanks or a comma; false: there is
-   none. */
+/* Reads the next number of a list, whose elements are separated by blanks or a comma; false: there
+   is none. */
 bool svg_number(const char **text, double *number);
 /* Reads as many numbers as there are, at most `most`. */
 int svg_numbers(const char *text, double *numbers, int most);
@@ -46,7 +46,7 @@ SvgMap svg_product(const SvgMap *outer, const SvgMap *inner);
 /* Reads the attribute `transform`; false: it means nothing. */
 bool svg_transform(const char *text, SvgMap *map);
 
-/* The attribute `d` of a path; false: from some place on it means nothing. */
+/* Draws the attribute `d` of a path; false: from some place on it means nothing. */
 bool svg_path(SvgPen *pen, const char *text);
 void svg_rectangle(SvgPen *pen, const double corner[2], const double size[2],
                    const double radii[2]);

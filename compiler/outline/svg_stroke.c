@@ -52,7 +52,7 @@ static void bend(Contour *contour, const double via[2], const double to[2])
     contour->curved[contour->count - 1] = true;
 }
 
-/* Twice the area between its points and control points. */
+/* Returns twice the area between its points and control points. */
 static double area_of(const Contour *contour)
 {
     double        area = 0;
@@ -122,7 +122,7 @@ static Tangent tangent_at(const Curve *curve, double t)
     return tangent;
 }
 
-/* The angle from one direction to another, in (-pi, pi]. */
+/* Returns the angle from one direction to another, in (-pi, pi]. */
 static double angle_between(const double a[2], const double b[2])
 {
     return real_atan2(cross2(a, b), dot2(a, b));
@@ -242,7 +242,7 @@ static void draw_curve(Stroker *stroker, const Curve *curve)
 
 /* ---- corners and ends ---- */
 
-/* The arc about a point from an end of a radius on, by an angle. */
+/* Adds the arc about a point from an end of a radius on, by an angle. */
 static void add_arc(const Stroker *stroker, Contour *contour, const double at[2],
                     const double radius[2], double by)
 {

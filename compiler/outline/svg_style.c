@@ -35,7 +35,8 @@ static bool has_word(const char *list, const char *word, size_t length)
     return false;
 }
 
-/* A selector without blanks: "path", ".thin", "#wall", "path.thin#wall", "*". */
+/* Tells whether an element matches a selector without blanks: "path", ".thin", "#wall",
+   "path.thin#wall", "*". */
 static bool matches_simple(const SvgElement *element, const char *text, size_t length)
 {
     for (size_t at = 0, end; at < length; at = end) {
@@ -181,7 +182,7 @@ void svg_rules_read(SvgTree *tree, const SvgElement *style)
 
 /* ---- properties ---- */
 
-/* "a: b" in "...; a: b; ...": NULL if there is none. */
+/* Returns "a: b" in "...; a: b; ..."; NULL if there is none. */
 static const char *styled(const SvgTree *tree, const char *style, const char *name)
 {
     size_t length = strlen(name);

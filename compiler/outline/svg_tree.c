@@ -80,7 +80,7 @@ static const char *const *copy_attributes(Reader *reader, const char **attribute
     return copies;
 }
 
-/* "svg:path" is a path where names have prefixes; others belong to editors. */
+/* Returns "path" of "svg:path", where names have prefixes; others belong to editors. */
 static const char *local_name(const char *name)
 {
     return strncmp(name, "svg:", 4) == 0 ? name + 4 : name;

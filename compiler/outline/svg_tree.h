@@ -35,16 +35,16 @@ typedef struct SvgTree {
     unsigned    unknown_rules; /* the first line with one that means nothing here; 0: none */
 } SvgTree;
 
-/* False: it cannot be read.  `arena` is set. */
+/* Reads a tree, whose `arena` is set; false: it cannot be read. */
 bool svg_tree_read(SvgTree *tree, const char *bytes, size_t length);
 /* Adds the rules of a `style` element. */
 void svg_rules_read(SvgTree *tree, const SvgElement *style);
 
-/* NULL: there is none. */
+/* Returns an attribute; NULL: there is none. */
 const char *svg_attribute(const SvgElement *element, const char *name);
 /* Returns a property by `style`, rules, or as an attribute, in the order of CSS. */
 const char *svg_property(const SvgTree *tree, const SvgElement *element, const char *name);
-/* The element that `#id` or `url(#id)` names, or NULL. */
+/* Returns the element that `#id` or `url(#id)` names, or NULL. */
 const SvgElement *svg_referred(const SvgTree *tree, const char *reference);
 
 #endif

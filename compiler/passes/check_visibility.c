@@ -15,7 +15,7 @@
 /* Components that are looked up by their place at most: those of a short loop have the same one. */
 enum { MAX_FOUND = 100 };
 
-/* What a camera has in its picture: the points q with dot(normal, q) <= offset for all planes. */
+/* The space in the picture of a camera: the points q with dot(normal, q) <= offset for all planes. */
 typedef struct Pyramid {
     bool   everything;
     int    planes;
@@ -29,13 +29,14 @@ static void add_plane(Pyramid *pyramid, const double normal[3], const double poi
     pyramid->offsets[at] = dot3(normal, point);
 }
 
-/* Width by height.  The size of a picture may be given when it is rendered: then it may be wider. */
+/* Returns the greatest width by height.  The size of a picture may be given when it is rendered:
+   then it may be wider. */
 static double widest_aspect(const KrsImage *image)
 {
     return image->width ? (double)image->width / image->height : 4;
 }
 
-/* The two planes at the ends of a picture along one of its axes. */
+/* Adds the two planes at the ends of a picture along one of its axes. */
 static void add_ends(Pyramid *pyramid, const KrsCamera *camera, const double forward[3],
                      const double axis[3], double half)
 {
@@ -97,7 +98,7 @@ static bool camera_moves(const Graph *graph, const SceneCamera *camera)
         false;
 }
 
-/* The pictures of all cameras; 0: one of them moves, has a lens, or frames all there is. */
+/* Returns the pictures of all cameras; 0: one of them moves, has a lens, or frames all there is. */
 static size_t find_pyramids(const Compilation *c, KrsState *state, Pyramid *pyramids)
 {
     KrsView view;
@@ -177,7 +178,8 @@ static void warn_of_inside(Compilation *c, KrsState *state)
 /* The part of the light that white sends back where less than this arrives is as good as black. */
 static const double DIM = 0.02;
 
-/* The largest value that a light gives to white: that is 1 for an intensity of pi at a distance of 1. */
+/* Returns the largest value that a light gives to white: that is 1 for an intensity of pi at a
+   distance of 1. */
 static double brightest_value(const KrsView *view, const KrsLight *light, double distance)
 {
     double color = fmax(light->color[0], fmax(light->color[1], light->color[2]));
@@ -206,7 +208,7 @@ static void warn_of_dim_light(Compilation *c, KrsState *state, const KrsView *vi
                             3 * distance * distance);
 }
 
-/* What hides all that a light sends to one side. */
+/* Returns the plane that hides all that a light sends to one side. */
 static const Component *plane_before(const Compilation *c, const double direction[3])
 {
     const Graph *graph = c->elaborated.graph;
@@ -224,7 +226,7 @@ static const Component *plane_before(const Compilation *c, const double directio
     return NULL;
 }
 
-/* The solid around a light, all of which is in it; what lets light through is none. */
+/* Returns the solid around a light, all of which is in it; what lets light through is none. */
 static const Component *solid_around(const Compilation *c, KrsState *state, const KrsLight *light)
 {
     const double reach = light->softness + 0.5 * real_hypot(light->size[0], light->size[1]);

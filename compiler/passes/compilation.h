@@ -42,8 +42,8 @@ typedef struct Request {
         single_iterations; /* each iteration of a loop is evaluated by itself (eval/iterations.c) */
 } Request;
 
-/* Which optional roots are lowered, besides the surface and the march of each component.  `lower`
-   decides it, since it needs the shapes and the graph before it is simplified. */
+/* The optional roots that are lowered, besides the surface and the march of each component.
+   `lower` decides it, since it needs the shapes and the graph before it is simplified. */
 typedef struct Additions {
     bool planes;          /* there are half-spaces, which rays meet without a march */
     bool camera_relative; /* points may be relative to the camera */

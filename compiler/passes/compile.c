@@ -32,7 +32,7 @@ static const Pass passes[PASS_COUNT] = {
 
 const KrsPass *krs_pass(size_t index) { return index < PASS_COUNT ? &passes[index].about : NULL; }
 
-/* The pass with this name or form, or PASS_COUNT. */
+/* Returns the pass with this name or form, or PASS_COUNT. */
 static PassId find_pass(const char *word)
 {
     PassId id = 0;
@@ -167,10 +167,11 @@ static KrsStatus run_guarded(Compilation *c)
     return status;
 }
 
-/* So that each scene has shaders of its own, until it is found to have those of another. */
+/* The number of scenes made so far, so that each has shaders of its own, until it is found to have
+   those of another. */
 static atomic_uint_fast64_t scenes_made;
 
-/* An empty scene in memory of the options' allocator; NULL if there is no memory. */
+/* Returns an empty scene in memory of the options' allocator; NULL if there is no memory. */
 static KrsScene *scene_new(const KrsOptions *options)
 {
     const KrsAllocator *allocator = &options->allocator;

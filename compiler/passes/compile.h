@@ -62,7 +62,7 @@ typedef struct KrsPass {
 
 /* Pass `index`, from 0 in the order in which they run; NULL behind the last. */
 const KrsPass *krs_pass(size_t index);
-/* The pass with this name or form, or NULL. */
+/* Returns the pass with this name or form, or NULL. */
 const KrsPass *krs_find_pass(const char *word);
 
 /* Tells whether a text is a scene: errors are those of krs_compile_text.  No camera is placed in a scene

@@ -98,7 +98,7 @@ static AssemblyTransform mirrored(Finder *f, uint32_t item, const SequenceStage 
                                add_roots(f, (const Node *)&roots, NODES_OF(MirrorRoots))};
 }
 
-/* What a stage makes of the item before it, which may be NO_ITEM. */
+/* Returns what a stage makes of the item before it, which may be NO_ITEM. */
 static uint32_t take_stage(Finder *f, const Shape *krs, const SequenceStage *stage, uint32_t before)
 {
     AssemblyTransform transforms[2] = {{before, PLACED_STILL, 0}};
@@ -151,7 +151,7 @@ typedef struct UnionParts {
     size_t        count, capacity;
 } UnionParts;
 
-/* Those that neither move nor have copies go to `still`. */
+/* Sorts parts: those that neither move nor have copies go to `still`. */
 static void sort_parts(Finder *f, const Shape *shape, UnionParts *still, UnionParts *others)
 {
     for (uint32_t i = 0; i < shape->child_count; i++) {
@@ -165,7 +165,7 @@ static void sort_parts(Finder *f, const Shape *shape, UnionParts *still, UnionPa
     }
 }
 
-/* What stands still is one part. */
+/* Takes a union, of which all that stands still is one part. */
 static uint32_t take_moving_union(Finder *f, const Shape *shape)
 {
     UnionParts still = {0}, others = {0};
@@ -245,7 +245,7 @@ static uint32_t take_parts(Finder *f, const Shape *shape)
     }
 }
 
-/* A material that differs from place to place. */
+/* Tells whether a material differs from place to place. */
 static bool is_local(const Graph *graph, const Material *material)
 {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends)          \
@@ -255,7 +255,7 @@ static bool is_local(const Graph *graph, const Material *material)
     return false;
 }
 
-/* What is painted by its place has looks of its own in each copy. */
+/* Returns what is known of a shape; one that is painted by its place differs in each copy. */
 static const Known *find_known(const Finder *f, const Shape *shape)
 {
     if (f->paint && is_local(f->graph, f->paint->material))

@@ -82,7 +82,7 @@ static double find_middle(Range side)
     return isfinite(middle) ? middle : 0;
 }
 
-/* The axis along which the middles of boxes are farthest apart. */
+/* Returns the axis along which the middles of boxes are farthest apart. */
 static int find_axis(const EmissivePart *parts, size_t count)
 {
     double widest = -1;

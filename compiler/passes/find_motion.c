@@ -21,7 +21,7 @@ static bool any_timed(const MotionFinder *f, uint32_t root, size_t count)
 
 static void add_item(const MotionFinder *f, uint32_t number, KrsMotion *motion);
 
-/* What grows has a larger error, so that is no motion. */
+/* Adds a transform.  What grows has a larger error, so that is no motion. */
 static void add_transform(const MotionFinder *f, const AssemblyTransform *transform,
                           KrsMotion *motion)
 {

@@ -67,8 +67,8 @@ static bool is_costly(const KrsScene *scene, int rays)
     return rays * tape_flops_separate(&scene->distance) > RAYS * FLOPS_OF_ALL_RAYS;
 }
 
-/* The number of rays: a power of two, so that it has no factor in common with the strides of
-   make_rays, which are odd. */
+/* Returns the number of rays: a power of two, so that it has no factor in common with the strides
+   of make_rays, which are odd. */
 static int count_rays(const KrsScene *scene)
 {
     int count = RAYS;
@@ -77,7 +77,7 @@ static int count_rays(const KrsScene *scene)
     return count;
 }
 
-/* The place of the i-th ray that is cast among `count` of them. */
+/* Returns the place of the i-th ray that is cast among `count` of them. */
 static int spread(int i, int count) { return i * STRIDE % count; }
 
 /* Makes the i-th ray that is cast: from a lattice of `count` points that are spread evenly on a sphere
@@ -143,8 +143,8 @@ static bool cast_rays(KrsState *state, Rays *rays, int count, double radius)
     return unresolved <= MAX_UNRESOLVED;
 }
 
-/* The ball around the box of what is seen, with a margin, no larger than `ball` was; false where
-   there is too little to be seen. */
+/* Shrinks the ball to that around the box of what is seen, with a margin, no larger than it was;
+   false where there is too little to be seen. */
 static bool shrink_ball(Box seen, Ball *ball)
 {
     Ball inner = ball_around(seen);
@@ -287,8 +287,8 @@ static void search_beyond(KrsState *state, Box box, int most, double margin, Cel
     }
 }
 
-/* The ball around what rays hit: each round makes it smaller, and so the rays of the next one
-   denser.  False when rays cost too much. */
+/* Shrinks the ball to that around what rays hit: each round makes it smaller, and so the rays of
+   the next one denser.  False when rays cost too much. */
 static bool cast_rounds(KrsState *state, int count, Rays *rays, Ball *ball)
 {
     for (int round = 0; round < ROUNDS; round++) {
@@ -335,9 +335,10 @@ static void find_ball(KrsState *state, Box box, Rays *rays, Cells *cells, Ball *
 
 /* ---- the camera ---- */
 
-/* How much of the height of the picture is filled: by what is wide, by what is tall, and by the mean of
-   both.  Pictures are wider than high, but may be square.  The eye comes no nearer than a part of the
-   distance from which the ball fills the height, for things would look distorted from there. */
+/* The part of the height of the picture that is filled: by what is wide, by what is tall, and by
+   the mean of both.  Pictures are wider than high, but may be square.  The eye comes no nearer than
+   a part of the distance from which the ball fills the height, for things would look distorted from
+   there. */
 static const double WIDE = 0.95, TALL = 0.82, FILLED = 0.68, NEAREST = 0.65;
 
 /* The default camera: where it is, and the axes of its picture. */

@@ -24,7 +24,7 @@ typedef KrsStatus Inspect(void *user, const Inspected *what);
 KrsStatus inspect_text(const char *text, size_t length, const char *name, const KrsOptions *options,
                        Inspect *inspect, void *user);
 
-/* The same of a text, for which only the passes up to `elaborate` run. */
+/* Does the same of a text, for which only the passes up to `elaborate` run. */
 KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,
                              Inspect *inspect, void *user);
 

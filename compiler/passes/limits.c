@@ -22,7 +22,8 @@ static const char fewer_shapes[] =
 
 /* ---- operations ---- */
 
-/* The number of operations at each point; those that depend on the frame only do not count. */
+/* Returns the number of operations at each point; those that depend on the frame only do not
+   count. */
 static size_t count_operations(Compilation *c, const Node *roots, size_t count)
 {
     Tape   tape   = tape_new(c->scene->graph, roots, count, &c->scratch);
@@ -182,7 +183,7 @@ static Node first_beyond_numbers(const Tape *tape)
     return found;
 }
 
-/* The first node of some components that is_beyond_numbers, or NODE_NONE. */
+/* Returns the first node of some components that is_beyond_numbers, or NODE_NONE. */
 static Node find_overflow(Compilation *c, size_t first, size_t count)
 {
     Tape tape  = tape_new(c->scene->graph, surface_roots(&c->scene->roots, first),
@@ -244,7 +245,7 @@ static bool needs_positive(const Expr *expr)
            expr->type == TYPE_FLOAT;
 }
 
-/* What an expression can be, at all points and for all values of the parameters. */
+/* Returns what an expression can be, at all points and for all values of the parameters. */
 static Range range_everywhere(Compilation *c, Node node)
 {
     RangeTask task = range_task(c->scene->graph, &node, 1, &c->scratch);
@@ -252,8 +253,8 @@ static Range range_everywhere(Compilation *c, Node node)
     return range_task_value(&task, node);
 }
 
-/* The first root or logarithm of a tape that is a number nowhere, or NODE_NONE; few are looked at, for
-   a mistake like this is soon met with. */
+/* Returns the first root or logarithm of a tape that is a number nowhere, or NODE_NONE; few are
+   looked at, for a mistake like this is soon met with. */
 static Node first_undefined(Compilation *c, const Tape *tape, double *most)
 {
     enum { MAX_LOOKED_AT = 64 };
@@ -308,7 +309,7 @@ void print_limits(Compilation *c, Text *out)
 
 /* ---- the first frame ---- */
 
-/* The first component that uses a node; NULL if only a camera, a light or the sky does. */
+/* Returns the first component that uses a node; NULL if only a camera, a light or the sky does. */
 static const Component *component_with(Compilation *c, Node node)
 {
     for (size_t i = 0; i < c->elaborated.components.count; i++) {

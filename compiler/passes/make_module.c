@@ -28,7 +28,7 @@ static Sources retain_lines(const Sources *from, const Graph *graph, Arena *aren
     return retained;
 }
 
-/* The text of the entry points (krs_entry_points) for graphics cards. */
+/* Returns the text of the entry points (krs_entry_points) for graphics cards. */
 static Text print_entry_points(Compilation *c, bool shares)
 {
     KrsScene        *scene = c->scene;

@@ -17,7 +17,7 @@ static const double SEPARATE_FLOPS = 300, SHARED_FLOPS = 1000;
    and 05-rock takes 3 % longer. */
 static const double NESTED_FLOPS = 450, NESTED_VOLUME = 1.25;
 
-/* Where one group has more than this part of all flops, marching it by itself saves nothing. */
+/* The part of all flops from which marching one group by itself saves nothing. */
 static const double MAX_OF_SCENE = 0.9;
 
 static double component_flops(Compilation *c, size_t component)
@@ -43,7 +43,7 @@ static Box box_of_group(const KrsMarchGroup *group)
     return box;
 }
 
-/* The index of a group that a component should share; or the number of groups. */
+/* Returns the index of a group that a component should share; or the number of groups. */
 static size_t find_nested(const KrsProgram *program, double flops, Box box)
 {
     size_t i = program->march_group_count;
@@ -60,9 +60,9 @@ static size_t find_nested(const KrsProgram *program, double flops, Box box)
     return i;
 }
 
-/* The index of a component's group: a new one if the component is expensive and bounded, and groups
-   are left; or one that it is nested with.  Else that of the last group, which has all other
-   components. */
+/* Returns the index of a component's group: a new one if the component is expensive and bounded,
+   and groups are left; or one that it is nested with.  Else that of the last group, which has all
+   other components. */
 static size_t choose_march_group(const KrsProgram *program, double flops, double rest_flops,
                                  Box box)
 {

@@ -45,7 +45,7 @@ KrsStatus pass_load(Compilation *c)
 
 void print_load(Compilation *c, Text *out) { files_print_texts(&c->files, out); }
 
-/* Mistakes end the run only after the pass `names`, which may find more. */
+/* Lexes the files.  Mistakes end the run only after the pass `names`, which may find more. */
 KrsStatus pass_lex(Compilation *c)
 {
     files_lex(&c->files);
@@ -163,7 +163,7 @@ KrsStatus pass_simplify(Compilation *c)
     return KRS_OK;
 }
 
-/* Other roots may be the distance itself. */
+/* Prunes a component; other roots may be the distance itself. */
 static bool prune_component(Compilation *c, size_t component)
 {
     Roots     *roots = &c->scene->roots;
@@ -177,7 +177,8 @@ static bool prune_component(Compilation *c, size_t component)
     return new != old;
 }
 
-/* What is needed depends on numbers, so it stays where these are kept out of the shaders. */
+/* Prunes the graph.  What is needed depends on numbers, so it stays where these are kept out of the
+   shaders. */
 KrsStatus pass_prune(Compilation *c)
 {
     Roots *roots  = &c->scene->roots;

@@ -61,7 +61,7 @@ static const double FAR_OUT = 64;
 /* Pictures are assumed to have at most twice as many lines as the scene's image, or as usual. */
 enum { USUAL_HEIGHT = 720, TIMES_HEIGHT = 2 };
 
-/* The largest coordinate of the sides of boxes of components; infinite sides do not count. */
+/* Returns the largest coordinate of the sides of boxes of components; infinite sides do not count. */
 static double reach_of_boxes(const Scene *s)
 {
     double reach = 0;
@@ -106,7 +106,7 @@ static void run_defaults(ViewPrecision *view)
     tape_run_frame(&view->tape, parameters, view->values);
 }
 
-/* The least distance of a component from the eye, for the defaults of the parameters. */
+/* Returns the least distance of a component from the eye, for the defaults of the parameters. */
 static double nearest_to(const ViewPrecision *view, const double eye[3])
 {
     double nearest = HUGE_VAL;
@@ -118,7 +118,7 @@ static double nearest_to(const ViewPrecision *view, const double eye[3])
     return nearest;
 }
 
-/* The largest coordinate that the eye may have, for any values of the parameters. */
+/* Returns the largest coordinate that the eye may have, for any values of the parameters. */
 static double reach_of_eye(const ViewPrecision *view, Node eye)
 {
     double reach = 0;
@@ -149,7 +149,7 @@ static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *ca
            krs_may_blur_normals(farthest, nearest, pixel, lines);
 }
 
-/* The longest side of its box that has an end. */
+/* Returns the longest side of its box that has an end. */
 static double size_of(const Scene *s)
 {
     double size = 0;

@@ -14,8 +14,8 @@ static const char *retain_text(Compilation *c, const char *text)
     return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
 }
 
-/* Where the author's texts have something; zeros for what a text of the library has.  Mostly it is in the text of
-   the one before, which may be NULL. */
+/* Returns where the author's texts have something; zeros for what a text of the library has.
+   Mostly it is in the text of the one before, which may be NULL. */
 static KrsLocation retain_location(Compilation *c, Span span, const KrsLocation *before)
 {
     const Source *source = &c->sources.items[span.source];
@@ -175,7 +175,7 @@ static void retain_scene(Compilation *c)
     scene->image.pixel_filter = retain_text(c, s->image.pixel_filter);
 }
 
-/* A tape of one root of each component and, behind them, that of the zones. */
+/* Returns a tape of one root of each component and, behind them, that of the zones. */
 static Tape tape_with_zones(const KrsScene *scene, const Node *roots, bool guarded, Arena *arena,
                             Arena *scratch)
 {
@@ -246,7 +246,7 @@ static void retain_frame(Compilation *c)
             *nodes++ = n;
 }
 
-/* What an update of the scene is compiled with. */
+/* Keeps the options for updates of the scene. */
 static void retain_options(Compilation *c)
 {
     c->scene->name         = retain_text(c, c->name);

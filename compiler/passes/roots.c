@@ -139,9 +139,10 @@ static void find_subsurface(Compilation *c, const Graph *g)
 }
 
 /*
- * Components that are half-spaces need no march.  A ray from p along d enters the half-space
- * n.x <= w at (w - n.p) / n.d, if n.d < 0.  The first root is the least of these lengths, the
- * second the least n.d.  Zones cut holes into planes, so with zones planes are marched, too.
+ * Lowers components that are half-spaces, which need no march.  A ray from p along d enters the
+ * half-space n.x <= w at (w - n.p) / n.d, if n.d < 0.  The first root is the least of these
+ * lengths, the second the least n.d.  Zones cut holes into planes, so with zones planes are
+ * marched, too.
  */
 static void lower_planes(Compilation *c, Graph *g)
 {

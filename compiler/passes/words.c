@@ -27,7 +27,7 @@ static void begin_parameter(Text *json, bool first, const char *name, size_t len
 
 /* ---- what is built in ---- */
 
-/* Those of "shapes... radius=". */
+/* Writes the parameters of "shapes... radius=". */
 static void write_builtin_parameters(Text *json, const char *parameters)
 {
     text_add(json, ", \"parameters\": [");

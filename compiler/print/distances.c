@@ -71,7 +71,7 @@ static FunctionKind kind_of_distance(const Emitter *e, uint32_t component)
     return OF_DISTANCE;
 }
 
-/* The least, which begins with the first component where none is left out. */
+/* Emits the least, which begins with the first component where none is left out. */
 void emit_distance(Emitter *e)
 {
     bool some = e->variant->march_group > 0 || (e->variant->planes && e->module->is_plane) ||
@@ -126,7 +126,7 @@ bool emit_keeps_plane(const Emitter *e, uint32_t component)
     return may_overflow(e, component) && box_is_finite(e->module->boxes[component]);
 }
 
-/* Where there is no box, the safe distance takes the place of the plane's. */
+/* Tells whether the safe distance takes the place of the plane's, as without a box. */
 static bool has_safe_distance(const Emitter *e, uint32_t component)
 {
     return may_overflow(e, component) && !emit_keeps_plane(e, component);
@@ -139,7 +139,7 @@ void need_tangent(Emitter *e)
         e->needed_of[OF_DISTANCE][i] |= has_safe_distance(e, i);
 }
 
-/* Four numbers: a gradient, and the distance. */
+/* Returns four numbers: a gradient, and the distance. */
 static const char *with_distance(Emitter *e, const char *gradient, const char *distance)
 {
     Text text = {.arena = e->scratch};
@@ -147,8 +147,8 @@ static const char *with_distance(Emitter *e, const char *gradient, const char *d
     return text.bytes;
 }
 
-/* The distance to the plane, or to the box around the component where that is larger, or where the
-   other is not a number. */
+/* Emits the distance to the plane, or to the box around the component where that is larger, or
+   where the other is not a number. */
 static const char *emit_kept_distance(Emitter *e, uint32_t component, const char *distance)
 {
     emit_variable(e, TYPE_FLOAT, "tangent", distance);
@@ -176,7 +176,7 @@ void emit_gradient_of(Emitter *e, const ModuleFunction *function)
     emit_line(e, "    return %s;\n}\n\n", with_distance(e, e->text[roots[0]], distance));
 }
 
-/* Where zones cut, their walls are the surface. */
+/* Emits the gradients of zones, whose walls are the surface where they cut. */
 static void emit_zone_gradients(Emitter *e, const Node *roots)
 {
     if (e->module->zone != NODE_NONE) {

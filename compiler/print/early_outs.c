@@ -12,14 +12,14 @@
 static const char *emit_region(Emitter *e, const Regions *regions, uint32_t region, Node result,
                                bool returns);
 
-/* Where nothing has been found yet, the bound alone counts. */
+/* Tells whether nothing has been found yet: then the bound alone counts. */
 static bool nothing_found(const Emitter *e, Node least)
 {
     const Expr *expr = &e->graph->items[least];
     return expr->op == OP_CONSTANT && expr->number[0] >= NOWHERE;
 }
 
-/* The condition of OP_guard, shorter where some of it is known. */
+/* Returns the condition of OP_guard, shorter where some of it is known. */
 static const char *guard_text(Emitter *e, const Node *o)
 {
     const Expr *limit = &e->graph->items[o[3]];
@@ -36,7 +36,7 @@ static const char *guard_text(Emitter *e, const Node *o)
     return text.bytes;
 }
 
-/* A guard within an expression: what it may leave out stands in a block. */
+/* Emits a guard within an expression: what it may leave out stands in a block. */
 static void emit_guard(Emitter *e, const Regions *regions, Node guard)
 {
     const Node *o     = e->graph->items[guard].operands;
@@ -64,8 +64,8 @@ static void emit_return(Emitter *e, const Node *o)
     emit_template(e, TEMPLATE_RETURN_IF, (Operands){guard_text(e, o), found.bytes});
 }
 
-/* Statements of a region; returns its result.  Where that is all that the function is about, a
-   guard can return. */
+/* Emits the statements of a region; returns its result.  If that is all that the function is about,
+   a guard can return. */
 static const char *emit_region(Emitter *e, const Regions *regions, uint32_t region, Node result,
                                bool returns)
 {

@@ -98,21 +98,21 @@ typedef struct Emitter {
     Text helper_text; /* of those that are called */
 } Emitter;
 
-/* Room for what is known of each node of a module. */
+/* Makes room for what is known of each node of a module. */
 Emitter emitter_new(const Module *module, Arena *scratch);
 
 /* ---- statements.c ---- */
 
-/* Statements for all that the roots need, in a function of the point; e->text has what stands for
-   each root then. */
+/* Emits statements for all that the roots need, in a function of the point; e->text has what stands
+   for each root then. */
 void emit_body(Emitter *e, const Node *roots, size_t count);
-/* A function that is not a list of statements: what it needs, with names for what is constant in
-   it; then emit_node for each of the others. */
+/* Begins a function that is not a list of statements: what it needs, with names for what is
+   constant in it; then emit_node for each of the others. */
 void emit_begin(Emitter *e, const Node *roots, size_t count);
 void emit_node(Emitter *e, Node n);
 /* The same, unless it is given. */
 void emit_point_node(Emitter *e, Node n);
-/* The expression of a node whose operands have theirs. */
+/* Emits the expression of a node whose operands have theirs. */
 const char *emit_expression(Emitter *e, const Expr *expr);
 /* Finds the nodes that a function needs, counting uses; unless it is one of the `frame`, frame
    values end the walk. */
@@ -120,35 +120,35 @@ void emit_count_uses(Emitter *e, const Node *roots, size_t count, bool frame);
 
 /* ---- noises.c ---- */
 
-/* The statements of a body, in which many noises are one loop. */
+/* Emits the statements of a body, in which many noises are one loop. */
 void emit_with_noises(Emitter *e);
 
 /* ---- lines.c ---- */
 
-/* A line of code, in which alternatives of the printer are written out. */
+/* Emits a line of code, in which alternatives of the printer are written out. */
 void emit_line(Emitter *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* What a template is about, as many as its row says. */
+/* The operands of a template, as many as its row says. */
 typedef const char *Operands[3];
-/* The printer's words for a template; the second writes them as a line. */
+/* These return the printer's words for a template; the second writes them as a line. */
 const char *template_text(Emitter *e, TextTemplate template, const Operands operands);
 void        emit_template(Emitter *e, TextTemplate template, const Operands operands);
-/* A local variable that stays as it is, and one that changes. */
+/* These emit a local variable that stays as it is, and one that changes. */
 void emit_local(Emitter *e, GraphType type, const char *name, const char *value);
 void emit_variable(Emitter *e, GraphType type, const char *name, const char *value);
 /* Says where the next statement comes from, unless it is the same line as before, or the same file
    of the standard library. */
 void emit_comment(Emitter *e, Span span);
-/* A constant; a number, or a vector, as a literal. */
+/* These emit a constant; a number, or a vector, as a literal. */
 const char *emit_constant(Emitter *e, const Expr *constant);
 const char *emit_number(Emitter *e, double number);
 const char *emit_vector(Emitter *e, const double v[3]);
-/* A vector of a box: the global of node `index`, or a literal where there are no nodes. */
+/* Emits a vector of a box: the global of node `index`, or a literal where there are no nodes. */
 const char *emit_box_vector(Emitter *e, const Node *nodes, size_t index, const double v[3]);
 /* An expression that is a whole statement needs no parentheses around it. */
 const char *emit_bare(Emitter *e, const char *text);
-/* A count, or the number of something. */
+/* Returns a count, or the number of something. */
 const char *emit_count(Emitter *e, size_t count);
-/* `width` components of a slot of the block. */
+/* Returns `width` components of a slot of the block. */
 const char *emit_slot(Emitter *e, uint32_t slot, uint32_t first, uint32_t width);
 
 /* ---- helpers.c ---- */
@@ -166,38 +166,39 @@ void emit_helper_of(Emitter *e, const char *name, uint32_t component);
 /* Writes the prototype of an entry point, with a comment; nothing where it has no name of its own. */
 void emit_entry_point(Emitter *e, KrsFunction function);
 void emit_prepare_entry_point(Emitter *e);
-/* What a function begins with, up to its brace. */
+/* Emits what a function begins with, up to its brace. */
 void emit_head(Emitter *e, KrsFunction function);
 void emit_prepare_head(Emitter *e);
 void emit_zone_depth_head(Emitter *e);
 void emit_head_of(Emitter *e, FunctionKind kind, uint32_t component);
-/* A call of a component's function, in one with operands of the same names, or with others. */
+/* These emit a call of a component's function, in one with operands of the same names, or with
+   others. */
 const char *emit_call_of(Emitter *e, FunctionKind kind, uint32_t component);
 const char *emit_call_with(Emitter *e, FunctionKind kind, uint32_t component, const char *operands);
 
 /* ---- prepare.c ---- */
 
-/* krs_prepare, and the globals that it sets: frame values that the roots read. */
+/* Emits krs_prepare, and the globals that it sets: frame values that the roots read. */
 void emit_prepare(Emitter *e, const Node *roots, size_t count, const StateValues *values);
 /* Tells whether functions need the zones of the caller. */
 bool emit_reads_zones(const Emitter *e);
-/* Slots that are in the block of a variant before zones of the caller. */
+/* Returns the slots that are in the block of a variant before zones of the caller. */
 uint32_t emit_slot_count(const Emitter *e);
 
 /* ---- mirrors.c ---- */
 
-/* The expression of a mirror (OP_fold), and statements before it; NULL: as the operation's row
-   has it. */
+/* Returns the expression of a mirror (OP_fold), and statements before it; NULL: as the operation's
+   row has it. */
 const char *mirror_text(Emitter *e, const Expr *fold);
 /* Tells whether that may name the point more than once. */
 bool mirror_repeats(const Emitter *e, const Expr *fold);
-/* What a mirror needs of the frame besides its operands; NULL: nothing. */
+/* Returns what a mirror needs of the frame besides its operands; NULL: nothing. */
 const MirrorNodes *mirror_nodes(const Emitter *e, Node fold);
 
 /* ---- Functions: what they need of each component, and their text ---- */
 
 /* distances.c: krs_distance, what zones cut out, krs_gradient. */
-/* A distance without what zones cut out. */
+/* Emits a distance without what zones cut out. */
 const char *emit_cut(Emitter *e, const char *distance);
 void        need_distance(Emitter *e);
 void        need_gradient(Emitter *e);
@@ -211,7 +212,7 @@ bool emit_has_gradient(const Emitter *e, uint32_t component);
 /* Tells whether krs_surface takes the plane of that gradient for the distance.  Outside of the box around the
    component the box counts: far away polynomials are beyond all numbers. */
 bool emit_has_tangent(const Emitter *e, uint32_t component);
-/* The distance to the box around a component, which is finite; 0 inside. */
+/* Emits the distance to the box around a component, which is finite; 0 inside. */
 const char *emit_box_distance(Emitter *e, uint32_t component);
 void        emit_distance_of(Emitter *e, const ModuleFunction *function);
 void        emit_gradient_of(Emitter *e, const ModuleFunction *function);
@@ -223,10 +224,10 @@ void emit_gradient(Emitter *e);
 void emit_tangent(Emitter *e);
 
 /* shared.c: what a component's distance and surface have in common. */
-/* The values that the distance hands over; false: each is computed by itself. */
+/* Finds the values that the distance hands over; false: each is computed by itself. */
 bool emit_find_shared(Emitter *e, uint32_t component, NodeList *shared);
 void emit_shared_distance(Emitter *e, const ModuleFunction *distance, const NodeList *shared);
-/* The statements of the rest of a surface. */
+/* Emits the statements of the rest of a surface. */
 void emit_shared_rest(Emitter *e, const ModuleFunction *surface, const NodeList *shared);
 
 /* surfaces.c: KrsSurface and krs_surface. */
@@ -234,18 +235,18 @@ void emit_struct(Emitter *e);
 void need_surface(Emitter *e);
 void emit_surface_of(Emitter *e, const ModuleFunction *function);
 void emit_surface(Emitter *e);
-/* `nearest`: what is anywhere in a scene without components. */
+/* Emits what is anywhere in a scene without components: `nearest`. */
 void emit_nothing(Emitter *e);
 
 /* instances.c: functions of instance groups, and the tables that they read. */
 /* Finds what these functions call; bodies of that join their roots. */
 void emit_find_called(Emitter *e, NodeList *roots);
 bool emit_reads_tables(const Emitter *e);
-/* Globals for headers of tables, and in krs_prepare their values. */
+/* Emits globals for headers of tables, and in krs_prepare their values. */
 void emit_table_globals(Emitter *e);
 void emit_table_reads(Emitter *e);
 void emit_instances(Emitter *e);
-/* Expressions of OP_row, calls and OP_STATE. */
+/* These return expressions of OP_row, calls and OP_STATE. */
 const char *emit_row(Emitter *e, const Expr *row);
 const char *emit_instance_call(Emitter *e, const Expr *call);
 const char *emit_state(Emitter *e, const Expr *state);
@@ -254,7 +255,7 @@ const char *emit_state(Emitter *e, const Expr *state);
 /* Notes what a node needs of the text besides its operands. */
 void emit_note_seen(Emitter *e, const Expr *expr);
 bool emit_reads_textures(const Emitter *e);
-/* Globals for textures and the ray, and in krs_prepare their values. */
+/* Emits globals for textures and the ray, and in krs_prepare their values. */
 void        emit_texture_globals(Emitter *e);
 void        emit_texture_reads(Emitter *e);
 const char *emit_texture(Emitter *e, const Expr *texture);
@@ -270,16 +271,16 @@ void emit_lod(Emitter *e);
 bool emit_is_medium(const Emitter *e, uint32_t component);
 /* Tells whether rays of the variant are in media. */
 bool emit_has_media(const Emitter *e);
-/* The globals of media. */
+/* Emits the globals of media. */
 void emit_media_globals(Emitter *e);
-/* What is left of `variable`, the least length to solids that are no media, with those to the
+/* Emits what is left of `variable`, the least length to solids that are no media, with those to the
    boundaries of media, which are functions of this kind; and cut by zones. */
 void emit_media_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, uint32_t component),
                       const char *variable);
-/* The same, left in the variable. */
+/* Does the same, left in the variable. */
 void emit_seen_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, uint32_t component),
                      const char *variable);
-/* The gradient `other` of a component, as the ray sees it. */
+/* Emits the gradient `other` of a component, as the ray sees it. */
 void emit_media_gradient(Emitter *e, uint32_t component);
 void need_media_surface(Emitter *e);
 void emit_media_surface(Emitter *e);
@@ -305,11 +306,11 @@ void emit_probe(Emitter *e);
 
 /* ---- module_print.c ---- */
 
-/* The roots of a function of a component. */
+/* Returns the roots of a function of a component. */
 ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t component);
-/* krs_plane_t's root and krs_plane_cosine's. */
+/* Returns krs_plane_t's root and krs_plane_cosine's. */
 const Node *emit_planes(const Emitter *e);
-/* What a function computes first. */
+/* Returns what a function computes first. */
 Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component);
 /* Tells whether a component is of the variant's march group, which may be that of the planes. */
 bool emit_is_of_group(const Emitter *e, uint32_t component);

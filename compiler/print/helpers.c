@@ -35,8 +35,8 @@ static bool is_word(const char *word, size_t length, const char *text)
     return strlen(word) == length && strncmp(word, text, length) == 0;
 }
 
-/* The type of the first operand: the first word between `from` and a comma or parenthesis that is
-   one, "(float a" or "(a: f32"; or nothing. */
+/* Finds the type of the first operand: the first word between `from` and a comma or parenthesis
+   that is one, "(float a" or "(a: f32"; or nothing. */
 static void find_type(const Emitter *e, Helper *helper, const char *from)
 {
     for (; *from && !strchr(",)", *from); from += helper->type_length) {
@@ -90,7 +90,7 @@ void helpers_read(Emitter *e)
             read_file(e, file, printer != e->printer);
 }
 
-/* The one whose first operand has this type, if any; NULL: any type. */
+/* Returns the one whose first operand has this type, if any; NULL: any type. */
 static Helper *find_helper(Emitter *e, const char *name, size_t length, const char *type)
 {
     for (size_t i = 0; i < e->helpers.count; i++) {
@@ -109,7 +109,7 @@ static size_t name_length(const char *name)
     return strspn(name, "abcdefghijklmnopqrstuvwxyz_0123456789");
 }
 
-/* Those that it calls come first. */
+/* Prints a helper behind those that it calls. */
 static void print_helper(Emitter *e, Helper *helper)
 {
     if (helper->printed)

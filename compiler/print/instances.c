@@ -99,7 +99,7 @@ void emit_table_reads(Emitter *e)
 
 /* ---- rows ---- */
 
-/* The name of a texel that has been loaded, or NULL. */
+/* Returns the name of a texel that has been loaded, or NULL. */
 static const char *find_texel(const Emitter *e, uint32_t table_number, uint32_t texel,
                               Node instance)
 {
@@ -141,7 +141,7 @@ const char *emit_row(Emitter *e, const Expr *row)
 
 /* ---- functions ---- */
 
-/* The number of a function in texts, which count from 1. */
+/* Returns the number of a function in texts, which count from 1. */
 static const char *function_name(Emitter *e, uint32_t id)
 {
     return numbered(e, "krs_instances_", id + 1);
@@ -165,7 +165,7 @@ const char *emit_state(Emitter *e, const Expr *state)
     return state_name(e, state_of(state->index));
 }
 
-/* What functions are called with: some with the point alone. */
+/* Returns what functions are called with: some with the point alone. */
 static const char *parameters_text(Emitter *e, uint32_t count)
 {
     static const GraphType   types[] = {TYPE_VEC3, TYPE_VEC3, TYPE_VEC2};
@@ -189,7 +189,7 @@ static void emit_first_states(Emitter *e, const InstanceFunction *function)
     }
 }
 
-/* All states change at once. */
+/* Emits the next states, which change at once. */
 static void emit_next_states(Emitter *e, const InstanceFunction *function, const Node *bodies)
 {
     bool one = function->state_count == 1;
@@ -213,7 +213,7 @@ static void indent_lines(Emitter *e, size_t from)
     }
 }
 
-/* The tail of the entry at hand: in the last of its texels, which may be loaded. */
+/* Returns the tail of the entry at hand: in the last of its texels, which may be loaded. */
 static const char *tail_text(Emitter *e, uint32_t table_number)
 {
     const InstanceTable *table = &e->graph->instances->tables.items[table_number];
@@ -240,7 +240,8 @@ static const char *choice_text(Emitter *e, const char *condition, const char *on
     return template_text(e, TEMPLATE_CHOICE, (Operands){condition, one, other});
 }
 
-/* A sum of powers, until what is left may lack.  The last power that counts is cut so that the result has no steps. */
+/* Emits a sum of powers, until what is left may lack.  The last power that counts is cut so that
+   the result has no steps. */
 static void emit_sum_that_ends(Emitter *e, const InstanceFunction *function, const Node *bodies)
 {
     const char *table = table_name(e, function->table_number);
@@ -278,7 +279,7 @@ static void emit_sum_that_ends(Emitter *e, const InstanceFunction *function, con
               choice_text(e, "whole > 0.0", "blended", "nearby.clearance"));
 }
 
-/* What the function returns that joins its states. */
+/* Emits what the function returns that joins its states. */
 static void emit_end_of_states(Emitter *e, const InstanceFunction *function, const Node *bodies)
 {
     const Node  body   = bodies[function->state_count];

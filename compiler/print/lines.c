@@ -15,7 +15,7 @@
 
 static void write_out(Emitter *e, Text *to, const char *text, size_t length);
 
-/* What is called at `text`, or NULL. */
+/* Finds what is called at `text`, or NULL. */
 static const Alternative *find_alternative(const Emitter *e, const char *text, size_t length)
 {
     for (const Alternative *alternative = e->printer->alternatives; alternative->name;
@@ -27,7 +27,7 @@ static const Alternative *find_alternative(const Emitter *e, const char *text, s
     return NULL;
 }
 
-/* The length of an operand, up to a comma or a parenthesis that ends it. */
+/* Returns the length of an operand, up to a comma or a parenthesis that ends it. */
 static size_t operand_length(const char *text, size_t length)
 {
     size_t at = 0;
@@ -130,7 +130,7 @@ void emit_variable(Emitter *e, GraphType type, const char *name, const char *val
 
 /* ---- literals ---- */
 
-/* The shortest literal that reads back as the float nearest to the number. */
+/* Adds the shortest literal that reads back as the float nearest to the number. */
 static void add_literal(Text *text, double number)
 {
     char   digits[40];

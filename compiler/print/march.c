@@ -38,7 +38,7 @@ void need_scene_parts(Emitter *e)
     }
 }
 
-/* What is inside of a switch over parts. */
+/* Emits what is inside of a switch over parts. */
 static void emit_part_case(Emitter *e, size_t part)
 {
     FunctionKind kind     = goes_by_lod(e) ? OF_LOD : OF_DISTANCE;
@@ -116,7 +116,7 @@ static void need_steps(Emitter *e, FunctionKind kind)
 void need_along(Emitter *e) { need_steps(e, OF_ALONG); }
 void need_probe(Emitter *e) { need_steps(e, OF_PROBE); }
 
-/* What a component has to itself, and where it joins the others. */
+/* Emits what a component has to itself, and where it joins the others. */
 void emit_along_of(Emitter *e, const ModuleFunction *function)
 {
     emit_head_of(e, function->kind, function->component);
@@ -124,7 +124,7 @@ void emit_along_of(Emitter *e, const ModuleFunction *function)
     emit_line(e, "    return %s;\n}\n\n", e->text[*function->roots]);
 }
 
-/* The least of all, of which some have no more than a distance. */
+/* Emits the least of all, of which some have no more than a distance. */
 static void emit_steps(Emitter *e, FunctionKind kind)
 {
     emit_variable(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
@@ -147,7 +147,7 @@ void emit_along(Emitter *e)
     emit_media_steps(e, kind_of_step, "t");
 }
 
-/* Zones and media are lengths along the ray. */
+/* Emits zones and media, which are lengths along the ray. */
 void emit_separate_steps(Emitter *e)
 {
     const bool together = e->cuts || emit_has_media(e);

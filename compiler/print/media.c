@@ -70,7 +70,7 @@ static const char *number_text(Emitter *e, uint32_t component)
     return text.bytes;
 }
 
-/* A length to a component, as the ray sees its boundary. */
+/* Returns a length to a component, as the ray sees its boundary. */
 static const char *seen_text(Emitter *e, uint32_t component, const char *length)
 {
     Text text = {.arena = e->scratch};
@@ -109,7 +109,7 @@ void emit_media_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, u
     text_format(e->out, "    return %s;\n", emit_has_media(e) ? variable : emit_cut(e, variable));
 }
 
-/* From inside, the gradient and the distance are negated. */
+/* Emits the gradient of media: from inside, it and the distance are negated. */
 void emit_media_gradient(Emitter *e, uint32_t component)
 {
     if (!emit_is_medium(e, component))
@@ -138,7 +138,7 @@ void emit_medium_at(Emitter *e)
     text_add(e->out, "    return medium;\n");
 }
 
-/* The distance to the nearest of some components. */
+/* Emits the distance to the nearest of some components. */
 static void emit_nearest_of(Emitter *e, const bool *of)
 {
     emit_variable(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
@@ -162,7 +162,7 @@ void emit_subsurface(Emitter *e) { emit_nearest_of(e, e->module->is_subsurface);
 
 void need_media_surface(Emitter *e) { need_media(e); }
 
-/* What of `other` is in no zone; the walls of zones have normals of their own. */
+/* Emits what of `other` is in no zone; the walls of zones have normals of their own. */
 static void emit_cut_surface(Emitter *e, const char *normal)
 {
     if (!e->cuts)
@@ -203,7 +203,7 @@ static void emit_medium_surface(Emitter *e, uint32_t component)
     emit_template(e, TEMPLATE_SET_IF, (Operands){nearer, "nearest", "other"});
 }
 
-/* The medium beyond.  Of the one whose boundary it is nobody need ask, however thin it is. */
+/* Emits the medium beyond.  Of the one whose boundary it is nobody need ask, however thin it is. */
 static void emit_beyond(Emitter *e, uint32_t component)
 {
     Text distance = {.arena = e->scratch}, inside = distance, changes = distance, ior = distance;

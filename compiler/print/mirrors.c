@@ -15,7 +15,8 @@
 
 #include "compiler/print/emitter.h"
 
-/* 1 + the axis that a constant mirror is across, negative where its normal points down; 0: none. */
+/* Returns 1 + the axis that a constant mirror is across, negative where its normal points down; 0:
+   none. */
 static int fold_axis(const Emitter *e, const Expr *fold)
 {
     const Expr *normal = &e->graph->items[fold->operands[1]];
@@ -27,8 +28,8 @@ static int fold_axis(const Emitter *e, const Expr *fold)
     return 0;
 }
 
-/* Across an axis one coordinate becomes the lesser, or the greater, of itself and its image: two
-   operations that what follows has to wait for, or one. */
+/* Returns a mirror across an axis.  One coordinate becomes the lesser, or the greater, of itself
+   and its image: two operations that what follows has to wait for, or one. */
 static const char *across_axis(Emitter *e, const Expr *fold, int axis)
 {
     Text        text  = {.arena = e->scratch};
@@ -77,21 +78,22 @@ static bool only_feeds_mirror(const Emitter *e, Node n)
            !e->given[n];
 }
 
-/* The mirror before this one in a row, or NODE_NONE. */
+/* Returns the mirror before this one in a row, or NODE_NONE. */
 static Node mirror_before(const Emitter *e, Node n)
 {
     Node before = e->graph->items[n].operands[0];
     return only_feeds_mirror(e, before) ? before : NODE_NONE;
 }
 
-/* A value of the frame, or a literal where it is the same in all frames. */
+/* Returns a value of the frame, or a literal where it is the same in all frames. */
 static const char *frame_text(Emitter *e, Node node)
 {
     const Expr *expr = &e->graph->items[node];
     return expr->op == OP_CONSTANT ? emit_constant(e, expr) : e->frame[node];
 }
 
-/* Twice the product of the normals of a mirror and of the one `back` places before it, 1 or 2. */
+/* Returns twice the product of the normals of a mirror and of the one `back` places before it, 1 or
+   2. */
 static const char *product_text(Emitter *e, Node fold, Node mirror, int back)
 {
     const Expr        *items = e->graph->items;
@@ -103,7 +105,7 @@ static const char *product_text(Emitter *e, Node fold, Node mirror, int back)
     return emit_number(e, 2 * (n[0] * b[0] + n[1] * b[1] + n[2] * b[2]));
 }
 
-/* Less what a mirror before has moved the point by, along the normal. */
+/* Subtracts what a mirror before has moved the point by, along the normal. */
 static void subtract_move(Emitter *e, Text *text, const Expr *fold, Node mirror, int back)
 {
     Node n = (Node)(fold - e->graph->items);
@@ -111,7 +113,7 @@ static void subtract_move(Emitter *e, Text *text, const Expr *fold, Node mirror,
                 product_text(e, n, mirror, back));
 }
 
-/* How far beyond the mirror the point is, from where it was before the mirrors `first` and
+/* Returns how far beyond the mirror the point is, from where it was before the mirrors `first` and
    `before`; the term that waits for the last comes last. */
 static const char *distance_beyond(Emitter *e, const Expr *fold, Node first, Node before)
 {
@@ -179,7 +181,8 @@ static bool is_across_axis(const Expr *normal)
     return across;
 }
 
-/* Rows may have mirrors with literal normals among the others. */
+/* Tells whether a mirror may be in a row, which may have mirrors with literal normals among the
+   others. */
 static bool may_be_in_row(const Graph *graph, Node node)
 {
     const Expr *e = &graph->items[node];

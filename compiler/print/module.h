@@ -20,8 +20,9 @@ typedef struct BoxNodes {
     Node *parts;  /* of each scene part: the low and the high corner */
 } BoxNodes;
 
-/* What a mirror (OP_fold) is where normals are numbers of the frame: whether it may be in a row, and twice the
-   products of its normal with those of the two mirrors before; NODE_NONE: there are none. */
+/* The nodes of a mirror (OP_fold) where normals are numbers of the frame: whether it may be in a
+   row, and twice the products of its normal with those of the two mirrors before; NODE_NONE: there
+   are none. */
 typedef struct MirrorNodes {
     bool in_row;
     Node products[2];
@@ -45,7 +46,7 @@ typedef struct Module {
     const Node
         *camera_relative; /* surfaces, planes and the zone, if there is one, of camera-relative
                             points; NULL: there are none */
-    /* What is known of components: */
+    /* The properties of components: */
     const Box      *boxes;
     BoxNodes        box_nodes;
     MirrorNodes    *mirror_nodes; /* by the mirror's node; NULL: where normals are literals */
@@ -65,21 +66,21 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
 /* Tells in how many parts so many components are marched, where each ray goes on with the one that
    comes next. */
 uint32_t module_scene_part_count(size_t components);
-/* The first component of a part, or of the one behind the last. */
+/* Returns the first component of a part, or of the one behind the last. */
 uint32_t module_scene_part_first(size_t part, size_t components);
-/* The box around a part. */
+/* Returns the box around a part. */
 Box module_scene_part_box(const Box *boxes, size_t components, size_t part);
-/* A finite box as shaders look at it from outside, and one that clips rays. */
+/* These find a finite box as shaders look at it from outside, and one that clips rays. */
 void module_box_vectors(Box box, double centre[3], double half[3]);
 void module_part_corners(Box box, double low[3], double high[3]);
-/* All boxes as numbers of the frame, counted from `first` on. */
+/* Makes all boxes numbers of the frame, counted from `first` on. */
 BoxNodes module_parameterise_boxes(Graph *graph, const Box *boxes, size_t components,
                                    uint32_t first, Arena *arena);
 
 /* Adds what rows of mirrors need of the frame. */
 MirrorNodes *module_parameterise_mirrors(Graph *graph, Arena *arena);
 
-/* What a function is called; NULL: it is several, or none. */
+/* Returns the name of a function; NULL: it is several, or none. */
 const char *module_function_name(KrsFunction function);
 
 /* Adds the text of a variant: the wanted functions, and what they call.  Memory is that of `out`.

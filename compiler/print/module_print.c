@@ -14,7 +14,7 @@ _Static_assert(KRS_STEP_DIRECTIONAL - KRS_STEP_TAYLOR == (int)RESEARCH_DIRECTION
                    KRS_STEP_ROOT_FREE - KRS_STEP_TAYLOR == (int)RESEARCH_ROOT_FREE,
                "steps of research have the order of its methods");
 
-/* What each function of the scene needs of components, and what is inside of it. */
+/* The functions of the scene, with what each needs of components, and what is inside of it. */
 static const struct {
     void (*need)(Emitter *e);
     void (*emit)(Emitter *e);
@@ -221,7 +221,7 @@ static void find_needs(Emitter *e)
             scene_functions[f].need(e);
 }
 
-/* Around components whose planes are kept from overflow. */
+/* Adds the boxes around components whose planes are kept from overflow. */
 static void add_kept_boxes(Emitter *e, NodeList *list)
 {
     const Node *nodes = e->module->box_nodes.around;
@@ -299,7 +299,7 @@ static void emit_about_tables(Emitter *e)
              "// Far from all of them krs_distance may be less than the distance, never more.\n");
 }
 
-/* What is in the parameter block. */
+/* Emits the parameter block. */
 static void emit_block(Emitter *e)
 {
     const KrsVariant *v     = e->variant;

@@ -30,8 +30,8 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, bool mac
     return globals;
 }
 
-/* Components of a slot.  A local gets all four numbers before the first of them is used: drivers
-   compare each read with all reads before it, so fewer reads are compiled sooner. */
+/* Returns components of a slot.  A local gets all four numbers before the first of them is used:
+   drivers compare each read with all reads before it, so fewer reads are compiled sooner. */
 static const char *component_text(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
 {
     if (e->printer->macros)
@@ -54,7 +54,7 @@ static const char *number_text(Emitter *e, const StateValue *value, uint32_t k)
                                     : component_text(e, value->at[k] / 4, value->at[k] % 4, 1);
 }
 
-/* What the host has found, out of its slots. */
+/* Returns what the host has found, out of its slots. */
 static const char *found_text(Emitter *e, const StateValue *value)
 {
     GraphType type     = (GraphType)e->graph->items[value->node].type;
@@ -81,7 +81,7 @@ static const char *found_text(Emitter *e, const StateValue *value)
     return text.bytes;
 }
 
-/* A value of the frame as shaders get it from the host. */
+/* Reads a value of the frame as shaders get it from the host. */
 static const char *read_text(Emitter *e, const StateValues *values, Node n)
 {
     const Expr *expr = &e->graph->items[n];
@@ -94,7 +94,7 @@ static const char *read_text(Emitter *e, const StateValues *values, Node n)
     return emit_expression(e, expr);
 }
 
-/* The globals, or macros, from the parameter block, in which the host has put them. */
+/* Emits the globals, or macros, from the parameter block, in which the host has put them. */
 static void emit_reads(Emitter *e, const Node *set, size_t globals, const StateValues *values)
 {
     e->slot_is_read = arena_new_array(e->scratch, bool, emit_slot_count(e));
@@ -106,7 +106,7 @@ static void emit_reads(Emitter *e, const Node *set, size_t globals, const StateV
                   emit_bare(e, read_text(e, values, set[i])));
 }
 
-/* The globals by operations. */
+/* Emits the globals by operations. */
 static void emit_definitions(Emitter *e, const Node *set, size_t globals, const bool *is_global)
 {
     emit_count_uses(e, set, globals, true);
@@ -130,7 +130,7 @@ bool emit_reads_zones(const Emitter *e)
     return e->variant->zones > 0 && (e->cuts || emit_wants_gradient(e));
 }
 
-/* The first slot of the zones of the caller. */
+/* Returns the first slot of the zones of the caller. */
 static uint32_t zone_slot(const Emitter *e)
 {
     const StateValues *plain = &e->module->slots.plain;

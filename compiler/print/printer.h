@@ -47,8 +47,9 @@ typedef struct Printer {
     void (*spell)(const char *text, size_t length, GraphType type, Text *out);
     const Alternative *alternatives; /* the last has no name */
     const char *const *templates;    /* by TextTemplate */
-    /* What the host has found of a state is a macro that reads its slot, not a global that krs_prepare sets: drivers that
-       follow each global through all functions take several times as long to compile. */
+    /* A value that the host has found of a state is a macro that reads its slot, not a global that
+       krs_prepare sets: drivers that follow each global through all functions take several times as
+       long to compile. */
     bool macros;
 } Printer;
 
@@ -57,10 +58,10 @@ typedef struct Printer {
 /* A printer for each KrsTarget. */
 extern const Printer *const printers[];
 
-/* A printer with its base's words; they are in memory of the arena. */
+/* Returns a printer with its base's words; they are in memory of the arena. */
 Printer printer_with_base(const Printer *printer, Arena *arena);
 
-/* An operation in words of the printer. */
+/* Returns an operation in words of the printer. */
 const char *printer_operation(const Printer *printer, Op op, GraphType type, Arena *arena);
 
 /* Adds the functions that the text of one operation calls, where its first operand has this type;

@@ -6,13 +6,13 @@
  */
 #include "compiler/print/emitter.h"
 
-/* With more values than this a function of its own is shorter to read. */
+/* The values beyond which a function of its own is shorter to read. */
 enum { MAX_SHARED = 12 };
 
-/* What is known of a node here. */
+/* The state of a node. */
 enum { UNKNOWN, OF_THE_DISTANCE, SEEN };
 
-/* What costs nothing is not handed over, but written again. */
+/* Tells whether a value costs nothing: it is not handed over, but written again. */
 static bool is_plain(const Expr *expr)
 {
     return expr->operand_count == 0 || expr->op == OP_COMPONENT;
@@ -69,7 +69,7 @@ static const char *name_of(Emitter *e, const char *what, size_t number)
 
 static const char *type_text(Emitter *e, GraphType type) { return e->printer->types[type]; }
 
-/* A line, or a parameter, for each. */
+/* Returns a line, or a parameter, for each. */
 static const char *variable_text(Emitter *e, TextTemplate template, const NodeList *shared,
                                  size_t i)
 {

@@ -33,7 +33,7 @@ typedef struct StateNodes {
     size_t count, capacity;
 } StateNodes;
 
-/* What is wanted, or what that arranges. */
+/* Finds what is wanted, or what that arranges. */
 static StateNodes find_values(const Graph *graph, const Node *wanted, size_t count, Arena *scratch)
 {
     bool      *seen = arena_new_array(scratch, bool, graph->count + 1);
@@ -55,7 +55,7 @@ static StateNodes find_values(const Graph *graph, const Node *wanted, size_t cou
     return found;
 }
 
-/* What the range of a node of the tape is, whatever the parameters are; `facts` has those before. */
+/* Returns the range of a node of the tape, whatever the parameters are; `facts` has those before. */
 static Fact find_fact(const Tape *tape, size_t at, const Fact *facts)
 {
     const Expr *e = &tape->graph->items[tape->nodes[at]];

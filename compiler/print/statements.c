@@ -16,7 +16,7 @@
 /* Expressions are nested to this depth and length at most: compilers of shaders recurse. */
 enum { MAX_NESTING = 6, MAX_INLINE = 72 };
 
-/* What names of values begin with. */
+/* Returns what names of values begin with. */
 static char type_letter(GraphType type)
 {
     switch (type) {
@@ -27,7 +27,7 @@ static char type_letter(GraphType type)
     }
 }
 
-/* The printer's words for an operation. */
+/* Returns the printer's words for an operation. */
 static const char *template_of(const Emitter *e, const Expr *expr)
 {
     const char **words = &e->operations[expr->op * TYPES + expr->type];
@@ -36,7 +36,7 @@ static const char *template_of(const Emitter *e, const Expr *expr)
     return *words;
 }
 
-/* What $a or $A stands for. */
+/* Returns what $a or $A stands for. */
 static Node operand_of(const Expr *expr, char letter)
 {
     return expr->operands[letter - (isupper((unsigned char)letter) ? 'A' : 'a')];
@@ -48,8 +48,9 @@ static void add_operand(Emitter *e, Text *text, const Expr *expr, char letter)
     text_add(text, isupper((unsigned char)letter) ? emit_bare(e, operand) : operand);
 }
 
-/* The printer's template with the operands in the place of $a, $b, $c, $d; $A is bare.  What stands
-   before a semicolon is a statement that comes before, and sets a local of its own, $t. */
+/* Returns the printer's template with the operands in the place of $a, $b, $c, $d; $A is bare.
+   What stands before a semicolon is a statement that comes before, and sets a local of its own,
+   $t. */
 static const char *fill_template(Emitter *e, const Expr *expr)
 {
     Text        text  = {.arena = e->scratch};
@@ -198,7 +199,7 @@ static void use(Emitter *e, Node node, uint32_t count)
     e->uses[node] += count;
 }
 
-/* What a row of mirrors needs. */
+/* Notes what a row of mirrors needs. */
 static void use_mirror(Emitter *e, Node fold)
 {
     const MirrorNodes *nodes                           = mirror_nodes(e, fold);
@@ -279,7 +280,7 @@ void emit_begin(Emitter *e, const Node *roots, size_t count)
     }
 }
 
-/* What is given has its name. */
+/* Emits a node of the point; what is given has its name. */
 void emit_point_node(Emitter *e, Node n)
 {
     if (!e->given[n]) {

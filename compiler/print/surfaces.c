@@ -37,7 +37,7 @@ void need_surface(Emitter *e)
         e->needed_of[OF_SURFACE][i] = true;
 }
 
-/* The value of a field, as the type that shaders have it in. */
+/* Adds the value of a field, as the type that shaders have it in. */
 static void add_value(Emitter *e, Text *fields, const RootInfo *info, const char *value)
 {
     if (info->type == info->shown)
@@ -75,7 +75,7 @@ void emit_surface_of(Emitter *e, const ModuleFunction *function)
               fields.bytes, e->text[root[ROOT_NORMAL]]);
 }
 
-/* What is anywhere in a scene without components. */
+/* Emits what is anywhere in a scene without components. */
 void emit_nothing(Emitter *e)
 {
     Text nothing = {.arena = e->scratch};

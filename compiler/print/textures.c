@@ -64,7 +64,7 @@ void emit_texture_reads(Emitter *e)
         emit_line(e, "    krs_view = %s;\n", emit_vector(e, (const double[3]){0, 0, 0}));
 }
 
-/* Where the width of a pixel is nothing, one level is enough. */
+/* Tells whether a pixel has no width: then one level is enough. */
 static bool is_sharp(const Emitter *e, Node pixel)
 {
     const Expr *expr = &e->graph->items[pixel];

@@ -71,7 +71,7 @@ typedef enum KrsFunction {
     KRS_FUNCTION_COUNT
 } KrsFunction;
 
-/* How krs_along tells how far a ray may go. */
+/* The method by which krs_along tells how far a ray may go. */
 typedef enum KrsRayStep {
     KRS_STEP_EXACT,
     KRS_STEP_TAYLOR,
@@ -83,12 +83,12 @@ typedef enum KrsRayStep {
 enum { KRS_MARCH_GROUP_OF_PLANES = 255 };
 
 /*
- * What distances say of components that may let light through, where the scene has any
+ * The meaning of distances of components that may let light through, if the scene has any
  * (KrsProgram.media).  GLASS_NESTED: they are media, and a ray is in one of them or in none.  Its
- * number is in the global krs_medium, which the caller sets.  Where several contain a point, the
- * one that is shown last is the medium there.  Distances and steps are those to where the ray
- * leaves its medium, enters one that is shown later, or meets a solid that lets no light
- * through.  There krs_surface tells what is known of the boundary (compiler/print/media.c).
+ * number is in the global krs_medium, which the caller sets.  If several contain a point, the one
+ * that is shown last is the medium there.  Distances and steps are those to where the ray leaves
+ * its medium, enters one that is shown later, or meets a solid that lets no light through.  There
+ * krs_surface tells what is known of the boundary (compiler/print/media.c).
  */
 typedef enum KrsGlass {
     KRS_GLASS_SOLID,    /* they are like all others */
@@ -122,7 +122,7 @@ typedef struct KrsVariant {
 /* Fewer noises are not worth a loop. */
 enum { KRS_MIN_FUSED_NOISES = 4 };
 
-/* A number that tells texts apart, for caches. */
+/* Returns a number that tells texts apart, for caches. */
 uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, size_t count);
 
 #endif

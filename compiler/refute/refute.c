@@ -18,7 +18,7 @@
 #include "compiler/refute/refuter.h"
 #include "compiler/refute/search.h"
 
-/* So fast is the machine whose seconds are counted; most of today's are as fast, or faster. */
+/* The speed of the machine whose seconds are counted; most of today's are as fast, or faster. */
 static const double OPERATIONS_PER_SECOND = 1e8;
 
 /* After so many operations somebody is asked whether to go on. */
@@ -118,7 +118,7 @@ static bool box_has_numbers(Box box)
     return true;
 }
 
-/* Both distances of a shape, where there are two. */
+/* Tries both distances of a shape, if there are two. */
 static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
 {
     const Shape *shape     = r->suspects.items[suspect].shape;
@@ -146,7 +146,7 @@ static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *
     return refuted;
 }
 
-/* What a declaration claims beside its distance. */
+/* Tries what a declaration claims beside its distance. */
 static bool try_claims(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
 {
     const Shape *shape   = r->suspects.items[suspect].shape;
@@ -170,7 +170,7 @@ static bool try_claims(Refuter *r, size_t suspect, uint64_t operations, Finding 
     return refuted;
 }
 
-/* What marches instead of a component's distance; `plain` where that is the distance itself. */
+/* Lowers what marches instead of a component's distance; `plain` if that is the distance itself. */
 static Node lower_claim(Refuter *r, const Shape *shape, Claim claim, Node plain)
 {
     Arena *scratch = r->in->scratch;
@@ -181,7 +181,7 @@ static Node lower_claim(Refuter *r, const Shape *shape, Claim claim, Node plain)
                                 NULL, scratch);
 }
 
-/* The guarded distance of a component, and its steps along rays, where there are such. */
+/* Tries the guarded distance of a component, and its steps along rays, where there are such. */
 static bool try_steps(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
 {
     const Shape *shape   = r->suspects.items[suspect].shape;
@@ -220,7 +220,7 @@ static KrsStatus conclude(Refuter *r, Finding *finding)
 
 static bool is_whole(const Refuter *r, size_t i) { return r->suspects.items[i].parent == SIZE_MAX; }
 
-/* Those of all components, or all others, from the last, whose trees are smallest. */
+/* Tries all components, or all others, from the last, whose trees are smallest. */
 static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
 {
     size_t count = 0;

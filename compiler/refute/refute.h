@@ -7,7 +7,7 @@
 #include "compiler/passes/compile.h"
 #include "compiler/passes/inspect.h"
 
-/* What krs_refute does between compiling and the end; a finding is added to in->diags. */
+/* Does what krs_refute does between compiling and the end; a finding is added to in->diags. */
 KrsStatus refute_inspected(const Inspected *in, const KrsRefuteOptions *how, KrsRefutation *result);
 
 #endif

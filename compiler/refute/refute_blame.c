@@ -125,7 +125,7 @@ static bool descend(Refuter *r, Finding *finding, uint64_t operations)
                                               trace.at_q[best->point].v, operations, finding);
 }
 
-/* The same where no part is refuted in these points: each part is searched by itself. */
+/* Does the same where no part is refuted in these points: each part is searched by itself. */
 static bool search_parts(Refuter *r, Finding *finding, uint64_t operations)
 {
     const Shape *shape = r->suspects.items[finding->suspect].shape;

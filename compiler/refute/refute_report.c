@@ -54,7 +54,7 @@ static void note_points(Refuter *r, Diag *diag, const Witness *w)
         diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s", w->at_p, p));
 }
 
-/* "with r = 0.5, time = 2"; what has no parameter says nothing. */
+/* Notes "with r = 0.5, time = 2", unless there is no parameter. */
 static void note_parameters(Refuter *r, Diag *diag, const NodeValue *parameters)
 {
     const Scene *scene = r->in->scene;
@@ -74,7 +74,7 @@ static void note_parameters(Refuter *r, Diag *diag, const NodeValue *parameters)
     diag_note(r->in->diags, diag, text.bytes);
 }
 
-/* What the distance says is empty, and where the surface is all the same. */
+/* Notes what the distance says is empty, and where the surface is all the same. */
 static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
 {
     const Shape   *shape = r->suspects.items[finding->suspect].shape;
@@ -97,7 +97,7 @@ static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
     arena_free(r->in->scratch);
 }
 
-/* The component that the shape is a part of, and the place in that where it shows. */
+/* Notes the component that the shape is a part of, and the place in that where it shows. */
 static void note_component(Refuter *r, Diag *diag, const Finding *whole, const Finding *finding)
 {
     const Suspect   *suspect   = &r->suspects.items[finding->suspect];
@@ -113,7 +113,8 @@ static void note_component(Refuter *r, Diag *diag, const Finding *whole, const F
     diag_note(r->in->diags, diag, text);
 }
 
-/* The text where the author can do something: what is made in the library was asked for there. */
+/* Marks the text where the author can do something: what is made in the library was asked for
+   there. */
 static void mark_caller(Refuter *r, Diag *diag, const Finding *finding)
 {
     const Sources *sources = r->in->diags->sources;

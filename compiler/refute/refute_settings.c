@@ -45,7 +45,7 @@ void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values)
     }
 }
 
-/* Into the slots; false: one has no bound, and the state is refused. */
+/* Finds the slopes for the slots; false: one has no bound, and the state is refused. */
 static bool find_slopes(const Refuter *r, NodeValue *values)
 {
     const Scene *scene = r->in->scene;
@@ -60,7 +60,7 @@ static bool find_slopes(const Refuter *r, NodeValue *values)
     return true;
 }
 
-/* Simplified, as compiled scenes have them. */
+/* Prepares the slopes, simplified as in compiled scenes. */
 void prepare_slopes(Refuter *r)
 {
     const Scene *scene = r->in->scene;

@@ -17,7 +17,8 @@ typedef struct Suspect {
     size_t       parent; /* index of a suspect; SIZE_MAX of a component's whole shape */
 } Suspect;
 
-/* What is searched of a shape: its distance, and of a whole component what marches instead. */
+/* The claims of a shape that are searched: its distance, and of a whole component what marches
+   instead. */
 typedef enum Claim {
     CLAIM_DISTANCE,
     CLAIM_GUARDED, /* the distance that leaves out what is far */
@@ -55,12 +56,12 @@ typedef struct Refuter {
 /* Tells whether a shape adds nothing to the distance of what it holds. */
 bool is_wrapper(const Shape *shape);
 
-/* The distance of a shape in its own space; NODE_NONE: of nothing, or of too much. */
+/* Lowers the distance of a shape in its own space; NODE_NONE: of nothing, or of too much. */
 Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz, LoweredShapes *lowered_shapes);
 
-/* A search of one of the distances of a shape; false: there is nothing to search. */
+/* Makes a search of one of the distances of a shape; false: there is nothing to search. */
 bool search_of(Refuter *r, const Shape *shape, Node distance, bool lipschitz, Search *search);
-/* The same of a step, beside the distance that tells on which side points are. */
+/* Does the same of a step, beside the distance that tells on which side points are. */
 bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool lipschitz,
                  Search *search);
 

@@ -25,7 +25,7 @@ static const double RELATIVE = 1e-6;
 
 /* ---- climbing ---- */
 
-/* A pair near another one: both points moved, rotated about p, or nearer and farther. */
+/* Returns a pair near another one: both points moved, rotated about p, or nearer and farther. */
 static PointPair changed(Search *s, const PointPair *pair)
 {
     PointPair next = *pair;
@@ -66,8 +66,8 @@ static void climb(Search *s, PointPair pair, int steps)
 
 /* ---- the search ---- */
 
-/* The box and what is next to it, cut where it goes on for ever, and anything for an empty one;
-   with guards as far as half the radius of the box, where the outermost begins. */
+/* Chooses the box and what is next to it, cut where it goes on for ever, and anything for an empty
+   one; with guards as far as half the radius of the box, where the outermost begins. */
 static void choose_around(Search *search)
 {
     Box box = box_is_empty(search->box) ? box_infinite : search->box;
@@ -85,8 +85,8 @@ static void choose_around(Search *search)
     search->size = box_diagonal(search->around);
 }
 
-/* On the host an instance function looks at more instances than those of one cell: from afar, at about as many
-   as a circle of that many dots has at its edge. */
+/* Returns the cost of a node.  On the host an instance function looks at more instances than those
+   of one cell: from afar, at about as many as a circle of that many dots has at its edge. */
 static double node_cost(const Tape *tape, Node node)
 {
     const Expr *e     = &tape->graph->items[node];
@@ -141,7 +141,7 @@ bool search_start(Search *search, const NodeValue *parameters)
     return tape_frame_infinite(&search->tape, search->values) == NODE_NONE;
 }
 
-/* The best KEPT of a batch of starts, and from these uphill. */
+/* Searches uphill from the best KEPT of a batch of starts. */
 static void search_batch(Search *s, uint64_t end)
 {
     PointPair best[BEST];

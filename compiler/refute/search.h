@@ -14,11 +14,12 @@
 
 #include "compiler/refute/search_types.h"
 
-/* A search for `distance`, whose tape and lists are in the arena; everything else is set by the
-   caller before search_start: box, steep, figure, random, aimed.  False: nothing to look at. */
+/* Makes a search for `distance`, whose tape and lists are in the arena; everything else is set by
+   the caller before search_start: box, steep, figure, random, aimed.  False: there is nothing to
+   look at. */
 bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box,
                 Arena *arena);
-/* The same for a point at which two numbers are both above 0. */
+/* Does the same for a point at which two numbers are both above 0. */
 bool search_new_claim(Search *search, Graph *graph, Node a, Node b, Box box, Arena *arena);
 /* Takes on the values of parameters; false when something in the graph is then not finite. */
 bool search_start(Search *search, const NodeValue *parameters);
@@ -28,7 +29,8 @@ void search_run(Search *search, uint64_t operations);
 void search_from(Search *search, const double p[3], const double q[3], uint64_t operations);
 /* Tells whether `worst` is more than rounding. */
 bool search_refuted(const Search *search);
-/* A point of the surface that is nearer to p than the distance at p: false when none is found. */
+/* Finds a point of the surface that is nearer to p than the distance at p; false when none is
+   found. */
 bool search_surface(Search *search, const double p[3], double surface[3]);
 
 #endif

@@ -10,14 +10,14 @@
 double search_between(Search *s, double low, double high);
 size_t search_index(Search *s, size_t count);
 
-/* A length of any order of magnitude from `least` sizes to one. */
+/* Returns a length of any order of magnitude from `least` sizes to one. */
 double any_scale(Search *s, double least);
 void   random_direction(Search *s, double direction[3]);
 void   random_point(Search *s, double point[3]);
 
 /* Tells whether nothing worse can be found than was. */
 bool is_decided(const Search *s);
-/* The distance at a point; what one point alone refutes is noted at once. */
+/* Returns the distance at a point; what one point alone refutes is noted at once. */
 double distance_at(Search *s, double p[3]);
 
 /* Returns the side at the point that was looked at last. */
@@ -27,13 +27,14 @@ static inline bool are_sides_different(double a, double b) { return (a > 0) != (
 
 /* Looks at both points of a pair, and weighs it. */
 void judge_pair(Search *s, PointPair *pair);
-/* The half that is steeper, or for sides that differ the one with the surface; false: too near. */
+/* Replaces a pair by the half that is steeper, or for sides that differ by the one with the
+   surface; false: too near. */
 bool halve_pair(Search *s, PointPair *pair);
 /* Brings q as near to p as the other side is, along the segment. */
 void tighten_pair(Search *s, PointPair *pair);
 /* Marches from p until the side changes, at most `farthest`; then the pair is tightened. */
 bool reach_surface(Search *s, PointPair *pair, const double direction[3], double farthest);
-/* Unit gradient of the distance by differences; false: flat. */
+/* Finds the unit gradient of the distance by differences; false: it is flat. */
 bool gradient_at(Search *s, const double p[3], double gradient[3]);
 
 #endif

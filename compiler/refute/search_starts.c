@@ -21,7 +21,7 @@ static void nudge(Search *s, double p[3], double least)
     add_scaled3(p, p, any_scale(s, least), direction);
 }
 
-/* Along a random ray until close to a surface. */
+/* Starts on a random ray, close to a surface. */
 static void start_at_surface(Search *s, double p[3])
 {
     double direction[3];
@@ -61,7 +61,7 @@ static void start_at_landmark(Search *s, double p[3])
     nudge(s, p, 1e-6);
 }
 
-/* `axis` becomes the direction in which the target changes, else it stays. */
+/* Starts at a target; `axis` becomes the direction in which it changes, else it stays. */
 static void start_at_target(Search *s, double p[3], double axis[3])
 {
     const Target *target = &s->targets.items[search_index(s, s->targets.count)];
@@ -95,7 +95,8 @@ static void choose_start(Search *s, double p[3], double axis[3])
         random_point(s, p);
 }
 
-/* The best of pairs around a point, along an axis, along the gradient, and in any direction. */
+/* Returns the best of pairs around a point, along an axis, along the gradient, and in any
+   direction. */
 static PointPair best_around(Search *s, double p[3], const double axis[3])
 {
     PointPair best = {.ratio = -1};
@@ -117,7 +118,7 @@ static PointPair best_around(Search *s, double p[3], const double axis[3])
     return best;
 }
 
-/* The pair of a point and the nearest surface that a few ways from it find. */
+/* Returns the pair of a point and the nearest surface that a few ways from it find. */
 static PointPair best_by_directions(Search *s, double p[3])
 {
     PointPair best = {.ratio = -1};
@@ -149,8 +150,8 @@ PointPair best_pair(Search *s)
 
 /* ---- guards ---- */
 
-/* Down to where a distance is 0, along its gradient; `axis` is that, a unit vector.  False: it does
-   not get there. */
+/* Slides down to where a distance is 0, along its gradient; `axis` is that, a unit vector.  False:
+   it does not get there. */
 static bool slide_down(Search *s, const Target *distance, double p[3], double axis[3])
 {
     for (int i = 0; i < 24; i++) {

@@ -6,10 +6,10 @@
 
 #include "compiler/refute/search_types.h"
 
-/* The best of pairs at a place of a random kind. */
+/* Returns the best of pairs at a place of a random kind. */
 PointPair best_pair(Search *s);
-/* A point of what a guard may leave out, and one where the guard decides: a way too long for the
-   bound if the first is not in the box. */
+/* Returns a point of what a guard may leave out, and one where the guard decides: a way too long
+   for the bound if the first is not in the box. */
 PointPair best_past_guard(Search *s);
 
 #endif

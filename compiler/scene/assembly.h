@@ -13,7 +13,7 @@
 
 #define NO_ITEM UINT32_MAX
 
-/* How an item is placed: as it is, as its image in a mirror, which must not cut it, or by a map. */
+/* The placing of an item: as it is, as its image in a mirror, which must not cut it, or by a map. */
 typedef enum PlacingKind { PLACED_STILL, PLACED_MIRRORED, PLACED_MAPPED } PlacingKind;
 
 typedef struct AssemblyTransform {

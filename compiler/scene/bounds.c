@@ -97,7 +97,7 @@ static bool are_alike(const Shape *a, const Shape *b)
     return true;
 }
 
-/* The number, from 1, of the entry that a shape has already; 0: none. */
+/* Returns the number, from 1, of the entry that a shape has already; 0: none. */
 static size_t entry_of(const Listing *l, const Shape *shape)
 {
     for (size_t i = 0; i < l->shapes.count; i++)
@@ -121,7 +121,7 @@ static const char *copy_text(Listing *l, const char *text)
     return arena_copy_text(l->arena, text, strlen(text));
 }
 
-/* What is said of the next entry, where it stays. */
+/* Returns what is said of the next entry, where it stays. */
 static const KrsBound *lasting(Listing *l, const KrsBound *about)
 {
     size_t number = l->entries.count;

@@ -21,7 +21,8 @@ typedef struct KrsBounds {
     size_t      more; /* that there was no room for */
 } KrsBounds;
 
-/* The list of one tree, in `arena`; it may share entries with the list of the tree before, or NULL. */
+/* Returns the list of one tree, in `arena`; it may share entries with the list of the tree before,
+   or NULL. */
 KrsBounds bounds_of(const Shape *shape, const Sources *sources, const KrsBounds *before,
                     Arena *arena, Arena *scratch);
 

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* How near the line of sight may come to the upright direction, as a cosine. */
+/* The cosine up to which the line of sight may come near to the upright direction. */
 #define MAX_UPRIGHT 0.9995
 /* No zoom goes nearer to its point, in parts of its distance. */
 #define MIN_FACTOR 1e-3
@@ -57,7 +57,7 @@ static double distance(const KrsCamera *camera)
     return length(sight);
 }
 
-/* Height of the picture at the target, in world units. */
+/* Returns the height of the picture at the target, in world units. */
 static double height_at_target(const KrsCamera *camera)
 {
     return camera->projection == KRS_ORTHOGRAPHIC
@@ -75,7 +75,7 @@ void krs_camera_axes(const KrsCamera *camera, double forward[3], double right[3]
     cross(right, forward, up);
 }
 
-/* The angle upwards that leaves the line of sight off the upright direction. */
+/* Returns the angle upwards that leaves the line of sight off the upright direction. */
 static double limit_up(const double forward[3], const double upright[3], double angle)
 {
     const double most  = real_acos(MAX_UPRIGHT);
@@ -176,7 +176,7 @@ static double distance_for(const KrsCamera *camera, const double half[3], double
     return farthest;
 }
 
-/* The height of an orthographic picture that has each corner of the box. */
+/* Returns the height of an orthographic picture that has each corner of the box. */
 static double height_for(const KrsCamera *camera, const double half[3], double aspect)
 {
     double forward[3], side[3], top[3], tall = 0, wide = 0;

@@ -14,7 +14,7 @@
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/texture.h"
 
-/* What two parts of scenes have in common, the least first. */
+/* The likeness of two parts of scenes, the least first. */
 typedef enum Likeness { DIFFERENT, ALIKE_BUT_NUMBERS, EQUAL } Likeness;
 
 static Likeness equal_if(bool equal) { return equal ? EQUAL : DIFFERENT; }
@@ -35,7 +35,7 @@ typedef struct RootList {
     size_t count, capacity;
 } RootList;
 
-/* The nodes that functions of instance groups and their tables have. */
+/* Adds the nodes that functions of instance groups and their tables have. */
 static void add_groups(RootList *list, const KrsScene *scene, Arena *arena)
 {
     const Instances *instances = scene->graph->instances;
@@ -45,7 +45,7 @@ static void add_groups(RootList *list, const KrsScene *scene, Arena *arena)
         array_push(arena, list, instances->frame_numbers.items[i]);
 }
 
-/* The roots that shaders are made of, or those of the view. */
+/* Returns the roots that shaders are made of, or those of the view. */
 static RootList collect_roots(const KrsScene *scene, bool of_shaders, RootKind first, RootKind last,
                               Arena *arena)
 {
@@ -61,7 +61,7 @@ static RootList collect_roots(const KrsScene *scene, bool of_shaders, RootKind f
     return list;
 }
 
-/* The roots that say what is solid, of which meshes of shapes alone are made. */
+/* Returns the roots that say what is solid, of which meshes of shapes alone are made. */
 static RootList collect_solid_roots(const KrsScene *scene, Arena *arena)
 {
     static const RootKind kinds[] = {ROOTS_ZONE, ROOTS_SLOPE, ROOTS_BOX, ROOTS_ASSEMBLY};
@@ -105,7 +105,7 @@ static Likeness compare_roots(Comparison *c, RootList a, RootList b)
     return found;
 }
 
-/* The roots of these kinds. */
+/* Returns the roots of these kinds. */
 static Likeness compare_graphs(Comparison *c, bool of_shaders, RootKind first, RootKind last)
 {
     return compare_roots(c, collect_roots(c->a, of_shaders, first, last, &c->arena),
@@ -151,7 +151,7 @@ static bool same_grid(const Grid *a, const Grid *b)
            same_lists(a, b, cells) && same_tails(a, b, cells);
 }
 
-/* Their nodes are compared with the graph. */
+/* Compares columns of the frame, whose nodes are compared with the graph. */
 static bool same_frame_columns(const InstanceTable *a, const InstanceTable *b)
 {
     if (!a->frame_columns || !b->frame_columns)
@@ -192,7 +192,7 @@ static bool same_function(const InstanceFunction *a, const InstanceFunction *b)
     return same;
 }
 
-/* Their bodies are compared with the graph. */
+/* Compares instances, whose bodies are compared with the graph. */
 static bool same_instances(const Instances *a, const Instances *b)
 {
     bool same = table_count(a) == table_count(b) && function_count(a) == function_count(b);
@@ -335,7 +335,8 @@ static bool same_components(const KrsScene *a, const KrsScene *b)
     return same;
 }
 
-/* What the compiler knows of components bounds rays, also where the graph is the same. */
+/* Compares what the compiler knows of components: it bounds rays, also where the graph is the
+   same. */
 static bool same_bounds(const KrsScene *a, const KrsScene *b)
 {
     bool same = a->slope_count == b->slope_count;
@@ -428,7 +429,7 @@ static bool same_parts(const KrsScene *a, const KrsScene *b)
     return same;
 }
 
-/* All that is shown. */
+/* Compares all that is shown. */
 static bool same_shown(const KrsScene *a, const KrsScene *b)
 {
     bool same = a->component_count == b->component_count && a->shown_count == b->shown_count;
@@ -488,7 +489,7 @@ static void compare(Comparison *c)
     changes->surfaces = changes->solids || shaders != EQUAL || !same_names(c->a, c->b);
 }
 
-/* Where memory runs out, longjmp returns here. */
+/* Compares scenes; where memory runs out, longjmp returns here. */
 static KrsStatus compare_guarded(Comparison *c)
 {
     jmp_buf exhausted;

@@ -77,15 +77,15 @@ typedef struct KrsProgram {
     double        front_ms, glsl_ms; /* time of all passes before `emit`, and of `emit` */
 } KrsProgram;
 
-/* The scene's program; lives as long as the scene. */
+/* Returns the scene's program; lives as long as the scene. */
 const KrsProgram *krs_scene_program(const KrsScene *scene);
-/* The GLSL of a variant: the wanted functions, the functions that they call, and comments with
-   lines of the scene.  The caller releases it, with free() if `allocator` is NULL.  NULL when there
-   is no memory.  The program must have what a function needs, such as planes. */
+/* Returns the GLSL of a variant: the wanted functions, the functions that they call, and comments
+   with lines of the scene.  The caller releases it, with free() if `allocator` is NULL. NULL when
+   there is no memory.  The program must have what a function needs, such as planes. */
 char *krs_scene_text(const KrsScene *scene, const KrsVariant *variant, const KrsFunction *wanted,
                      size_t count, const KrsAllocator *allocator);
-/* The GLSL of all functions that the scene has, without comments: scenes whose shaders are equal
-   have the same.  Memory is as of krs_scene_text. */
+/* Returns the GLSL of all functions that the scene has, without comments: scenes whose shaders are
+   equal have the same.  Memory is as of krs_scene_text. */
 char *krs_scene_plain_text(const KrsScene *scene, const KrsAllocator *allocator);
 /* The functions that `krs compile` writes; returns how many.  They are krs_distance, krs_surface
    and, for devices with many threads, krs_distance_lod.  krs_gradient is added if the program has
@@ -102,15 +102,15 @@ bool krs_scene_has_lens(const KrsScene *scene);
 size_t krs_joined_rank(const KrsScene *scene, size_t component);
 /* Tells whether drivers compile the shaders of a scene without its numbers in a reasonable time. */
 bool krs_structure_is_affordable(const KrsScene *scene);
-/* The number of zones that the scene declares. */
+/* Returns the number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
-/* A number of the values of a state: another state, or other values, have another one. */
+/* Returns a number of the values of a state: another state, or other values, have another one. */
 uint64_t krs_state_stamp(KrsState *state);
-/* Camera `camera`, lights, sky and image at the state's parameters and time. */
+/* Finds camera `camera`, lights, sky and image at the state's parameters and time. */
 KrsStatus krs_state_view(KrsState *state, size_t camera, KrsView *view);
-/* Balls around what emits light in the state, within a box.  Returns how many; small ones and few
-   cost least, so that none is divided whose radius is below `min_radius`.  Light that is emitted
-   elsewhere is not in them. */
+/* Finds balls around what emits light in the state, within a box.  Returns how many; small ones and
+   few cost least, so that none is divided whose radius is below `min_radius`.  Light that is
+   emitted elsewhere is not in them. */
 size_t krs_state_emissive(KrsState *state, const double low[3], const double high[3],
                           double min_radius, KrsEmissive balls[KRS_MAX_EMISSIVE]);
 /* Tells whether the rounding error of such a coordinate in single precision is visible in pixels of this
@@ -128,19 +128,22 @@ double krs_seen_reach(double distance, double pixel, double lines);
 #define KRS_MIN_GAIN 4
 #define KRS_MIN_BLUR 0.1
 bool krs_may_blur_normals(double coordinate, double distance, double pixel, double lines);
-/* Slots of the values that depend on the origin of camera-relative points, computed in double
+/* Computes the slots of the values that depend on the origin of camera-relative points, in double
    precision: camera_relative_slots vec4s. */
 void krs_state_rebase(KrsState *state, const double rebase_origin[3], float (*block)[4]);
-/* krs_state_tables, where shaders read only so many texels at the beginning of both; others may be left
-   as they are.  With an origin (NULL: none) they are those of camera-relative points. */
+/* Fills tables as krs_state_tables does, where shaders read only so many texels at the beginning of
+   both; others may be left as they are.  With an origin (NULL: none) they are those of
+   camera-relative points. */
 void krs_state_tables_in_use(const KrsState *state, const double *rebase_origin, float (*rows)[4],
                              uint32_t (*cells)[2], size_t *row_count, size_t *cell_count);
-/* What these depend on, as parameter_slots numbers; states in which these are equal have equal tables. */
+/* Finds what these depend on, as parameter_slots numbers; states in which these are equal have
+   equal tables. */
 void krs_state_table_inputs(const KrsState *state, const double *rebase_origin,
                             double (*inputs)[4]);
-/* The caller's zones (center, radius), for the slots behind the parameter block.  With an origin (NULL:
-   none) they are for camera-relative points: how deep the origin is in each takes the place of the radius.
-   Returns how many.  In a variant with room for more the others must have a radius far below 0. */
+/* Returns the caller's zones (center, radius), for the slots behind the parameter block.  With an
+   origin (NULL: none) they are for camera-relative points: how deep the origin is in each takes the
+   place of the radius.  Returns how many.  In a variant with room for more the others must have a
+   radius far below 0. */
 size_t krs_state_zones(const KrsState *state, const double *rebase_origin, float (*zones)[4]);
 /* A ray of a query, with a unit direction.  It is marched from `start` to `end`: the part of
    [0, farthest] in the box around the scene, which is empty when `end` is less than `start`. */
@@ -153,7 +156,8 @@ KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direc
 /* Tells whether krs_raycast accepts these arguments. */
 bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance);
-/* The 64-bit FNV-1a hash of the scene and the files that it uses, as 16 hexadecimal digits. */
+/* Returns the 64-bit FNV-1a hash of the scene and the files that it uses, as 16 hexadecimal
+   digits. */
 const char *krs_scene_hash(const KrsScene *scene);
 
 #endif

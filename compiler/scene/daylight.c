@@ -28,15 +28,16 @@
 #define AHEAD      (FORWARD * FORWARD) /* the part that it scatters so far ahead that it is not lost */
 #define SUN_RADIUS 0.00465             /* radians */
 
-/* What red, green and blue lose on a kilometre: to air at the ground, and to ozone where it is
-   densest.  That of haze is in parts of that of green. */
+/* The parts of red, green and blue that are lost on a kilometre: to air at the ground, and to ozone
+   where it is densest.  That of haze is in parts of that of green. */
 static const double air[3]         = {5.802e-3, 13.558e-3, 33.1e-3};
 static const double ozone[3]       = {0.650e-3, 1.881e-3, 0.085e-3};
 static const double haze[3]        = {0.759, 1, 1.337}; /* wavelength to the power of -1.3 */
 static const double haze_scattered = 0.9;               /* the rest is absorbed */
 
-/* How much of the sun's light reaches a height, by the direction; and what reaches a point from all
-   around that was scattered twice or more often, by its height and the sun's. */
+/* The sizes of two tables: the part of the sun's light that reaches a height, by the direction; and
+   what reaches a point from all around that was scattered twice or more often, by its height and
+   the sun's. */
 enum { HEIGHTS = 32, DIRECTIONS = 128, AROUND_HEIGHTS = 16, AROUND_SUNS = 32 };
 enum { STEPS_OF_SUN = 64, STEPS_OF_VIEW = 40, STEPS_AROUND = 20, RAYS_AROUND = 64 };
 typedef struct Air {
@@ -67,20 +68,21 @@ static Medium medium_at(const Air *a, double radius)
     return m;
 }
 
-/* The length of a ray up to the top of the air, by the cosine of its angle from the vertical. */
+/* Returns the length of a ray up to the top of the air, by the cosine of its angle from the
+   vertical. */
 static double length_to_top(double radius, double cosine)
 {
     return -radius * cosine + sqrt(fmax(radius * radius * (cosine * cosine - 1) + TOP * TOP, 0));
 }
 
-/* The length up to the ground; negative: the ray does not meet it. */
+/* Returns the length up to the ground; negative: the ray does not meet it. */
 static double length_to_ground(double radius, double cosine)
 {
     const double square = radius * radius * (cosine * cosine - 1) + GROUND * GROUND;
     return cosine < 0 && square >= 0 ? fmax(-radius * cosine - sqrt(square), 0) : -1;
 }
 
-/* Cosine of the horizon's angle from the vertical. */
+/* Returns the cosine of the horizon's angle from the vertical. */
 static double horizon_at(double radius)
 {
     const double sine = fmin(GROUND / radius, 1);
@@ -127,7 +129,8 @@ static void lose_light(const Air *a, double radius, double cosine, double ahead,
         part[k] = real_exp(-lost[k]);
 }
 
-/* Rows and columns are even in the lengths along the ground's tangent, and along the ray. */
+/* Fills the table of the sun, whose rows and columns are even in the lengths along the ground's
+   tangent, and along the ray. */
 static void fill_sun(Air *a)
 {
     const double highest = sqrt(TOP * TOP - GROUND * GROUND);
@@ -164,7 +167,7 @@ static double part_of_disc(Place at)
     return fmin(fmax(0.5 + 0.5 * (at.cosine - horizon_at(at.radius)) / SUN_RADIUS, 0), 1);
 }
 
-/* The part of the sun's light that reaches a place, by the cosine of the sun's angle from the
+/* Finds the part of the sun's light that reaches a place, by the cosine of the sun's angle from the
    vertical. */
 static void find_sun(const Air *a, Place at, double part[3])
 {
@@ -253,8 +256,8 @@ static Gathered gather(const Air *a, const View *v)
 
 /* ---- Light that is scattered often ---- */
 
-/* The series of all further scatterings at a height, for a height of the sun; rays are even over the
-   sphere (a spiral of Fibonacci). */
+/* Sums the series of all further scatterings at a height, for a height of the sun; rays are even
+   over the sphere (a spiral of Fibonacci). */
 static void sum_series(const Air *a, double radius, double sun_cosine, double light[3])
 {
     double second[3] = {0}, again[3] = {0};
@@ -286,7 +289,7 @@ static void fill_around(Air *a)
 
 /* ---- The sky ---- */
 
-/* Turbidity is of green light, straight up. */
+/* Returns the density of haze; turbidity is of green light, straight up. */
 static double density_of_haze(const Daylight *light)
 {
     return (fmax(light->turbidity, 1) - 1) * air[1] * AIR_FALL / HAZE_FALL;
@@ -316,7 +319,7 @@ static void find_row(const Air *a, int row, float (*texels)[3])
     }
 }
 
-/* Below the horizon is the ground, which the sun and the sky light. */
+/* Fills the ground below the horizon, which the sun and the sky light. */
 static void fill_ground(const Air *a, float (*texels)[3])
 {
     const int horizon = DAYLIGHT_HEIGHT / 2;

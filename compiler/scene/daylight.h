@@ -16,10 +16,10 @@ typedef struct Daylight {
     double ground[3]; /* albedo of what is below the horizon */
 } Daylight;
 
-/* The part of the sun's light that reaches the ground. */
+/* Finds the part of the sun's light that reaches the ground. */
 void daylight_sun(const Daylight *light, double part[3]);
-/* Radiance of the sky, without the sun, that brings the irradiance 1 to the top of the air.  False:
-   there is no memory. */
+/* Computes the radiance of the sky, without the sun, that brings the irradiance 1 to the top of the
+   air.  False: there is no memory. */
 bool daylight_sky(const Daylight *light, float (*texels)[3]);
 
 #endif

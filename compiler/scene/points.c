@@ -11,7 +11,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/graph/lanes/lanes.h"
 
-/* What evaluates many points of one state. */
+/* The lane tapes for many points of one state. */
 struct StateLanes {
     Memory memory;
     Arena  arena;
@@ -31,7 +31,7 @@ static void room_for_scalars(struct StateLanes *lanes, LaneTape *tape)
     tape->scalars = arena_new_array(&lanes->arena, double, tape->scalar_count + 1);
 }
 
-/* The distances of all components, and the zones, whose least is output 0. */
+/* Makes the distances of all components, and the zones, whose least is output 0. */
 static void make_distance(struct StateLanes *lanes, KrsState *state)
 {
     const KrsScene *scene = state->scene;
@@ -135,7 +135,7 @@ static double cut_by_zones(const KrsState *state, const double point[3], double 
 
 /* ---- many processors ---- */
 
-/* From so many steps of single points on, threads are worth their making. */
+/* The steps of single points from which threads are worth their making. */
 #define STEPS_FOR_THREADS 4e6
 
 /* Points that are dealt out; what each part needs to run its own. */
@@ -160,7 +160,7 @@ static void deal_part(void *task, size_t part, size_t parts)
         deal->distances[i] = cut_by_zones(deal->state, deal->points[i], deal->distances[i]);
 }
 
-/* Rows and, where it reads tables, values of the state, for each part but the first. */
+/* Gives each part but the first its rows and, if it reads tables, values of the state. */
 static void give_works(struct StateLanes *lanes, const KrsState *state, LaneWork *works)
 {
     size_t parts = parallel_parts(), count = state->scene->graph->count;

@@ -8,25 +8,26 @@
 
 #include "compiler/scene/program.h"
 
-/* From so many points on lanes cost less. */
+/* The number of points from which lanes cost less. */
 enum { FEWEST_POINTS = 4 };
 
-/* Lane tapes of a state that is up to date, made when the first questions come; false: memory has run
-   out.  A scene without components has none. */
+/* Makes the lane tapes of a state that is up to date when the first questions come; false: memory
+   has run out.  A scene without components has none. */
 bool state_lanes(KrsState *state);
 void state_lanes_free(KrsState *state);
-/* Values of the state have changed. */
+/* Takes the changed values of the state. */
 void state_lanes_refresh(KrsState *state);
 
-/* The least distances of all components, cut by the zones; `bound`: only bounds for it. */
+/* Finds the least distances of all components, cut by the zones; `bound`: only bounds for it. */
 KrsStatus points_distances(KrsState *state, const double (*points)[3], size_t count, bool bound,
                            double *distances);
-/* The normals by central differences. */
+/* Finds the normals by central differences. */
 KrsStatus points_normals(KrsState *state, const double (*points)[3], size_t count,
                          double (*normals)[3]);
 
-/* What is known of up to LANES points on a surface: distances, numbers of the nearest components from
-   1, and roots of surfaces, which points_surface puts into state->values for one of the points. */
+/* Finds what is known of up to LANES points on a surface: distances, numbers of the nearest
+   components from 1, and roots of surfaces, which points_surface puts into state->values for one of
+   the points. */
 void points_look(KrsState *state, const double (*points)[3], const double (*normals)[3],
                  size_t count, double *distances, uint32_t *nearest);
 void points_surface(KrsState *state, size_t point, uint32_t nearest);

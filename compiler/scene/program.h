@@ -75,7 +75,7 @@ static inline RootRange roots_of(const Roots *roots, RootKind kind)
     return roots_from(roots, kind, kind);
 }
 
-/* The roots of a component, to be indexed by ComponentRoot. */
+/* Returns the roots of a component, to be indexed by ComponentRoot. */
 static inline Node *surface_roots(const Roots *roots, size_t component)
 {
     return roots_of(roots, ROOTS_SURFACE).items + component * ROOT_COUNT;
@@ -86,7 +86,7 @@ static inline Node distance_root(const Roots *roots, size_t component)
     return surface_roots(roots, component)[ROOT_DISTANCE];
 }
 
-/* The root of each component for a method of research that was asked for. */
+/* Returns the root of each component for a method of research that was asked for. */
 static inline Node *research_roots(const Roots *roots, ResearchMethod method)
 {
     RootRange all = roots_of(roots, ROOTS_RESEARCH);
@@ -113,7 +113,7 @@ static inline PlaneRoots *plane_roots(const Roots *roots)
     return (PlaneRoots *)roots_of(roots, ROOTS_PLANE).items;
 }
 
-/* Those of a component; with the number of components, those of all zones. */
+/* Returns the roots of a component; with the number of components, those of all zones. */
 static inline GradientRoots *gradient_roots(const Roots *roots, size_t component)
 {
     return (GradientRoots *)roots_of(roots, ROOTS_GRADIENT).items + component;
@@ -183,7 +183,7 @@ struct KrsScene {
     Tape frame;     /* of all these, what does not depend on points */
 };
 
-/* Those tapes of the scene that read tables, over the tables of a state where these are its own. */
+/* The tapes of the scene that read tables, over the tables of a state where these are its own. */
 typedef struct StateTapes {
     Tape distance, guarded, ahead, gradients, surface, places;
 } StateTapes;
@@ -223,8 +223,8 @@ typedef struct RayLimits {
     uint64_t ran;
 } RayLimits;
 
-/* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after
-   the pass `retain`. */
+/* These are the functions of krs.h and compiled.h with the same names.  The compiler itself calls
+   them, after the pass `retain`. */
 KrsStatus state_new(const KrsScene *scene, KrsState **state);
 void      state_free(KrsState *state);
 KrsStatus state_view(KrsState *state, size_t camera, KrsView *view);
@@ -236,16 +236,16 @@ KrsStatus state_raycast(KrsState *state, const double (*origins)[3], const doubl
 KrsStatus state_probe(KrsState *state, const double (*points)[3], size_t count, bool normals,
                       KrsHit *hits);
 void      scene_free(KrsScene *scene);
-/* A state of the same scene with the same parameters, time and zones. */
+/* Copies a state of the same scene with the same parameters, time and zones. */
 KrsStatus state_copy_of(const KrsState *state, KrsState **copy);
 
-/* The GLSL of all functions that the scene has in a variant, without comments, so that it says
-   nothing of names and lines. */
+/* Returns the GLSL of all functions that the scene has in a variant, without comments, so that it
+   says nothing of names and lines. */
 char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *arena);
 
 /* Evaluates the nodes that depend on parameters only, unless their values are up to date. */
 void state_refresh(KrsState *state);
-/* The same, and the tables of the state: for values at points. */
+/* Does the same, and the tables of the state: for values at points. */
 void state_refresh_points(KrsState *state);
 
 /* state_boxes.c: the boxes of the shown components, but for a floor, at the values of the state; NULL:
@@ -260,16 +260,16 @@ void state_find_floor(KrsState *state, uint32_t changed);
 
 /* state_tables.c: tables where instances of groups move, and tapes over them.  False: memory has run out. */
 bool state_tables_new(KrsState *state);
-/* Its tapes add what they run to its own count: after it was copied to another place. */
+/* Lets its tapes add what they run to its own count: after it was copied to another place. */
 void state_count_operations(KrsState *state);
 void state_tables_free(KrsState *state);
-/* Values of the state have changed; the tables are found when they are needed. */
+/* Notes that values of the state have changed; the tables are found when they are needed. */
 void state_tables_change(KrsState *state);
 void state_tables_refresh(const KrsState *state);
 
-/* The component that is nearest, counted from 1; 0: there is none. */
+/* Returns the component that is nearest, counted from 1; 0: there is none. */
 uint32_t state_nearest_component(KrsState *state, const double point[3]);
-/* A value of the state, used by points or the view, that is not finite; NODE_NONE: there is
+/* Returns a value of the state, used by points or the view, that is not finite; NODE_NONE: there is
    none. */
 Node state_infinite(KrsState *state);
 /* Copies the value of a node of type VEC3. */

@@ -25,8 +25,8 @@ static bool are_finite(const double (*vectors)[3], size_t count)
 
 /* ---- points ---- */
 
-/* The largest depth of a point in a zone of the scene, whose value is in state->values, or of the
-   caller; negative outside. */
+/* Returns the largest depth of a point in a zone of the scene, whose value is in state->values, or
+   of the caller; negative outside. */
 static double zone_depth(const KrsState *state, const double point[3])
 {
     Node   zone  = zone_root(state->scene);
@@ -38,8 +38,8 @@ static double zone_depth(const KrsState *state, const double point[3])
     return depth;
 }
 
-/* The least distance of all components by a tape of them, cut by the zones.  *nearest is the number
-   from 1 of that component, whether or not a zone cuts it. */
+/* Returns the least distance of all components by a tape of them, cut by the zones. *nearest is the
+   number from 1 of that component, whether or not a zone cuts it. */
 static double distance_by(KrsState *state, const Tape *tape, const double point[3],
                           uint32_t *nearest)
 {
@@ -69,7 +69,7 @@ uint32_t state_nearest_component(KrsState *state, const double point[3])
     return nearest;
 }
 
-/* Far from surfaces, short steps cost less than exact ones. */
+/* Returns the tape of a march: far from surfaces, short steps cost less than exact ones. */
 static Tape march_tape(const KrsState *state, const Tape *tape)
 {
     Tape march     = *tape;
@@ -92,7 +92,8 @@ static double step_ahead(KrsState *state, const double point[3], const double di
     return fmax(least, zone_depth(state, point));
 }
 
-/* A bound for the distance that costs less: far levels of sequences are skipped (lower_guarded). */
+/* Returns a bound for the distance that costs less: far levels of sequences are skipped
+   (lower_guarded). */
 static double clearance_at(KrsState *state, const double point[3])
 {
     const KrsScene *scene   = state->scene;
@@ -138,8 +139,8 @@ KrsStatus krs_distance(KrsState *state, const double (*points)[3], size_t count,
     return find_distances(state, points, count, false, distances);
 }
 
-/* A normal by derivatives, in scenes with open surfaces: differences would mix both sides of an open surface.
-   False if there is no derivative. */
+/* Finds a normal by derivatives, in scenes with open surfaces: differences would mix both sides of
+   an open surface.  False if there is no derivative. */
 static bool derived_normal(KrsState *state, const double point[3], double normal[3])
 {
     const KrsScene *scene   = state->scene;
@@ -158,7 +159,7 @@ static bool derived_normal(KrsState *state, const double point[3], double normal
     return known;
 }
 
-/* A normal by central differences, whose error is negligible in double precision. */
+/* Finds a normal by central differences, whose error is negligible in double precision. */
 static void normal_at(KrsState *state, const double point[3], double normal[3])
 {
     double   step = 1e-6 * (1 + largest3(point));
@@ -231,8 +232,8 @@ static void face(const double view[3], double normal[3])
         normal[k] = -normal[k];
 }
 
-/* `view` is the direction of the ray that sees the point, or NULL.  Materials of open surfaces have the normal
-   that faces it. */
+/* Probes a point; `view` is the direction of the ray that sees it, or NULL.  Materials of open
+   surfaces have the normal that faces it. */
 static void probe(KrsState *state, const double point[3], const double view[3], KrsHit *hit)
 {
     uint32_t nearest = 0;
@@ -365,8 +366,9 @@ static double rounding_at(const RayMarch *march, double t)
     return 4 * DBL_EPSILON * (march->size + t);
 }
 
-/* The clearance at a point of the ray that has this distance.  Solids that touch count as one solid.
-   So for a ray from inside they are enlarged by the gap that rounding may leave between them. */
+/* Returns the clearance at a point of the ray that has this distance.  Solids that touch count as
+   one solid.  So for a ray from inside they are enlarged by the gap that rounding may leave between
+   them. */
 static double clearance_of(RayMarch *march, double t, double distance)
 {
     if (march->side == 0)
@@ -387,8 +389,8 @@ static double march_clearance(RayMarch *march, double t)
     return clearance_of(march, t, distance);
 }
 
-/* The t where the ray crosses the surface, between t, where the clearance is positive, and t +
-   step, where it is `clearance` and not positive.  It is found by the Illinois method: false
+/* Returns the t where the ray crosses the surface, between t, where the clearance is positive, and
+   t + step, where it is `clearance` and not positive.  It is found by the Illinois method: false
    position, where the value at one end is halved when the other end has moved twice. */
 static double find_crossing(RayMarch *march, double clearance)
 {
@@ -417,10 +419,11 @@ static double find_crossing(RayMarch *march, double clearance)
 }
 
 /*
- * One step, by the rule of trace.comp, to where the clearance is this.  The empty balls around t and
- * around t + step must meet; the length between them is unverified.  If it is more than a sixteenth of
- * the tolerance, the step is shortened to the middle of it.  So steps may be longer than the clearance
- * (automatic relaxation): as long as the balls meet if the clearance goes on changing as before.
+ * Takes one step, by the rule of trace.comp, to where the clearance is this.  The empty balls
+ * around t and around t + step must meet; the length between them is unverified.  If it is more
+ * than a sixteenth of the tolerance, the step is shortened to the middle of it.  So steps may be
+ * longer than the clearance (automatic relaxation): as long as the balls meet if the clearance goes
+ * on changing as before.
  */
 static RayPhase march_step(RayMarch *march, double clearance)
 {
@@ -437,8 +440,8 @@ static RayPhase march_step(RayMarch *march, double clearance)
         march->slope += 0.3 * (slope - march->slope);
         march->t         = at;
         march->clearance = clearance;
-        /* With open surfaces, the clearance is known only in the direction of the ray: there is no ball
-           that reaches backwards. */
+        /* The clearance is known only in the direction of the ray if there are open surfaces: there
+           is no ball that reaches backwards. */
         double factor = march->state->scene->program.open_surfaces
                             ? 1
                             : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));
@@ -463,7 +466,7 @@ static RayMarch begin_march(KrsState *state, KrsRay ray, double tolerance)
                       .phase     = ray.start <= ray.end ? MARCHING : MISS};
 }
 
-/* Nothing is asked of the place where a ray remains that may run no more. */
+/* Ends a march; nothing is asked of the place where a ray remains that may run no more. */
 static void end_march(RayMarch *march, RayLimits limits, KrsHit *hit)
 {
     double point[3];
@@ -494,7 +497,7 @@ static bool march_by_lanes(const KrsState *state)
     return lanes;
 }
 
-/* The next step of each of some rays that are not at their end. */
+/* Takes the next step of each of some rays that are not at their end. */
 static KrsStatus step_fused(KrsState *state, RayMarch *const *marches, size_t count)
 {
     double points[LANES][3], distances[LANES];
@@ -535,7 +538,7 @@ static void march_alone(RayMarch *ray, RayLimits limits)
     }
 }
 
-/* Up to LANES rays. */
+/* Casts up to LANES rays. */
 static KrsStatus raycast(KrsState *state, RayMarch *rays, size_t count, bool fused,
                          RayLimits limits, KrsHit *hits)
 {

@@ -23,7 +23,7 @@ size_t krs_entry_points(const KrsScene *scene, bool many_threads,
 
 /* ---- all functions ---- */
 
-/* All functions that a scene has in a variant. */
+/* Finds all functions that a scene has in a variant. */
 static size_t known_functions(const KrsScene *scene, const KrsVariant *variant,
                               KrsFunction wanted[KRS_FUNCTION_COUNT])
 {
@@ -87,7 +87,7 @@ typedef struct Printing {
     Arena              arena;
 } Printing;
 
-/* A copy in memory of the caller's allocator, or NULL. */
+/* Returns a copy in memory of the caller's allocator, or NULL. */
 static char *copy_text(const char *text, const Memory *memory)
 {
     size_t bytes = strlen(text) + 1;

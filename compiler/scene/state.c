@@ -11,7 +11,7 @@
 #include "compiler/scene/program.h"
 #include "compiler/shape/slope.h"
 
-/* Zeroed memory from the scene's allocator, or NULL. */
+/* Returns zeroed memory from the scene's allocator, or NULL. */
 static void *frame_alloc(const KrsScene *scene, size_t count, size_t size)
 {
     const Memory *memory = &scene->memory;
@@ -377,7 +377,7 @@ static Daylight find_daylight(const KrsState *state)
     return light;
 }
 
-/* Air takes light from the sun, unless its colour is given. */
+/* Dims the sun by the air, unless its colour is given. */
 static void dim_sun(const KrsState *state)
 {
     const size_t   sun   = state->scene->daylight_by;

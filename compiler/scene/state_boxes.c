@@ -59,7 +59,7 @@ bool krs_state_box(KrsState *state, double low[3], double high[3])
     return copy_corners(state_outer_box(state, state_find_boxes(state)), low, high);
 }
 
-/* The least height of all cameras. */
+/* Returns the least height of all cameras. */
 static double lowest_eye(const KrsState *state)
 {
     const KrsScene *scene = state->scene;

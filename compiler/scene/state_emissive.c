@@ -26,12 +26,12 @@ enum {
     MAX_WITH_RIMS  = 4, /* balls that are made smaller by points on their rims */
     MAX_ASKED      = 64
 };
-/* What balls send together in which no light was found, in parts of what all others do. */
+/* The part of all light that balls send together in which no light was found. */
 #define SENT_BY_DARK 0.05
 #define USUAL_IOR    1.5
-/* How much smaller finer cells must look to be worth it. */
+/* The size at which finer cells must look smaller to be worth it. */
 #define WORTH_IT 0.7
-/* How urgent it is to cut a box in which no light was found, relative to others. */
+/* The urgency of cutting a box in which no light was found, relative to others. */
 #define DARK 0.2
 
 /* A box with some of the parts, or with a piece of one. */
@@ -84,7 +84,7 @@ static bool differs_by_place(const Cells *cells, const EmissivePart *part)
     return cells->state->scene->graph->items[part->emission].time == TIME_POINT;
 }
 
-/* The light that is emitted at a point. */
+/* Returns the light that is emitted at a point. */
 static double find_light(const Cells *cells, const EmissivePart *part, const double point[3])
 {
     static const double up[3]  = {0, 1, 0};
@@ -109,7 +109,7 @@ static size_t list_lit(const Cells *cells)
     return count;
 }
 
-/* The mean of some points of a piece. */
+/* Returns the mean of some points of a piece. */
 static double radiance_of_piece(const Cells *cells, const Cell *cell)
 {
     static const double corners[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
@@ -168,7 +168,7 @@ static double find_urgency(const Cell *cell, double min_radius)
     return cell->count == 1 && urgency <= min_radius ? 0 : urgency;
 }
 
-/* The cell to cut next; the number of cells if there is none. */
+/* Returns the cell to cut next; the number of cells if there is none. */
 static size_t find_next(const Cells *cells, double min_radius)
 {
     size_t found = cells->count;
@@ -192,7 +192,8 @@ static void cut_cells(Cells *cells, double min_radius, size_t most)
     }
 }
 
-/* The sum of the discs of all balls, which are seen from far away, less those that may be dark. */
+/* Returns the sum of the discs of all balls, which are seen from far away, less those that may be
+   dark. */
 static double find_discs(const Cells *cells)
 {
     double sum = 0;
@@ -213,7 +214,7 @@ static void refine(Cells *cells)
     }
 }
 
-/* The box around what many cuts leave of a part. */
+/* Returns the box around what many cuts leave of a part. */
 static Box find_tight(const Cells *cells, size_t number, size_t cuts)
 {
     Cells own  = {.state = cells->state, .region = cells->region};
@@ -269,7 +270,7 @@ static double find_magnified(const Cells *cells, const double middle[3])
     return most;
 }
 
-/* What a ball sends, as the radiance of its disc.  Of many parts some are asked. */
+/* Returns what a ball sends, as the radiance of its disc.  Of many parts some are asked. */
 static double radiance_of(const Cells *cells, const Cell *cell)
 {
     const size_t step = 1 + cell->count / MAX_ASKED;

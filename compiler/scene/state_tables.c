@@ -20,7 +20,8 @@ struct StateTables {
 
 /* ---- tapes ---- */
 
-/* A tape of the scene over the tables of the state; so are those of functions that it calls. */
+/* Returns a tape of the scene over the tables of the state; so are those of functions that it
+   calls. */
 static Tape tape_of_frame(const Tape *tape, struct StateTables *tables)
 {
     Tape  copy      = *tape;
@@ -115,7 +116,7 @@ void state_tables_change(KrsState *state)
         state->tables->found = false;
 }
 
-/* Where memory runs out the grids are those for all states, which are right in each. */
+/* Finds the grids.  Where memory runs out they are those for all states, which are right in each. */
 static void find_grids(struct StateTables *tables, const Instances *of_scene,
                        const NodeValue *values)
 {

@@ -90,14 +90,14 @@ static void put_floats(Texel texel, double first, double second)
     texel[1] = bits_of(second);
 }
 
-/* Half of a side, with all that is lost when center and half are rounded. */
+/* Returns half of a side, with all that is lost when center and half are rounded. */
 static double half_upward(Range axis, float center)
 {
     double half = fmax(axis.high - (double)center, (double)center - axis.low);
     return nextafterf((float)half, HUGE_VALF);
 }
 
-/* What a table is relative to. */
+/* The origin that a table is relative to. */
 typedef struct Origin {
     double v[3];
 } Origin;
@@ -135,7 +135,7 @@ static void put_header(const Grid *grid, Origin origin, Place place, Texel *head
     header[7][1] = (uint32_t)place.copy;
 }
 
-/* What loops that end by tails need. */
+/* Writes what loops that end by tails need. */
 static void put_fading(const InstanceTable *table, Texel *header)
 {
     const Grid *grid = &table->cells;
@@ -185,7 +185,7 @@ static void put_rows(const Instances *instances, const InstanceTable *table,
     }
 }
 
-/* The rows of all instances of the lists, in the order of the lists. */
+/* Writes the rows of all instances of the lists, in the order of the lists. */
 static void put_copies(const InstanceTable *table, const float (*rows)[4], float (*copies)[4])
 {
     const size_t texels  = row_texels(table),

@@ -34,14 +34,15 @@
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/texture.h"
 
-/* How many texels there are. */
+/* The numbers of texels. */
 typedef struct TableSizes {
     size_t rows, cells;
 } TableSizes;
 
-/* Room for those of all states.  0 when there are neither tables nor textures; both may be NULL. */
+/* Returns the room for those of all states; 0 when there are neither tables nor textures; both may
+   be NULL. */
 TableSizes tables_measure(const Instances *instances, const Textures *textures);
-/* Which texels of the cells the header of a texture and its finest level begin at. */
+/* Finds the texels of the cells at which the header of a texture and its finest level begin. */
 void tables_place_texture(const Instances *instances, const Textures *textures, size_t index,
                           size_t *header, size_t *first);
 /* Fills arrays of these sizes; `values` of nodes has the numbers of the state, and may be NULL where

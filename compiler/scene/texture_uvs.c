@@ -28,7 +28,7 @@ static size_t nearest_component(KrsState *state, const double point[3])
     return nearest;
 }
 
-/* False: nothing there reads a texture. */
+/* Finds the place in a texture; false: nothing there reads one. */
 static bool place_at(KrsState *state, const double point[3], bool normals, double place[2])
 {
     const KrsScene *scene     = state->scene;

@@ -112,7 +112,7 @@ static void add_fix(const Here *here, const ServiceFix *fix, Json *json)
 
 /* ---- names ---- */
 
-/* A name that nothing in the document has yet: `wanted`, or that with a number. */
+/* Returns a name that nothing in the document has yet: `wanted`, or that with a number. */
 static const char *new_name(const Here *here, const char *wanted)
 {
     Meaning meaning;
@@ -129,7 +129,8 @@ static const char *new_name(const Here *here, const char *wanted)
     }
 }
 
-/* The start of the line in which a statement of the file begins, with the comment before it that documents it. */
+/* Returns the start of the line in which a statement of the file begins, with the comment before it
+   that documents it. */
 static uint32_t line_before(const Here *here, const Syntax *statement)
 {
     const Source *source = here->source;
@@ -146,7 +147,7 @@ static uint32_t line_before(const Here *here, const Syntax *statement)
 
 /* ---- a number becomes a param ---- */
 
-/* What the number is for: the property or parameter that gets it. */
+/* Returns the purpose of a number: the property or parameter that gets it. */
 static const char *purpose(const Here *here, const Way *way)
 {
     const Syntax *node = way->items[way->count - 1];
@@ -239,7 +240,8 @@ typedef struct Locals {
     size_t         count, capacity;
 } Locals;
 
-/* The names of the expression that are defined around it, and not in the whole file: a loop defines its own in itself. */
+/* Returns the names of the expression that are defined around it, and not in the whole file: a loop
+   defines its own in itself. */
 static Locals locals_of(const Here *here, const Syntax *node)
 {
     Locals found = {0};
@@ -304,7 +306,7 @@ void answer_actions(const Here *here, const ServiceQuestion *about, Json *json)
 
 /* ---- layout ---- */
 
-/* One edit, of what differs; none where the text has mistakes. */
+/* Answers one edit, of what differs; none where the text has mistakes. */
 void answer_formatting(const Here *here, const ServiceQuestion *about, Json *json)
 {
     const Source *source = here->source;

@@ -19,7 +19,7 @@ Document *find_document(const Service *service, const char *path)
     return document;
 }
 
-/* Texts of documents come before those of files. */
+/* Supplies a text; those of documents come before those of files. */
 static const char *supply(void *user, const char *path, size_t *length)
 {
     Service        *service  = user;
@@ -120,7 +120,7 @@ static bool contains(Span span, uint32_t offset)
     return span.start <= offset && offset <= span.end;
 }
 
-/* Of two children that touch at the offset, the second. */
+/* Returns the child at an offset; of two that touch there, the second. */
 static const Syntax *child_at(const Syntax *syntax, uint32_t offset)
 {
     const Syntax *found = NULL;
@@ -221,7 +221,7 @@ static const Syntax *defined_in(const File *file, const char *name)
     return NULL;
 }
 
-/* Of several definitions that are seen, the one that is seen in the least. */
+/* Returns the definition that is seen; of several, the one that is seen in the least. */
 static const Syntax *defined_around(const File *file, const char *name, uint32_t offset)
 {
     const NameUse *found = NULL;
@@ -251,7 +251,7 @@ bool find_meaning(const Analysis *a, const char *name, uint32_t offset, Meaning 
 
 /* ---- signatures ---- */
 
-/* Text of one line, of what may have several. */
+/* Adds text of one line, of what may have several. */
 static void add_line(const char *text, size_t length, Text *out)
 {
     bool blank = false;

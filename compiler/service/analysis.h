@@ -68,26 +68,27 @@ typedef struct Way {
     size_t         count, capacity;
 } Way;
 Way find_way(Arena *arena, const Syntax *tree, uint32_t offset);
-/* The way to a node; empty: it is not in the tree. */
+/* Returns the way to a node; empty: it is not in the tree. */
 Way find_way_to(Arena *arena, const Syntax *tree, const Syntax *node);
 /* The last node of a kind on a way, or NULL; *index is where it is. */
 const Syntax *last_of_kind(const Way *way, SyntaxKind kind, size_t *index);
 
-/* The number of the token at an offset, or else of the one before it. */
+/* Returns the number of the token at an offset, or else of the one before it. */
 size_t find_token(const Tokens *tokens, uint32_t offset);
-/* The word, number or string at an offset, or just before it; or else what is there; NULL: nothing touches it. */
+/* Returns the word, number or string at an offset, or just before it; or else what is there; NULL:
+   nothing touches it. */
 const Token *find_pointed(const Tokens *tokens, uint32_t offset);
 
-/* What a name means. */
+/* The meaning of a name. */
 typedef struct Meaning {
     const Syntax      *syntax; /* the node that defines it; or NULL */
     const BuiltinWord *word;   /* of a name that is built in; or NULL */
 } Meaning;
-/* False: nothing is called so there. */
+/* Finds the meaning of a name; false: nothing is called so there. */
 bool find_meaning(const Analysis *analysis, const char *name, uint32_t offset, Meaning *meaning);
-/* The use at an offset, or NULL. */
+/* Returns the use at an offset, or NULL. */
 const NameUse *find_use(const File *file, uint32_t offset);
-/* What is built in and called so, a method or not; NULL: nothing. */
+/* Finds what is built in and called so, a method or not; NULL: nothing. */
 const BuiltinWord *find_word(const char *name, bool method);
 bool               is_method(const BuiltinWord *word);
 bool               is_called(const BuiltinWord *word);
@@ -98,9 +99,9 @@ typedef struct Asked {
     Asking *asking;
     Value   value;
 } Asked;
-/* The value of the last node of a way in the file. */
+/* Returns the value of the last node of a way in the file. */
 Asked value_on(const Here *here, const Way *way);
-/* The value of a definition anywhere in the files. */
+/* Returns the value of a definition anywhere in the files. */
 Asked value_of(const Here *here, const Syntax *definition);
 
 /* ---- signature.c ---- */
@@ -112,7 +113,7 @@ typedef struct CallHere {
     const Token *label;    /* and its name, or NULL */
 } CallHere;
 bool find_call(const Tokens *tokens, uint32_t offset, CallHere *call);
-/* What is called: a signature whose parameters are these bytes of it. */
+/* The signature of a function, whose parameters are these bytes of it. */
 typedef struct Signature {
     Text        label;
     const char *doc;
@@ -123,14 +124,15 @@ typedef struct Signature {
     size_t count, capacity;
 } Signature;
 bool find_signature(const Here *here, const CallHere *call, Signature *signature);
-/* "torus(major = 1, minor = 0.25)", of a function of the text; "min(values...)".  The label has an arena. */
+/* Makes "torus(major = 1, minor = 0.25)", of a function of the text, or "min(values...)".  The
+   label has an arena. */
 void signature_of_function(const Analysis *analysis, const Syntax *function, Signature *signature);
 void signature_of_word(const BuiltinWord *word, Signature *signature);
 
 /* ---- JSON ---- */
 void add_range(Json *json, const char *name, const Source *source, uint32_t start, uint32_t end);
 void add_uri(Service *service, Json *json, const char *name, const char *path);
-/* The path of a source, which is its name; {"uri", "range"}. */
+/* Adds the path of a source, which is its name; {"uri", "range"}. */
 void add_location(Service *service, Json *json, const char *name, const Source *source, Span span);
 
 /* ---- tokens.c ---- */
@@ -141,7 +143,7 @@ typedef void Answer(const Here *here, const ServiceQuestion *about, Json *json);
 #define QUESTION(name, function, capability, value) Answer function;
 #include "compiler/service/questions.def"
 
-/* A refusal with a reason. */
+/* Refuses a question with a reason. */
 void refuse_question(const Here *here, const char *reason);
 
 #endif

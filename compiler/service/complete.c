@@ -156,7 +156,7 @@ static bool begins_in_file(const Completion *c, const Token *token)
     return word && (token->span.start == 0 || c->here->source->text[token->span.start - 1] == '\n');
 }
 
-/* The number of the token that begins the statement at the place, and the one behind it. */
+/* Finds the number of the token that begins the statement at the place, and the one behind it. */
 static void find_statement(const Completion *c, size_t *first, size_t *last)
 {
     *first = 0;
@@ -244,7 +244,7 @@ static void add_names_of(Completion *c, const File *file, char order, bool all)
     }
 }
 
-/* All names that an expression at the place may use, the nearest first. */
+/* Adds all names that an expression at the place may use, the nearest first. */
 static void add_names(Completion *c)
 {
     const Analysis *a     = c->here->analysis;
@@ -345,7 +345,7 @@ static bool ends_in(const char *name, size_t length, const char *ending)
     return length >= size && memcmp(name + length - size, ending, size) == 0;
 }
 
-/* Files in the folder that is written so far: scenes for a `use`, others for anything else. */
+/* Adds files in the folder that is written so far: scenes for a `use`, others for anything else. */
 static void add_files(const Completion *c, const char *written, bool scenes)
 {
     Service    *s      = c->here->service;
@@ -374,7 +374,7 @@ static void add_files(const Completion *c, const char *written, bool scenes)
 
 /* ---- colours ---- */
 
-/* Those of the text and of the library, as they are written. */
+/* Completes colours of the text and of the library, as they are written. */
 static void complete_colour(Completion *c)
 {
     const Analysis *a = c->here->analysis;
@@ -404,7 +404,7 @@ static void complete_colour(Completion *c)
 
 /* ---- blocks and statements ---- */
 
-/* The bracket that is open at the place: its number among the tokens; SIZE_MAX: none is. */
+/* Returns the bracket that is open at the place: its number among the tokens; SIZE_MAX: none is. */
 static size_t open_bracket(const Completion *c)
 {
     size_t depth = 0;
@@ -421,7 +421,8 @@ static size_t open_bracket(const Completion *c)
     return SIZE_MAX;
 }
 
-/* The kind of the declaration whose properties or parameters a bracket opens; SYNTAX_ERROR: of none. */
+/* Returns the kind of the declaration whose properties or parameters a bracket opens; SYNTAX_ERROR:
+   of none. */
 static SyntaxKind declaration_of(const Completion *c, size_t bracket)
 {
     size_t depth = 0;
@@ -528,7 +529,8 @@ static bool is_word(char c)
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-/* What of the line before the place is open there: '"', '/' for a comment, or nothing.  *from is behind the quote. */
+/* Returns what of the line before the place is open there: '"', '/' for a comment, or nothing.
+   *from is behind the quote. */
 static char open_text(const Completion *c, uint32_t *from)
 {
     const char *text = c->here->source->text;

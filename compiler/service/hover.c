@@ -23,7 +23,7 @@ static void add_value(Asked asked, Text *out)
         text_format(out, "\n= %s\n", text.bytes);
 }
 
-/* A picture of a colour, 0xrrggbb, with its linear components. */
+/* Adds a picture of a colour, 0xrrggbb, with its linear components. */
 static void add_swatch(uint32_t rgb, Text *out)
 {
     double linear[3];
@@ -36,7 +36,7 @@ static void add_swatch(uint32_t rgb, Text *out)
         rgb, rgb, linear[0], linear[1], linear[2]);
 }
 
-/* The colour that a definition gives a name, as it is written; false: none. */
+/* Finds the colour that a definition gives a name, as it is written; false: none. */
 static bool find_colour(const Here *here, const Syntax *definition, uint32_t *rgb)
 {
     const Syntax *value = definition->count ? definition->children[0] : NULL;
@@ -53,7 +53,7 @@ static bool find_colour(const Here *here, const Syntax *definition, uint32_t *rg
 
 /* ---- what is defined ---- */
 
-/* How a definition is written, without the body of what is called. */
+/* Adds how a definition is written, without the body of what is called. */
 static void add_head(const Here *here, const Syntax *syntax, Text *out)
 {
     enum { LONGEST = 300 };
@@ -119,7 +119,7 @@ static void add_builtin(const Here *here, const BuiltinWord *word, Text *out)
 
 /* ---- what is neither ---- */
 
-/* A number in degrees, in radians. */
+/* Adds a number in degrees, in radians. */
 static bool add_angle(const Here *here, const Token *token, Text *out)
 {
     const char *text = here->source->text + token->span.start;
@@ -135,7 +135,8 @@ static bool add_angle(const Here *here, const Token *token, Text *out)
     return true;
 }
 
-/* What stands behind a dot: a method of shapes, or a part of what is before it; with its value. */
+/* Adds what stands behind a dot: a method of shapes, or a part of what is before it; with its
+   value. */
 static bool add_member(const Here *here, const Way *way, size_t at, Text *out)
 {
     const BuiltinWord *word = find_word(way->items[at]->name, true);

@@ -93,7 +93,7 @@ static char *copy(const char *bytes, size_t length)
     return text;
 }
 
-/* The path by which files know each other, for free(). */
+/* Returns the path by which files know each other, for free(). */
 static char *simplified(const char *path)
 {
     char *own = copy(path, strlen(path));
@@ -277,7 +277,7 @@ static bool reaches(const Analysis *a, const File *file, const char *name)
     return found;
 }
 
-/* The statement by which a document uses a file, directly or not; or NULL. */
+/* Returns the statement by which a document uses a file, directly or not; or NULL. */
 static const Syntax *use_of(Analysis *a, const char *name)
 {
     const File *file = a->files.items[0];
@@ -313,7 +313,7 @@ typedef struct Diagnosed {
     Service  *service;
 } Diagnosed;
 
-/* A mistake in a file that the document uses, at the `use`. */
+/* Adds a mistake in a file that the document uses, at the `use`. */
 static void add_foreign(const Diagnosed *d, const char *source, const char *severity,
                         const char *code, const char *message)
 {
@@ -372,7 +372,7 @@ static void tell(void *user, const KrsDiagnostic *told)
                    told->code, told->message, told->json);
 }
 
-/* A text for the compiler, which has memory of its own. */
+/* Loads a text for the compiler, which has memory of its own. */
 static const char *load(void *user, const char *path, size_t *length)
 {
     return ((Diagnosed *)user)

@@ -12,8 +12,8 @@
 
 typedef struct Service Service;
 
-/* What a service asks of whoever has it.  Paths are those of documents and, from these, of what they use; files of the
-   library are "library:NAME".  Each member may be NULL. */
+/* The functions that a service calls of its host.  Paths are those of documents and, from these, of
+   what they use; files of the library are "library:NAME".  Each member may be NULL. */
 typedef struct ServiceHost {
     /* The text of a file that is not open; without it files are read from the disk. */
     TextSupplier *read;
@@ -24,7 +24,7 @@ typedef struct ServiceHost {
     void *user;
 } ServiceHost;
 
-/* NULL: there is no memory. */
+/* Makes a service; NULL: there is no memory. */
 Service *service_new(const ServiceHost *host);
 void     service_free(Service *service);
 
@@ -35,10 +35,11 @@ bool service_open(Service *service, const char *path, const char *uri, const cha
 bool service_edit(Service *service, const char *path, Utf16Position from, Utf16Position to,
                   const char *text, size_t length);
 void service_close(Service *service, const char *path);
-/* Files that are not open are read again: one may have changed. */
+/* Forgets files that are not open: one may have changed. */
 void service_forget(Service *service);
 
-/* What a diagnostic proposes: a text in place of another; and the diagnostic itself, as JSON. */
+/* A change that a diagnostic proposes: a text in place of another; and the diagnostic itself, as
+   JSON. */
 typedef struct ServiceFix {
     Utf16Position from, to;
     const char   *replacement, *diagnostic;
@@ -55,19 +56,20 @@ typedef struct ServiceQuestion {
     size_t            fix_count;
 } ServiceQuestion;
 
-/* The result, until the next call; NULL: there is no such question, or it is refused. */
+/* Returns the result, until the next call; NULL: there is no such question, or it is refused. */
 const char *service_answer(Service *service, const char *question, const ServiceQuestion *about);
 /* Tells whether there is a question of this name. */
 bool service_knows(const char *question);
-/* Why the last question was refused; NULL: there is none of this name. */
+/* Returns why the last question was refused; NULL: there is none of this name. */
 const char *service_refusal(const Service *service);
 
-/* An array of the diagnostics of a document: those that reading it finds, and those of a whole check, which may take
-   long.  Both live until the next call; NULL: it is not open, or there is no memory. */
+/* These return an array of the diagnostics of a document: those that reading it finds, and those of
+   a whole check, which may take long.  Both live until the next call; NULL: it is not open, or
+   there is no memory. */
 const char *service_diagnostics(Service *service, const char *path);
 const char *service_check(Service *service, const char *path);
 
-/* What the answer to `initialize` has as capabilities. */
+/* Returns the capabilities in the answer to `initialize`. */
 const char *service_capabilities(Service *service);
 
 #endif

@@ -74,7 +74,7 @@ bool find_signature(const Here *here, const CallHere *call, Signature *signature
     return true;
 }
 
-/* The parameter that the argument at the position is for. */
+/* Returns the parameter that the argument at the position is for. */
 static uint32_t active_parameter(const Signature *signature, const CallHere *call)
 {
     for (size_t i = 0; call->label && i < signature->count; i++)

@@ -18,7 +18,7 @@ typedef enum SymbolKind {
     SYMBOL_EVENT    = 24
 } SymbolKind;
 
-/* 0: a statement that is no symbol. */
+/* Returns the kind of a symbol; 0: a statement that is none. */
 static SymbolKind kind_of_symbol(SyntaxKind kind)
 {
     switch (kind) {
@@ -38,7 +38,8 @@ static SymbolKind kind_of_symbol(SyntaxKind kind)
     }
 }
 
-/* What of a statement stands in a list: its name, or its word and what follows, on one line. */
+/* Returns what of a statement stands in a list: its name, or its word and what follows, on one
+   line. */
 static const char *title_of(const Here *here, const Syntax *syntax)
 {
     enum { LONGEST = 40 };
@@ -177,7 +178,7 @@ static void add_selection(const Here *here, const Way *way, size_t count, Json *
     json_close(json, "}");
 }
 
-/* Of one position. */
+/* Answers the selection of one position. */
 void answer_selection(const Here *here, const ServiceQuestion *about, Json *json)
 {
     const Way way = find_way(&here->service->arena, here->file->syntax, here->offset);

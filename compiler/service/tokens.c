@@ -78,7 +78,7 @@ static void add_part(Colours *c, uint32_t start, uint32_t end, TokenType type, u
     c->told_column = c->column;
 }
 
-/* The same of what may have several lines. */
+/* Does the same of what may have several lines. */
 static void add_token(Colours *c, uint32_t start, uint32_t end, TokenType type, uint32_t modifiers)
 {
     const char *text = c->here->source->text;
@@ -149,7 +149,7 @@ static TokenType type_of_meaning(const Syntax *syntax)
     }
 }
 
-/* `next` is the token behind the name. */
+/* Adds a name; `next` is the token behind it. */
 static void add_name(Colours *c, const Token *token, const Token *before, const Token *next)
 {
     const NameUse *use       = use_at(c, token->span.start);

@@ -44,7 +44,7 @@ static bool find_target(const Here *here, Target *target)
 
 /* ---- definition ---- */
 
-/* The file that the `use` at the position names, or NULL. */
+/* Returns the file that the `use` at the position names, or NULL. */
 static const File *used_file(const Here *here)
 {
     const Syntax *tree = here->file->syntax;
@@ -128,7 +128,8 @@ static int compare_places(const void *a, const void *b)
     return left->span.start < right->span.start ? -1 : left->span.start > right->span.start;
 }
 
-/* All places of a target in the documents that are open and the files that these use, by paths and offsets. */
+/* Gathers all places of a target in the documents that are open and the files that these use, by
+   paths and offsets. */
 static Places gather(const Here *here, const Target *target)
 {
     Places places = {0};
@@ -214,7 +215,7 @@ static bool is_name(const Here *here, const char *word)
            tokens.items[0].span.start == 0 && tokens.items[0].span.end == length;
 }
 
-/* The text of a source with a name in place of another. */
+/* Returns the text of a source with a name in place of another. */
 static Text renamed_text(const Here *here, const Source *source, const Places *places,
                          const char *word)
 {
@@ -233,7 +234,7 @@ static Text renamed_text(const Here *here, const Source *source, const Places *p
     return text;
 }
 
-/* Where an offset is behind the change, of a text that has all the places. */
+/* Returns where an offset is behind the change, of a text that has all the places. */
 static uint32_t moved(const Places *places, uint32_t offset, size_t length)
 {
     size_t low = 0, high = places->count; /* those before `low` are before the offset */

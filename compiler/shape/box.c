@@ -172,7 +172,7 @@ Ball ball_fold(Ball ball, const Range u[3], Range w)
     return fold;
 }
 
-/* The part of a box on the kept side of a mirror, axis by axis. */
+/* Returns the part of a box on the kept side of a mirror, axis by axis. */
 static Box clip_to_half_space(Box box, const Range u[3], Range w)
 {
     for (int i = 0; i < 3; i++) {

@@ -13,10 +13,11 @@
 /* Shapes that are looked at, each where it is used, and those that are planned: what a state does for
    them should take less than a millisecond. */
 enum { MAX_VISITED = 1 << 16, MAX_PLANNED = 1 << 12 };
-/* So many stages of a sequence at most: the search for its reach takes a state some milliseconds, then. */
+/* The stages of a sequence at most: the search for its reach takes a state some milliseconds,
+   then. */
 enum { MAX_STAGES = 40 };
 
-/* What a node depends on. */
+/* The dependences of a node, as bits. */
 enum { ON_PARAMETERS = 1, ON_TIME = 2 };
 
 typedef struct Planning {
@@ -123,7 +124,7 @@ static const SequenceStage *copy_stages(const Shape *shape, Arena *arena)
     return stages;
 }
 
-/* What rules look at, and nothing that is freed when the scene is made. */
+/* Copies what rules look at, and nothing that is freed when the scene is made. */
 static Shape shape_for_rule(const Shape *shape, Arena *arena)
 {
     Shape copy       = *shape;

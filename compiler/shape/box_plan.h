@@ -52,11 +52,12 @@ void box_plan_states(ShapeBuilder *builder, const Shape *const *shapes, size_t c
    and none of these on another parameter.  False: a box that depends on it is not known by a rule. */
 bool box_plan_iterations(ShapeBuilder *builder, const Shape *shape, Node leaf, Arena *arena,
                          BoxPlan *plan);
-/* A number for planned_range, whose node is known to be of frame time. */
+/* Returns a number for planned_range, whose node is known to be of frame time. */
 PlannedNumber box_plan_number(ShapeBuilder *builder, Node node, BoxPlan *plan);
 BoxPlan       box_plan_copy(const BoxPlan *plan, Arena *arena);
-/* The boxes of all planned shapes; those that were asked for come first.  `nodes` are what the planned
-   ones have become since, `values` those that the state gives them; NULL: numbers are in their ranges. */
+/* These find the boxes of all planned shapes; those that were asked for come first.  `nodes` are
+   what the planned ones have become since, `values` those that the state gives them; NULL: numbers
+   are in their ranges. */
 void  box_plan_find(const BoxPlan *plan, const Node *nodes, const NodeValue *values, Box *boxes);
 Range planned_range(const PlannedNumber *number, uint32_t component, const Node *nodes,
                     const NodeValue *values);

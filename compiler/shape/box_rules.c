@@ -54,7 +54,8 @@ static Range number(const BoxInput *in, Node node, uint32_t component)
 
 /* ---- maps ---- */
 
-/* Entries of an orthonormal matrix never leave [-1, 1], whatever their range was derived as. */
+/* Returns the range of an entry of an orthonormal matrix, which never leaves [-1, 1], whatever it
+   was derived as. */
 static Range cosine_range(Range range)
 {
     return (Range){fmax(-1, fmin(range.low, 1)), fmin(1, fmax(range.high, -1))};
@@ -109,7 +110,7 @@ static Box box_primitive(const BoxInput *in)
     return box;
 }
 
-/* What of a box is between the corners of a shape, as far as it has some. */
+/* Returns what of a box is between the corners of a shape, as far as it has some. */
 static Box between_corners(const BoxInput *in, Box box)
 {
     const Shape *shape = in->shape;
@@ -167,7 +168,7 @@ static Box box_intersection(const BoxInput *in)
     return common;
 }
 
-/* Where the mix is 0 one of the distances is at most 0, or both are. */
+/* Bounds a morph: where the mix is 0 one of the distances is at most 0, or both are. */
 static Box box_morph(const BoxInput *in) { return hull_of_parts(in); }
 
 static Box box_choice(const BoxInput *in)
@@ -255,7 +256,7 @@ static Box box_mirror(const BoxInput *in)
 
 /* ---- all kinds ---- */
 
-/* Found where the shape is made. */
+/* Returns the box that was found where the shape is made. */
 static Box box_own(const BoxInput *in) { return in->shape->box; }
 
 typedef Box           BoxRule(const BoxInput *in);

@@ -15,7 +15,7 @@ typedef struct BoxNumbers {
     Range (*range)(const struct BoxNumbers *numbers, Node node, uint32_t component);
 } BoxNumbers;
 
-/* What a rule is given. */
+/* The arguments of a rule. */
 typedef struct BoxInput {
     const BoxNumbers *numbers;
     const Shape      *shape;
@@ -23,7 +23,7 @@ typedef struct BoxInput {
     size_t            stride;
 } BoxInput;
 
-/* The shapes that a box depends on: the children, or what a declaration lies within. */
+/* Returns the shapes that a box depends on: the children, or what a declaration lies within. */
 uint32_t     box_part_count(const Shape *shape);
 const Shape *box_part(const Shape *shape, uint32_t index);
 /* The numbers that the rule of a shape may ask for; and those of a similarity, behind others. */
@@ -33,7 +33,7 @@ uint32_t map_box_nodes(const Map *map, Node *nodes, uint32_t count);
 /* Tells whether there is a rule: else the box is found where the shape is made. */
 bool has_box_rule(const Shape *shape);
 Box  shape_box(const BoxInput *input);
-/* A map without `first`; the box around the image of a box under a similarity. */
+/* These return a map without `first`; the box around the image of a box under a similarity. */
 MapRange map_range_of(const BoxNumbers *numbers, const Map *map);
 Box      map_box_of(const MapRange *range, Box box);
 

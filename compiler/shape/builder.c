@@ -63,7 +63,7 @@ bool shape_is_curved(const Shape *shape) { return shape_info[shape->kind].curved
 
 /* ---- shapes ---- */
 
-/* What a shape takes over from each of its parts, whatever its kind. */
+/* Takes over what a shape has from each of its parts, whatever its kind. */
 static void take_over(Shape *shape, const Shape *part)
 {
     shape->slope         = fmax(shape->slope, part->slope);

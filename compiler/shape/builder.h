@@ -28,20 +28,20 @@ typedef struct ShapeBuilder {
     bool   stopped;      /* a limit was reached, and reported: nothing more is */
 } ShapeBuilder;
 
-/* A shape with these children, and what most kinds take over from them. */
+/* Returns a shape with these children, and what most kinds take over from them. */
 Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span span,
                  const Shape *const *children, uint32_t count);
-/* The same with one child. */
+/* Returns the same with one child. */
 Shape *shape_around(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *child,
                     Span span);
-/* The same shape by the name that the author gives it, unless it has one or that is NULL. */
+/* Returns the same shape by the name that the author gives it, unless it has one or that is NULL. */
 const Shape *shape_named(ShapeBuilder *builder, const Shape *shape, const char *given);
-/* What it takes over from a part that is not among its children. */
+/* Takes over what a shape has from a part that is not among its children. */
 void shape_takes_over(Shape *shape, const Shape *part);
-/* What is known of its formula, to be changed: no other shape has the same. */
+/* Returns what is known of its formula, to be changed: no other shape has the same. */
 FieldFacts *own_field_facts(ShapeBuilder *builder, Shape *shape);
 
-/* Ranges of frame-time nodes over all values of the parameters. */
+/* Returns the ranges of frame-time nodes over all values of the parameters. */
 Range node_range(ShapeBuilder *builder, Node node, uint32_t component);
 /* The same, for the rules of boxes; and the box by the rule of its kind. */
 typedef struct BuilderNumbers {
@@ -51,8 +51,8 @@ typedef struct BuilderNumbers {
 BuilderNumbers builder_numbers(ShapeBuilder *builder);
 Box            builder_box(ShapeBuilder *builder, const Shape *shape);
 
-/* The region in which a distance is found, for the box of its surface: for meshes it is larger, so that no corner of the
-   distance is at the surface. */
+/* Returns the region in which a distance is found, for the box of its surface: for meshes it is
+   larger, so that no corner of the distance is at the surface. */
 Box builder_region(const ShapeBuilder *builder, Box box);
 
 /* Reports a distance of which nothing is proven, below something (`what`) that moves a surface. */

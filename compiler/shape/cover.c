@@ -21,7 +21,7 @@ static const CoverCell everything = {.outside = true};
 
 static double middle(Range range) { return 0.5 * (range.low + range.high); }
 
-/* The middle of three ranges; returns how far they leave it, rounding included. */
+/* Returns the middle of three ranges; returns how far they leave it, rounding included. */
 static double middle_of(const Range range[3], double centre[3])
 {
     double leave = 0, size = 0;
@@ -33,7 +33,7 @@ static double middle_of(const Range range[3], double centre[3])
     return leave * (1 + ROUNDING) + ROUNDING * size;
 }
 
-/* The cell that holds a ball for every centre in the given ranges. */
+/* Returns the cell that holds a ball for every centre in the given ranges. */
 static CoverCell cell_about(const Range centre[3], double radius, bool outside)
 {
     CoverCell cell   = {.outside = outside};
@@ -88,9 +88,9 @@ Box cover_box(const Cover *cover)
 /* ---- maps ---- */
 
 /*
- * The image under z -> s z / |z|^2: with D = |c|^2 - r^2 the ball of centre s c / D and radius
- * s r / |D|.  A ball around the pole (D < 0) goes to what is outside of that ball, and what is
- * outside of a ball around the pole goes to the inside.
+ * Returns the image under z -> s z / |z|^2: with D = |c|^2 - r^2 the ball of centre s c / D and
+ * radius s r / |D|. A ball around the pole (D < 0) goes to what is outside of that ball, and what
+ * is outside of a ball around the pole goes to the inside.
  */
 static CoverCell invert(CoverCell cell, Range s)
 {
@@ -184,8 +184,8 @@ Ball cover_ball(const Cover *cover)
     return cluster_of(cover, 0, cover->count).ball;
 }
 
-/* Parts the cells at the middle of the axis on which their centres are spread most; where all
-   centres are one point, by their numbers. */
+/* Parts the cells at the middle of the axis on which their centres are spread most; if all centres
+   are one point, by their numbers. */
 static size_t partition(Cover *cover, const Cluster *cluster)
 {
     int axis = 0;
@@ -206,7 +206,7 @@ static size_t partition(Cover *cover, const Cluster *cluster)
     return split ? low : cluster->from + (cluster->to - cluster->from) / 2;
 }
 
-/* What is worth parting: a single ball is not. */
+/* Returns how much a cluster is worth parting: a single ball is not. */
 static double size_of(const Cluster *cluster)
 {
     return cluster->to - cluster->from > 1 ? cluster->ball.radius : -1;
@@ -234,7 +234,7 @@ static void rise(Cluster *heap, size_t count, Cluster cluster)
     heap[hole] = cluster;
 }
 
-/* From all balls in one, the largest cluster is parted until there are enough. */
+/* Parts the largest cluster, from all balls in one, until there are enough. */
 static void merge_balls(Arena *arena, Cover *cover, size_t from)
 {
     size_t   count = 1, most = MAX_CELLS - from;

@@ -30,9 +30,10 @@ typedef struct MapRange {
 
 /* Adds a finite box. */
 void cover_add(Arena *arena, Cover *cover, Box box);
-/* What has u.x <= w, and its mirror image, for a unit vector and an offset in their ranges. */
+/* Covers what has u.x <= w, and its mirror image, for a unit vector and an offset in their ranges. */
 void cover_fold(Arena *arena, Cover *cover, const Range u[3], Range w);
-/* What is outside of a sphere, and its image in that, for centres and radii in their ranges. */
+/* Covers what is outside of a sphere, and its image in that, for centres and radii in their
+   ranges. */
 void cover_fold_sphere(Arena *arena, Cover *cover, const Range centre[3], Range radius);
 void cover_map(Cover *cover, const MapRange *map);
 Box  cover_box(const Cover *cover);

@@ -82,7 +82,7 @@ static void rotate(Graph *g, Node axis, Node angle, Node rows[3])
 
 static bool is_known(const Graph *graph, Node node) { return graph->items[node].op == OP_CONSTANT; }
 
-/* Rows that are known, found in a graph of their own: nothing needs what leads to them.  False: the
+/* Finds rows that are known in a graph of their own: nothing needs what leads to them.  False: the
    axis or the angle depends on the frame. */
 static bool rotate_known(ShapeBuilder *builder, Node axis, Node angle, Node rows[3])
 {
@@ -108,7 +108,7 @@ const Map *map_rotation(ShapeBuilder *builder, Node axis, Node angle)
     return map;
 }
 
-/* The reflection x - 2 (u.x - w) u. */
+/* Returns the reflection x - 2 (u.x - w) u. */
 const Map *map_reflection(ShapeBuilder *builder, Node normal, Node offset)
 {
     Graph *g   = builder->graph;
@@ -127,9 +127,9 @@ const Map *map_reflection(ShapeBuilder *builder, Node normal, Node offset)
 }
 
 /*
- * The rotation that takes one direction to another, by two reflections: first in the plane between
- * from and from+to, which maps from to -to, then in the plane perpendicular to `to`.  Opposite
- * directions leave the first plane undefined: then any perpendicular axis serves.
+ * Returns the rotation that takes one direction to another, by two reflections: first in the plane
+ * between from and from+to, which maps from to -to, then in the plane perpendicular to `to`.
+ * Opposite directions leave the first plane undefined: then any perpendicular axis serves.
  */
 const Map *map_alignment(ShapeBuilder *builder, Node from, Node to)
 {
@@ -183,7 +183,7 @@ Node map_apply(ShapeBuilder *builder, const Map *f, Node point)
 
 /* ---- products and inverses ---- */
 
-/* Row i of a product A B is the sum over j of A_ij times row j of B. */
+/* Returns row i of a product A B: the sum over j of A_ij times row j of B. */
 static Node product_row(Graph *g, Node row, const Node rows[3])
 {
     Node sum = NODE_NONE;
@@ -219,7 +219,7 @@ static bool is_identity(ShapeBuilder *builder, const Map *map)
     return identity;
 }
 
-/* f(g(x)), f without maps before it: what can be one map becomes one. */
+/* Returns f(g(x)), f without maps before it: what can be one map becomes one. */
 static const Map *prepend(ShapeBuilder *builder, const Map *f, const Map *g)
 {
     if (is_identity(builder, f))

@@ -13,7 +13,7 @@
    are one; or so near that the pole of the product is too far away to be computed with. */
 static const double POLES_MEET = 1e-12, POLES_TOO_NEAR = 1.0 / 64;
 
-/* R^T. */
+/* Returns R^T. */
 static Map *rotated_back(ShapeBuilder *builder, const Map *f)
 {
     Map *map = map_new(builder);
@@ -29,7 +29,7 @@ const Map *map_inversion(ShapeBuilder *builder, Node center, Node radius)
     return map;
 }
 
-/* x = pole + scale R^T (y - shift) / |y - shift|^2: of the same form. */
+/* Returns x = pole + scale R^T (y - shift) / |y - shift|^2: of the same form. */
 const Map *inversion_inverse(ShapeBuilder *builder, const Map *f)
 {
     Map *map   = rotated_back(builder, f);
@@ -39,7 +39,7 @@ const Map *inversion_inverse(ShapeBuilder *builder, const Map *f)
     return map;
 }
 
-/* With |y - pole| = scale(g) |x - pole'|, pole' = g^-1(pole). */
+/* Returns an inversion after a similarity: |y - pole| = scale(g) |x - pole'|, pole' = g^-1(pole). */
 static const Map *inversion_after_similarity(ShapeBuilder *builder, const Map *f, const Map *g)
 {
     Map *map   = map_new(builder);
@@ -74,9 +74,10 @@ static const Map *concentric_inversions(ShapeBuilder *builder, const Map *f, con
 }
 
 /*
- * Otherwise, with d from the pole of f to the shift of g and M the mirror x - 2 (d.x) d / d.d:
- * the pole is g^-1(pole(f)), infinity goes to f(shift(g)), the scale is scale(f) scale(g) / d.d
- * and the rows are R(f) M R(g), as both sides near infinity show.
+ * Returns the product of inversions with different poles.  With d from the pole of f to the shift
+ * of g and M the mirror x - 2 (d.x) d / d.d: the pole is g^-1(pole(f)), infinity goes to
+ * f(shift(g)), the scale is scale(f) scale(g) / d.d and the rows are R(f) M R(g), as both sides
+ * near infinity show.
  */
 static const Map *eccentric_inversions(ShapeBuilder *builder, const Map *f, const Map *g,
                                        Node offset, Node square)
@@ -154,7 +155,7 @@ static Node point_of(ShapeBuilder *builder, Quaternion q, double factor)
     return graph_vec3(builder->graph, factor * q.i, factor * q.j, factor * q.k);
 }
 
-/* The rows of x -> q x q^-1, or of its opposite, orthonormal whatever the length of q. */
+/* Finds the rows of x -> q x q^-1, or of its opposite, orthonormal whatever the length of q. */
 static void rows_of(ShapeBuilder *builder, Quaternion q, double sign, Node rows[3])
 {
     double     factor = copysign(1, sign) / square_of(q);
@@ -171,7 +172,8 @@ static void rows_of(ShapeBuilder *builder, Quaternion q, double sign, Node rows[
                          factor * columns[2].k);
 }
 
-/* math.md, section 2.1: Re(a~ c) = Re(b~ d) = 0, and a~ d + c~ b real and not 0. */
+/* Returns why a matrix is refused (math.md, section 2.1): Re(a~ c) = Re(b~ d) = 0, and a~ d + c~ b
+   real and not 0. */
 static const char *refusal(ShapeBuilder *builder, Quaternion a, Quaternion b, Quaternion c,
                            Quaternion d)
 {

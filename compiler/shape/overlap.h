@@ -9,8 +9,8 @@
 #include "compiler/base/arena.h"
 #include "compiler/graph/range.h"
 
-/* The most boxes around one point when each is larger by `grown` on every side, or somewhat more: it is
-   found in time that is about linear.  Empty boxes are around none. */
+/* Returns the most boxes around one point when each is larger by `grown` on every side, or somewhat
+   more: it is found in time that is about linear.  Empty boxes are around none. */
 uint32_t max_overlap(const Box *boxes, uint32_t count, double grown, Arena *scratch);
 
 #endif

@@ -30,7 +30,7 @@ static void print_box(Box box, Text *out)
         text_format(out, " %.6g..%.6g", box.axis[i].low, box.axis[i].high);
 }
 
-/* Blend, and the numbers of the kind (shape.h). */
+/* Prints blend, and the numbers of the kind (shape.h). */
 static void print_values(const Scene *scene, const Shape *shape, Text *out)
 {
     if (shape->blend.width != NODE_NONE)
@@ -44,7 +44,7 @@ static void print_values(const Scene *scene, const Shape *shape, Text *out)
         }
 }
 
-/* "similarity" or "inversion", and the numbers of the map (shape.h). */
+/* Prints "similarity" or "inversion", and the numbers of the map (shape.h). */
 static void print_map(const Scene *scene, const Map *map, Text *out)
 {
     text_add(out, map->pole == NODE_NONE ? "similarity" : "inversion");

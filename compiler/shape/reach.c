@@ -61,7 +61,7 @@ static void swap(Branch *a, Branch *b)
     *b       = c;
 }
 
-/* False when the heap is full: then no more branches may be opened. */
+/* Adds a branch; false when the heap is full: then no more branches may be opened. */
 static bool push(ReachSearch *search, Branch branch)
 {
     if (branch.stages == 0)
@@ -92,7 +92,7 @@ static Branch pop(ReachSearch *search)
     return top;
 }
 
-/* What the set after the branch's last stage is made of. */
+/* Opens what the set after the branch's last stage is made of. */
 static bool open_branch(ReachSearch *search, const Branch *branch)
 {
     const ReachStage *stage  = &search->stages[branch->stages - 1];
@@ -121,7 +121,7 @@ static bool open_branch(ReachSearch *search, const Branch *branch)
     return push(search, before);
 }
 
-/* No less than the largest u.x over the set after `count` stages. */
+/* Returns no less than the largest u.x over the set after `count` stages. */
 static double find_support(const ReachStage *stages, uint32_t count, const double u[3],
                            double tolerance)
 {

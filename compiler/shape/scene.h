@@ -16,7 +16,7 @@ typedef struct SceneBeam {
     Node ends[2], radii[2];
 } SceneBeam;
 
-/* What a `show` shows; or, where many are alike, all that are lowered as one. */
+/* The shape of a `show`; or, if many are alike, all that are lowered as one. */
 typedef struct Component {
     const char *name;
     size_t      first, count; /* of those in Scene.shown that it has: the first, and how many */
@@ -140,7 +140,7 @@ typedef struct Scene {
     Box        box; /* around all components */
 } Scene;
 
-/* The scene as indented text, for `krs dump --after=scene`. */
+/* Prints the scene as indented text, for `krs dump --after=scene`. */
 void scene_print(const Scene *scene, const Sources *sources, Text *out);
 
 #endif

@@ -16,14 +16,14 @@ static Box kernel_box(const BoxInput *in, const SequenceStage *stage)
                      : in->shape->children[stage->kernel]->box;
 }
 
-/* A number that does not move in its range, or none. */
+/* Reads a number that does not move in its range, or none. */
 static bool read_number(Range range, double *number)
 {
     *number = 0.5 * (range.low + range.high);
     return range.high - range.low <= 1e-12 * (1 + fabs(*number));
 }
 
-/* The numbers of a stage; false when some are not known. */
+/* Reads the numbers of a stage; false when some are not known. */
 static bool read_stage(const BoxInput *in, const SequenceStage *stage, ReachStage *reach)
 {
     bool known = true;
@@ -51,7 +51,7 @@ static bool read_stage(const BoxInput *in, const SequenceStage *stage, ReachStag
     return known;
 }
 
-/* What all stages up to one have made, from what those before it had. */
+/* Grows by what all stages up to one have made, from what those before it had. */
 static void grow(const BoxInput *in, const SequenceStage *stage, Box *box, Ball *ball)
 {
     if (stage->kind == SEQUENCE_KERNEL) {

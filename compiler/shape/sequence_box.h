@@ -8,7 +8,8 @@
 #include "compiler/shape/box_rules.h"
 #include "compiler/shape/reach.h"
 
-/* `reach` has room for the stages; `bounds` gets those of the stages, unless it is NULL. */
+/* Returns the box; `reach` has room for the stages; `bounds` gets those of the stages, unless it is
+   NULL. */
 Box sequence_box(const BoxInput *in, ReachStage *reach, LevelBound *bounds);
 /* The numbers that are asked for: at most MAX_STAGE_NODES of each stage. */
 enum { MAX_STAGE_NODES = 5 };

@@ -15,7 +15,7 @@
 typedef struct Shape Shape;
 typedef struct Map   Map;
 
-/* What an expression owes it to that its slope has no bound: a place of the text, and an operation. */
+/* The reason why the slope of an expression has no bound: a place of the text, and an operation. */
 typedef struct Blame {
     Span span;
     Op   op;
@@ -37,10 +37,10 @@ typedef enum ShapeKind {
     SHAPE_COUNT
 } ShapeKind;
 
-/* What a kind leaves of its parts. */
+/* The part of its operands that a kind leaves. */
 typedef enum Leaves { LEAVES_UNKNOWN, LEAVES_ALL, LEAVES_SOME, LEAVES_MIRRORED } Leaves;
 
-/* What a row of shapes.def says of all shapes of a kind. */
+/* The properties of all shapes of a kind, as its row of shapes.def says them. */
 typedef struct ShapeInfo {
     const char *name, *rule;
     int         parts; /* or SEVERAL */
@@ -64,7 +64,7 @@ struct Map {
     const Map *first; /* NULL: nothing; similarities have none */
 };
 
-/* How two distances are joined; graph/blends.def has a row for each. */
+/* The ways to join two distances; graph/blends.def has a row for each. */
 typedef enum BlendKind {
 #define BLEND(name, ...) BLEND_##name,
 #include "compiler/graph/blends.def"
@@ -79,7 +79,7 @@ typedef struct BlendInfo {
     double      most;  /* the same for any number of operands */
 } BlendInfo;
 extern const BlendInfo blend_info[BLEND_COUNT];
-/* What a kind makes of more than two operands (blends.def). */
+/* The result of a kind of blend for more than two operands (blends.def). */
 typedef struct BlendMany {
     enum { MANY_PAIRS, MANY_SHARE, MANY_IN_ROW } way;
     Op of_four, of_eight; /* SHARE: operations on distances in vectors */
@@ -94,7 +94,7 @@ double blend_acts(BlendKind kind, double n);
 /* Tells whether what an operand adds falls by e with each width. */
 bool blend_fades(BlendKind kind);
 
-/* How the shapes of a metasurface fade; falloffs.def has a row for each. */
+/* The ways in which shapes of a metasurface fade; falloffs.def has a row for each. */
 typedef enum FalloffKind {
 #define FALLOFF(name, spelling, steepest, meaning) FALLOFF_##name,
 #include "compiler/shape/falloffs.def"
@@ -126,7 +126,7 @@ typedef struct LevelBound {
     Ball ball; /* may be the tighter of the two */
 } LevelBound;
 
-/* What is known of the formula of a field, or of a primitive whose slope was derived. */
+/* The facts about the formula of a field, or of a primitive whose slope was derived. */
 typedef struct FieldFacts {
     Box      region; /* over which its slope was derived; infinite: over all space */
     uint32_t degree; /* of a formula that is a polynomial, else 0, */
@@ -235,7 +235,8 @@ struct Shape {
     const LevelBound    *bounds; /* of the stages, for all values of the parameters */
 };
 
-/* An iteration as what it is an iteration of; any other shape as it is: for what does not ask for numbers. */
+/* Returns an iteration as what it is an iteration of; any other shape as it is: for what does not
+   ask for numbers. */
 static inline const Shape *shape_in_iterations(const Shape *shape)
 {
     return shape->iterated ? shape->iterated : shape;

@@ -31,7 +31,7 @@ static const double trial_times[TRIALS] = {0, 1.618, 100.7}, trial_steps[TRIALS]
 
 uint32_t state_slope_cells(Box box) { return box_is_finite(box) ? FRAME_CELLS : 1; }
 
-/* Above this, single precision has no room for quotients by it. */
+/* Returns a slope; above this, single precision has no room for quotients by it. */
 double state_slope_upward(double slope)
 {
     const double MOST = 1e30, SLACK = 1 + 0x1p-20; /* parameters are rounded, too */
@@ -78,7 +78,7 @@ static void try_values(const Parameters *parameters, Graph *plain, int trial, bo
     "a choice may jump from one value to the other; `min`, `max`, `abs` and `clamp` do not, nor " \
     "does `mix(a, b, smoothstep(-0.1, 0.1, x))`"
 
-/* What an operation is steep by, and what has a bound instead. */
+/* The operations that are steep, with what has a bound instead. */
 static const struct {
     Op          op;
     const char *why;
@@ -134,7 +134,7 @@ static Blame blame_of(ShapeBuilder *builder, const Graph *plain, Node node, Span
     return blame;
 }
 
-/* The graph with ranges of its own, for try_values. */
+/* Returns the graph with ranges of its own, for try_values. */
 static Graph with_own_ranges(const Graph *plain, Arena *scratch)
 {
     Graph own            = *plain;
@@ -171,7 +171,7 @@ static bool same_box(Box a, Box b)
     return same;
 }
 
-/* The slot of the slope of a formula over a region: equal ones have one. */
+/* Returns the slot of the slope of a formula over a region: equal ones have one. */
 static Node slope_slot(ShapeBuilder *builder, Node formula, Box region, Span span)
 {
     StateSlopes *slopes = builder->slopes;

@@ -16,21 +16,21 @@ typedef struct Steepness {
    it has none.  `span` is its place. */
 bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
                 Steepness *found);
-/* The slope of an expression over all space and in all states; infinite: it has no bound. */
+/* Returns the slope of an expression over all space and in all states; infinite: it has no bound. */
 double slope_everywhere(ShapeBuilder *builder, Node formula);
 /* Says in a diagnostic why an operation has no bound on its slope, and what to write instead. */
 void explain_steep(ShapeBuilder *builder, Diag *diag, Blame blame);
 Node steepness_node(Graph *graph, const Steepness *slope);
-/* What grows so fast, made safe. */
+/* Makes what grows so fast safe. */
 Node divide_by_steepness(Graph *graph, Node distance, const Steepness *slope);
 
-/* What grows `slope` times as fast as distance, made safe. */
+/* Makes what grows `slope` times as fast as distance safe. */
 Node divide_by_slope(Graph *graph, Node distance, double slope);
 
 /* The slot has a number of single precision that is no less than the slope; infinite: there is no
    bound. */
 double state_slope_upward(double slope);
-/* Into how many cells the region is cut at most. */
+/* Returns the number of cells into which the region is cut at most. */
 uint32_t state_slope_cells(Box region);
 
 #endif

@@ -31,7 +31,8 @@ static void find_blocks(Flow *flow, Dominators *dominators)
     }
 }
 
-/* The number of operands of a branch that may be labels, and the block that such a one begins. */
+/* Returns the number of operands of a branch that may be labels, and the block that such a one
+   begins. */
 static uint32_t targets(const Flow *flow, uint32_t block)
 {
     return flow->module->body.items[flow->end[block]].id_count;
@@ -74,7 +75,7 @@ static void order_blocks(Flow *flow)
         flow->number[flow->order[i]] = i;
 }
 
-/* The nearest block that dominates both. */
+/* Returns the nearest block that dominates both. */
 static uint32_t meet(const Flow *flow, uint32_t a, uint32_t b)
 {
     while (a != b)

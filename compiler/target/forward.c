@@ -16,7 +16,7 @@
 
 enum { MAX_MEMBERS = 16 }; /* how deep a pointer may reach into a variable */
 
-/* What happens to a variable. */
+/* The uses of a variable. */
 typedef struct Usage {
     size_t
          change; /* 1 + the last instruction that changes it, in the order of the module; 0: none */

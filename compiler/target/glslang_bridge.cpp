@@ -141,9 +141,9 @@ BridgeResult bridge_compile(const char *glsl, uint32_t **words, size_t *word_cou
     return result;
 }
 
-/* glslang makes its tables of built-in names, under its lock, when it compiles the first shader of
-   a version of GLSL.  An exception then leaves them incomplete.  So an empty shader of the shaders'
-   version is compiled first. */
+/* Starts glslang, which makes its tables of built-in names, under its lock, when it compiles the
+   first shader of a version of GLSL.  An exception then leaves them incomplete.  So an empty shader
+   of the shaders' version is compiled first. */
 static BridgeResult start(bool *started, char **log)
 {
     static const char first[] = "#version 440\nlayout(local_size_x = 1) in;\nvoid main() {}\n";
@@ -195,8 +195,8 @@ struct SpirvFree {
 };
 template <typename Thing> using Owned = std::unique_ptr<Thing, SpirvFree>;
 
-/* `names`: whether messages have readable names.  These are slow to make: if glslang gave a
-   thousand values one name, each new name is compared with all before it. */
+/* Runs the validator; `names`: whether messages have readable names.  These are slow to make: if
+   glslang gave a thousand values one name, each new name is compared with all before it. */
 static spv_result_t run_validator(const uint32_t *words, size_t word_count, bool names,
                                   spv_context context, spv_diagnostic *diagnostic)
 {

@@ -18,15 +18,15 @@ typedef enum BridgeResult { BRIDGE_OK, BRIDGE_REFUSED, BRIDGE_NO_MEMORY } Bridge
    BRIDGE_REFUSED *log is malloc'ed or, if memory ran out, NULL.  After BRIDGE_NO_MEMORY glslang
    must be stopped and started again, while no other thread compiles. */
 BridgeResult bridge_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log);
-/* Start and stop glslang, before and after all calls of bridge_compile.  A start that failed needs
-   no stop; with glslang from 14 on no later one succeeds. */
+/* These start and stop glslang, before and after all calls of bridge_compile.  A start that failed
+   needs no stop; with glslang from 14 on no later one succeeds. */
 BridgeResult bridge_start(void);
 void         bridge_stop(void);
 /* Validates SPIR-V.  On BRIDGE_REFUSED *log has the validator's message, malloc'ed, or is NULL. */
 BridgeResult bridge_validate(const uint32_t *words, size_t word_count, char **log);
-/* The version of SPIRV-Tools. */
+/* Returns the version of SPIRV-Tools. */
 const char *bridge_tools_version(void);
-/* SPIR-V as assembly text, malloc'ed; NULL if it is no SPIR-V, or without memory. */
+/* Returns SPIR-V as assembly text, malloc'ed; NULL if it is no SPIR-V, or without memory. */
 char *bridge_disassemble(const uint32_t *words, size_t word_count);
 
 #ifdef __cplusplus

@@ -223,7 +223,7 @@ static void note_values(Inliner *inliner)
         module->same[inliner->values.items[i].id] = inliner->values.items[i].other;
 }
 
-/* Private globals become variables of the only function that there is. */
+/* Turns private globals into variables of the only function that there is. */
 static void move_private_globals(ShaderModule *module)
 {
     size_t kept = 0;
@@ -243,7 +243,7 @@ static void move_private_globals(ShaderModule *module)
     module->globals.count = kept;
 }
 
-/* The function of the entry point: its index behind its OpFunction; 0: there is none. */
+/* Returns the function of the entry point: its index behind its OpFunction; 0: there is none. */
 static size_t find_entry(const Inliner *inliner)
 {
     const ShaderModule *module = inliner->module;

@@ -80,7 +80,7 @@ typedef struct ShaderModule {
     uint32_t    *root; /* for each id: the variable of the entry point to which it points, or 0 */
 } ShaderModule;
 
-/* The id that an instruction defines; 0: none. */
+/* Returns the id that an instruction defines; 0: none. */
 static inline uint32_t result_of(const Instruction *instruction)
 {
     return instruction->result_at ? instruction->words[instruction->result_at] : 0;
@@ -89,11 +89,11 @@ static inline uint32_t result_of(const Instruction *instruction)
 /* Takes a module apart.  The words must live as long, and may be changed.  Returns false if they are
    no SPIR-V. */
 bool module_read(ShaderModule *module, uint32_t *words, size_t count);
-/* The id that an id stands for. */
+/* Returns the id that an id stands for. */
 uint32_t module_resolve(const ShaderModule *module, uint32_t id);
 /* Copies an instruction, with words of its own. */
 Instruction module_copy(const ShaderModule *module, const Instruction *instruction);
-/* A new instruction of these words.  Word `result_at` is its result; those listed are ids. */
+/* Makes a new instruction of these words.  Word `result_at` is its result; those listed are ids. */
 Instruction module_make(const ShaderModule *module, uint16_t opcode, const uint32_t *operands,
                         uint16_t count, uint16_t result_at, const uint16_t *ids, uint16_t id_count);
 

@@ -33,7 +33,7 @@ static bool is_atomic(const Instruction *instruction)
     return instruction->opcode >= SPIRV_ATOMIC_FIRST && instruction->opcode <= SPIRV_ATOMIC_LAST;
 }
 
-/* The variable of the entry point in which an instruction stores, or 0. */
+/* Returns the variable of the entry point in which an instruction stores, or 0. */
 static uint32_t stored_variable(const ShaderModule *module, const Instruction *instruction)
 {
     return instruction->opcode == SPIRV_STORE ? module->root[instruction->words[1]] : 0;

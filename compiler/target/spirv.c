@@ -81,7 +81,7 @@ void spirv_prepare(void)
 #define WORD(number)  #number
 #define WORDS(number) WORD(number)
 
-/* glslang is linked statically, so its version is known when krs is compiled. */
+/* Returns the version of glslang, which is linked statically, so it is known when krs is compiled. */
 const char *spirv_glslang_version(void)
 {
     return WORDS(GLSLANG_VERSION_MAJOR) "." WORDS(GLSLANG_VERSION_MINOR) "." WORDS(
@@ -90,7 +90,8 @@ const char *spirv_glslang_version(void)
 
 const char *spirv_tools_version(void) { return bridge_tools_version(); }
 
-/* A log of the names of the shader and of the tool, and the tool's message, which is freed. */
+/* Returns a log of the names of the shader and of the tool, and the tool's message, which is
+   freed. */
 static char *name_log(const char *entry, const char *tool, char *message)
 {
     size_t length = strlen(entry) + strlen(tool) + strlen(message) + 32;

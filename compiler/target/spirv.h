@@ -12,9 +12,9 @@
    Thread-safe. */
 KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
                         char **log);
-/* SPIR-V as assembly text, malloc'ed; NULL if it is no SPIR-V, or without memory. */
+/* Returns SPIR-V as assembly text, malloc'ed; NULL if it is no SPIR-V, or without memory. */
 char *spirv_disassemble(const uint32_t *words, size_t word_count);
-/* Must be called before and after every spirv_compile.  Pairs may nest, and may be called in
+/* These must be called before and after every spirv_compile.  Pairs may nest, and may be called in
    different threads.  Between them glslang keeps the tables that the first spirv_compile makes,
    which takes longer than to compile a shader.  spirv_start itself takes no time. */
 void spirv_start(void);

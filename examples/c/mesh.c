@@ -17,7 +17,7 @@ static int compare_edges(const void *a, const void *b)
     return memcmp(a, b, 2 * sizeof(uint32_t));
 }
 
-/* Each edge is there once in each direction. */
+/* Tells whether each edge is there once in each direction. */
 static bool is_closed(const KrsMesh *mesh)
 {
     size_t count        = 3 * mesh->triangle_count;
@@ -38,7 +38,7 @@ static bool is_closed(const KrsMesh *mesh)
     return closed;
 }
 
-/* The sum of those of the tetrahedra from the origin. */
+/* Returns the sum of those of the tetrahedra from the origin. */
 static double volume_of(const KrsMesh *mesh)
 {
     double volume = 0;
@@ -62,7 +62,7 @@ static void report(const KrsMesh *mesh)
                mesh->unresolved_at[0], mesh->unresolved_at[1], mesh->unresolved_at[2]);
 }
 
-/* Told now and then; it may end the work. */
+/* Prints the progress now and then; it may end the work. */
 static bool report_progress(void *user, double fraction)
 {
     (void)user;

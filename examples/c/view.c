@@ -18,7 +18,8 @@
 #include <krs/camera.h>
 #include <krs/vulkan.h>
 
-/* While something moves, each side of a picture has COARSE times fewer pixels. */
+/* The samples of a picture, and the factor by which each of its sides has fewer pixels while
+   something moves. */
 enum { SAMPLES = 8, COARSE = 4 };
 
 /* A scene on a device.  There are two: one is shown, one compiles; then they change places. */

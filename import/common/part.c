@@ -51,7 +51,8 @@ void part_move(Part *part, const Transform *transform)
     part->transform = transform_chain(&part->transform, transform);
 }
 
-/* `n` as of PART_ROUND: the radius changes from one end to the other. */
+/* Tells whether a point is in a round part, with `n` as of PART_ROUND: the radius changes from one
+   end to the other. */
 static bool is_in_round(const double n[6], const double p[3])
 {
     double off[3], along = dot3(n, p);
@@ -149,7 +150,7 @@ static int items_painted(const Part *part)
     return painted;
 }
 
-/* The names of what it is made of, on lines that are not too long. */
+/* Writes the names of what it is made of, on lines that are not too long. */
 static void write_join(Text *text, const Part *part, const char *const *names)
 {
     static const char *const functions[] = {"union(", "intersection(", "difference(", "xor(",
@@ -207,7 +208,7 @@ static const char *write_let(PartWriter *writer, Part *part, const char *const *
     return name.bytes;
 }
 
-/* `around` is the look of what it is a part of. */
+/* Writes a part; `around` is the material of what it is a part of. */
 static const char *write_part(PartWriter *writer, Part *part, const char *around)
 {
     int         inside = items_painted(part);

@@ -41,8 +41,7 @@ typedef struct PartInside {
     double numbers[6];
 } PartInside;
 
-/* What stands upright on a figure: from z = -height / 2 to height / 2 in its
- * own space. */
+/* A column upon a figure: from z = -height / 2 to height / 2 in its own space. */
 typedef struct PartColumn {
     struct Part *figure; /* NULL: it is something else */
     double       height;
@@ -99,7 +98,7 @@ Part *part_new(Import *import, unsigned line, const char *stem);
 Part *part_shape(Import *import, unsigned line, const char *stem, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 void part_add(Import *import, Part *part, Part *item);
-/* `what`, to which methods are added that see it as it is placed. */
+/* Returns `what`, to which methods are added that see it as it is placed. */
 Part *part_around(Import *import, unsigned line, const char *stem, Part *what);
 /* Places it anew, behind where it is. */
 void part_move(Part *part, const Transform *transform);
@@ -108,14 +107,14 @@ bool part_holds(const Part *part, const double point[3]);
 /* Tells whether all that it is made of has looks; nothing may be added to it after that. */
 bool part_is_painted(Part *part);
 
-/* "[1, 2, 3]", "2.5": rounded numbers, to be put into formats. */
+/* Returns "[1, 2, 3]", "2.5": rounded numbers, to be put into formats. */
 const char *import_vector_text(Import *import, const double *numbers, int count);
 const char *import_number_text(Import *import, double number);
 
 /* Adds a `let` for the part and all that it needs.  Returns false after a
  * refusal. */
 bool part_write(PartWriter *writer, Part *part);
-/* The same, and then shows it; `methods` are those of the scene as a whole. */
+/* Does the same, and then shows it; `methods` are those of the scene as a whole. */
 bool part_show(PartWriter *writer, Part *part, const char *methods);
 
 #endif

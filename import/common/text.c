@@ -11,7 +11,7 @@
 
 enum { MAX_NOTES = 100 };
 
-/* What a file says moves no cursor, and ends no comment. */
+/* Returns what a file says so that it moves no cursor, and ends no comment. */
 static const char *harmless(Arena *arena, const char *format, va_list arguments)
 {
     Text words = {.arena = arena};

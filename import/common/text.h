@@ -9,13 +9,13 @@
 #include "compiler/base/text.h"
 #include "krs/krs.h"
 
-/* From this offset on, the text of the scene comes from this line of the file. */
+/* An offset from which on the text of the scene comes from this line of the file. */
 typedef struct ImportMark {
     size_t   offset;
     unsigned line;
 } ImportMark;
 
-/* What is left out of the scene without harm, and said in it. */
+/* A note of something that is left out of the scene without harm. */
 typedef struct ImportNote {
     const char *words;
     unsigned    line;
@@ -71,7 +71,7 @@ void import_blame(Import *import, unsigned line, const char *format, ...)
 bool import_leaves_out(Import *import, unsigned line);
 /* Tells whether a part of this line was found to be no scene. */
 bool import_was_left_out(const Import *import, unsigned line);
-/* "From FILE." and the notes, as comments. */
+/* Writes "From FILE." and the notes, as comments. */
 void import_write_head(Import *import);
 
 /* Tells how the scene is compiled: where a folder is all that may be read, it reads no file but the one
@@ -80,14 +80,14 @@ KrsOptions import_options(Import *import);
 /* Tells whether a text is a scene. */
 bool import_compiles(Import *import, const char *scene);
 
-/* What is added to the scene now comes from this line. */
+/* Notes the line that what is added to the scene now comes from. */
 void import_mark(Import *import, unsigned line);
-/* The line of the file that a line of the scene comes from, from 1. */
+/* Returns the line of the file that a line of the scene comes from, from 1. */
 unsigned import_origin(const Import *import, unsigned scene_line);
 
 /* Rounds a number that an import has computed: drops the noise behind twelve digits. */
 double import_rounded(double number);
-/* A number as the language writes it; NaN and infinities have no such form. */
+/* These add a number as the language writes it; NaN and infinities have no such form. */
 void import_add_number(Text *text, double number);
 void import_add_vector(Text *text, const double *numbers, int count);
 

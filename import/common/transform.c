@@ -96,7 +96,7 @@ Transform transform_mirrored(const Transform *transform)
     return transform_chain(&half, &mirror);
 }
 
-/* What lengths become: the matrix times its transpose the other way round. */
+/* Computes what lengths become: the matrix times its transpose the other way round. */
 static void gram(const Transform *transform, double g[3][3])
 {
     for (int i = 0; i < 3; i++)
@@ -164,7 +164,7 @@ static void write_mirror(Text *text, Transform *transform)
     add_vector(text, ".transform(reflect(plane(", away, ", 0)))");
 }
 
-/* A rotation: rows are of length 1, square to each other, and right-handed. */
+/* Writes a rotation: rows are of length 1, square to each other, and right-handed. */
 static void write_rotation(Text *text, double rows[3][3])
 {
     double axis[3] = {rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1]};
@@ -216,8 +216,8 @@ static void jacobi_rotate(double g[3][3], double v[3][3], int a, int b)
     }
 }
 
-/* Columns of v are the directions that a matrix stretches, by the square roots
- * of g's diagonal. */
+/* Writes a stretch: columns of v are the directions that a matrix stretches, by the square roots of
+   g's diagonal. */
 static bool write_stretch(Text *text, const Transform *transform)
 {
     double g[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, by[3], before[3][3], after[3][3];

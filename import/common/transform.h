@@ -15,16 +15,16 @@ typedef struct Transform {
 Transform transform_identity(void);
 Transform transform_move(const double by[3]);
 Transform transform_scale(const double by[3]);
-/* About x (0), y (1) or z (2), by radians, from each axis to the next one. */
+/* Rotates about x (0), y (1) or z (2), by radians, from each axis to the next one. */
 Transform transform_rotate(int axis, double angle);
-/* First `first`, then `then`. */
+/* Returns a transform that is first `first`, then `then`. */
 Transform transform_chain(const Transform *first, const Transform *then);
-/* The same map seen in a mirror that changes the sign of z. */
+/* Returns the same map seen in a mirror that changes the sign of z. */
 Transform transform_mirrored(const Transform *transform);
-/* False: it flattens space. */
+/* Inverts a transform; false: it flattens space. */
 bool transform_invert(Transform *transform);
 void transform_apply(const Transform *transform, const double q[3], double to[3]);
-/* The factor by which all lengths grow; 0 where it differs by direction. */
+/* Returns the factor by which all lengths grow; 0 where it differs by direction. */
 double transform_factor(const Transform *transform);
 /* Tells whether figures in x and y stay there; makes it the plain map of space that
  * does the same. */

@@ -45,7 +45,7 @@ bool word_is(const WordReader *reader, const char *text);
 bool word_accept(WordReader *reader, const char *text);
 /* Refuses the file if it is not. */
 bool word_expect(WordReader *reader, const char *text);
-/* "there should be WHAT, not ..."; returns false. */
+/* Reports "there should be WHAT, not ..."; returns false. */
 bool word_refuse(WordReader *reader, const char *what);
 
 #endif

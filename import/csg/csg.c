@@ -62,7 +62,7 @@ static bool build_union(const CsgNode *node, Part **part)
     return join_nodes(node, PART_UNION, part);
 }
 
-/* Nothing meets nothing. */
+/* Builds an intersection, which is nothing if a part is. */
 static bool build_intersection(const CsgNode *node, Part **part)
 {
     return node->lacks || join_nodes(node, PART_INTERSECTION, part);
@@ -221,7 +221,7 @@ static bool read_arguments(CsgReader *reader, CsgNode *node)
 
 static bool read_node(CsgReader *reader, Part **part);
 
-/* Up to `}`, or to the end of the file. */
+/* Reads nodes up to `}`, or to the end of the file. */
 static bool read_nodes(CsgReader *reader, CsgNode *node)
 {
     WordReader *words = &reader->words;
@@ -294,7 +294,7 @@ static bool read_node(CsgReader *reader, Part **part)
            (reader->left_out = import_leaves_out(node.import, node.line));
 }
 
-/* OpenSCAD shows plane figures a unit thick. */
+/* Shows a part; OpenSCAD shows plane figures a unit thick. */
 static bool show_part(PartWriter *writer, Part *part)
 {
     if (part->figure) {

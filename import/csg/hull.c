@@ -27,7 +27,7 @@ Part *csg_polygon_part(const CsgNode *node, double (*points)[3], size_t count)
     return part;
 }
 
-/* One of `paths`, a list of indices. */
+/* Finds the points of one of `paths`, a list of indices. */
 static bool path_points(const CsgNode *node, const CsgValue *path, double (*points)[3],
                         size_t count, double (**chosen)[3])
 {
@@ -44,7 +44,7 @@ static bool path_points(const CsgNode *node, const CsgValue *path, double (*poin
            import_refuse(node->import, node->line, "`%s` needs three points at least", node->name);
 }
 
-/* Several paths: what is in an odd number of them. */
+/* Builds a polygon; several paths bound what is in an odd number of them. */
 bool csg_polygon(const CsgNode *node, Part **part)
 {
     const CsgValue *list = csg_argument(node, "points"), *paths = csg_argument(node, "paths");
@@ -119,7 +119,7 @@ static Part *hull_part(const CsgNode *node, const PartBalls *balls)
     return part;
 }
 
-/* Those that are convex are the hull of their points. */
+/* Builds a polyhedron, which must be convex: the hull of its points. */
 bool csg_polyhedron(const CsgNode *node, Part **part)
 {
     const CsgValue *list = csg_argument(node, "points"), *faces = csg_argument(node, "faces");
@@ -161,7 +161,7 @@ static void make_room(Import *import, PartBalls *all, size_t more)
     all->radii  = radii;
 }
 
-/* What stands on a figure, as points: its ends. */
+/* Collects what stands on a figure, as points: its ends. */
 static bool collect_column(Import *import, const PartColumn *column, const Transform *transform,
                            PartBalls *all)
 {
@@ -225,7 +225,7 @@ static int compare_points(const void *left, const void *right)
     return a[1] != b[1] ? (a[1] < b[1] ? -1 : 1) : 0;
 }
 
-/* Andrew's chain. */
+/* Finds the convex corners by Andrew's chain. */
 size_t csg_convex_corners(Import *import, PartBalls *balls)
 {
     size_t n = balls->count, count = 0;
@@ -294,7 +294,7 @@ static bool has_columns(const Part *part)
     return found;
 }
 
-/* The hull of the parts themselves, where the language knows it; NULL: it does not. */
+/* Returns the hull of the parts themselves, where the language knows it; NULL: it does not. */
 static Part *hull_of_parts(const CsgNode *node, const Part *joined)
 {
     Import trial = {
@@ -363,7 +363,7 @@ Part *csg_grown(const CsgNode *node, Part *part, double radius)
     return around;
 }
 
-/* An upright column, where it is only moved and rotated about z: its figure as it is seen from
+/* Finds an upright column, if it is only moved and rotated about z: its figure as it is seen from
    above. */
 static bool upright_column(Import *import, const Part *part, PartColumn *column, double shift[3])
 {
@@ -393,7 +393,7 @@ static bool upright_column(Import *import, const Part *part, PartColumn *column,
     return upright;
 }
 
-/* Its radius, where a figure is a circle; `center` is its middle. */
+/* Returns the radius of a figure that is a circle; `center` is its middle. */
 static double circle_of(Import *import, const Part *figure, double center[3])
 {
     PartBalls balls = {0};
@@ -404,7 +404,8 @@ static double circle_of(Import *import, const Part *figure, double center[3])
     return balls.radius;
 }
 
-/* Two columns, one of them round: what stands on the sum of their figures, as high as both. */
+/* Returns the sum of two columns, one of them round: what stands on the sum of their figures, as
+   high as both. */
 static Part *sum_of_columns(const CsgNode *node, const Part *a, const Part *b)
 {
     PartColumn columns[2];
@@ -443,7 +444,7 @@ static bool is_convex(const Part *part)
             (part->join == PART_UNION && is_convex(part->parts.items[0])));
 }
 
-/* Two convex parts: the hull of the sums of their points. */
+/* Returns the sum of two convex parts: the hull of the sums of their points. */
 static Part *sum_of_hulls(const CsgNode *node, const Part *a, const Part *b)
 {
     PartBalls one = {0}, other = {0}, sums = {0};
@@ -461,7 +462,7 @@ static Part *sum_of_hulls(const CsgNode *node, const Part *a, const Part *b)
     return hull_part(node, &sums);
 }
 
-/* The sum of two parts; NULL: it is not known. */
+/* Returns the sum of two parts; NULL: it is not known. */
 static Part *sum_of(const CsgNode *node, Part *a, Part *b)
 {
     Part *const parts[2] = {a, b};

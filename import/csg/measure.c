@@ -51,7 +51,7 @@ static void add_round(Reach *reach, const Transform *transform, const double cen
 
 static bool add_reach(Reach *reach, const Part *part, const Transform *outer);
 
-/* What stands on a figure reaches as far as its ends do. */
+/* Adds a column, which reaches as far as its ends do. */
 static bool add_column(Reach *reach, const PartColumn *column, const Transform *transform)
 {
     for (int side = -1; side <= 1; side += 2) {
@@ -76,7 +76,7 @@ static bool bounds_of(const Reach *reach, double low[3], double high[3])
     return reach->count > 0;
 }
 
-/* What is cut away may have held what reaches farthest: then nothing is known. */
+/* Adds a difference; what is cut away may have held what reaches farthest: then nothing is known. */
 static bool add_difference(Reach *reach, const Part *part, const Transform *transform)
 {
     Reach  first = {.import = reach->import};
@@ -133,7 +133,7 @@ static bool add_shape(Reach *reach, const Part *part, const Transform *transform
     return balls->points != NULL;
 }
 
-/* False where it is not known. */
+/* Adds the reach of a part; false if it is not known. */
 static bool add_reach(Reach *reach, const Part *part, const Transform *outer)
 {
     Transform transform = transform_chain(&part->transform, outer);
@@ -153,7 +153,7 @@ static bool add_reach(Reach *reach, const Part *part, const Transform *outer)
 
 /* ---- resize ---- */
 
-/* Where a length is 0 it stays, or with `auto` grows as the longest that is given does. */
+/* Resizes a part: a length of 0 stays, or with `auto` grows as the longest that is given does. */
 bool csg_resize(const CsgNode *node, Part **part)
 {
     double    size[3] = {0, 0, 0}, follows[3] = {0, 0, 0}, low[3], high[3], factors[3] = {1, 1, 1};
@@ -316,7 +316,7 @@ static bool project_join(const Projection *projection, const Part *part, const T
     return true;
 }
 
-/* *figure stays NULL where there is nothing. */
+/* Projects a part; figure stays NULL where there is nothing. */
 static bool project(const Projection *projection, const Part *part, const Transform *outer,
                     Part **figure)
 {

@@ -44,25 +44,25 @@ CsgBuild csg_cube, csg_sphere, csg_cylinder, csg_polyhedron, csg_square, csg_cir
     csg_linear_extrude, csg_rotate_extrude, csg_hull, csg_minkowski, csg_offset, csg_text,
     csg_resize, csg_projection, csg_import, csg_surface;
 
-/* NULL: there is none of this name. */
+/* Returns an argument; NULL: there is none of this name. */
 const CsgValue *csg_argument(const CsgNode *node, const char *name);
-/* A number or truth value; `otherwise` where it is missing.  Refuses what is none. */
+/* Reads a number or truth value; `otherwise` where it is missing.  Refuses what is none. */
 bool csg_number(const CsgNode *node, const char *name, double otherwise, double *number);
-/* `count` numbers, or one for all. */
+/* Reads `count` numbers, or one for all. */
 bool csg_vector(const CsgNode *node, const char *name, double *numbers, int count);
-/* A list of points of 2 or 3 numbers, as points of space. */
+/* Reads a list of points of 2 or 3 numbers, as points of space. */
 bool csg_points(const CsgNode *node, const CsgValue *list, size_t numbers, double (**points)[3]);
-/* The sides of what $fn asks to have few of; 0: it is round.  Notes what is round now. */
+/* Reads the sides of what $fn asks to have few of; 0: it is round.  Notes what is round now. */
 bool csg_sides(const CsgNode *node, int *sides);
-/* Its nodes as one part, all solids or all figures; refuses a mixture. */
+/* Joins its nodes to one part, all solids or all figures; refuses a mixture. */
 bool csg_joined(const CsgNode *node, bool figure, Part **part);
-/* A polygon, which keeps the points. */
+/* Returns a polygon, which keeps the points. */
 Part *csg_polygon_part(const CsgNode *node, double (*points)[3], size_t count);
 /* Leaves the corners of the convex hull in x and y, counterclockwise; at most 2 when it is a line. */
 size_t csg_convex_corners(Import *import, PartBalls *balls);
-/* The text of an argument. */
+/* Returns the text of an argument. */
 const char *csg_string(const CsgNode *node, const char *name, const char *otherwise);
-/* A part and all that is nearer to it than the radius. */
+/* Returns a part and all that is nearer to it than the radius. */
 Part *csg_grown(const CsgNode *node, Part *part, double radius);
 
 #endif

@@ -58,7 +58,7 @@ static bool is_simple(const double (*corners)[3], size_t count)
     return true;
 }
 
-/* A single polygon or circle, whose sides or whose edge move. */
+/* Returns a single polygon or circle, whose sides or whose edge move. */
 static Part *widened(const CsgNode *node, const Part *figure, double by)
 {
     Part *part = NULL;

@@ -11,7 +11,7 @@
 
 static const double DEGREE = 3.14159265358979323846 / 180;
 
-/* So few sides are meant to be seen; more of them stand for a circle. */
+/* The number of sides up to which they are meant to be seen; more of them stand for a circle. */
 enum { MAX_SIDES_SEEN = 8, MAX_FRAGMENTS = 1000 };
 
 const CsgValue *csg_argument(const CsgNode *node, const char *name)
@@ -88,7 +88,7 @@ static bool is_nothing(const CsgNode *node)
     return true;
 }
 
-/* Not centred, it begins at the origin. */
+/* Moves a part that is not centred, so that it begins at the origin. */
 static void move_corner(Part *part, const double size[3])
 {
     Transform transform = transform_move((double[]){size[0] / 2, size[1] / 2, size[2] / 2});
@@ -157,7 +157,8 @@ bool csg_sphere(const CsgNode *node, Part **part)
     return true;
 }
 
-/* The polygons that OpenSCAD has for the ends of a column, in a space where it stands along z. */
+/* Finds the polygons that OpenSCAD has for the ends of a column, in a space where it stands along
+   z. */
 static bool column_corners(const CsgNode *node, double bottom, double top, double height, int sides,
                            PartBalls *balls)
 {
@@ -270,7 +271,8 @@ static void add_string(Text *text, const char *string)
     text_add(text, "\"");
 }
 
-/* "Family:style=Bold" is "Family:bold" here.  A font that is not installed is replaced, with a note. */
+/* Adds a font: "Family:style=Bold" is "Family:bold" here.  One that is not installed is replaced,
+   with a note. */
 static void add_font(const CsgNode *node, Text *text, const char *name)
 {
     Text        font  = {.arena = node->import->arena};
@@ -324,7 +326,8 @@ bool csg_circle(const CsgNode *node, Part **part)
     return true;
 }
 
-/* Liberation Sans is OpenSCAD's own; its sizes are those of letters of 100 in an em of 139. */
+/* Builds text.  Liberation Sans is OpenSCAD's own; its sizes are those of letters of 100 in an em
+   of 139. */
 bool csg_text(const CsgNode *node, Part **part)
 {
     static const struct {

@@ -60,8 +60,8 @@ void pov_push_block(PovReader *reader, PovBlock block)
     array_push(reader->import->arena, &reader->blocks, block);
 }
 
-/* A value between parentheses.  The last one is the word then, so that reading
- * may go on elsewhere. */
+/* Reads a value between parentheses.  The last one is the word then, so that reading may go on
+   elsewhere. */
 static bool read_condition(PovReader *reader, double *number)
 {
     WordReader *words = &reader->words;
@@ -258,7 +258,7 @@ static bool do_end(PovReader *reader)
     return true;
 }
 
-/* `#else` where what stands before it was carried out. */
+/* Takes `#else` where what stands before it was carried out. */
 static bool do_else(PovReader *reader)
 {
     PovBlock *block = pov_top_block(reader);

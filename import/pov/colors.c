@@ -61,8 +61,7 @@ static int find_word(const PovReader *reader, const char *const *words, int coun
     return -1;
 }
 
-/* Words and numbers, one after the other, each of which changes what is known
- * so far. */
+/* Reads words and numbers, one after the other, each of which changes what is known so far. */
 bool pov_color(PovReader *reader, double color[5])
 {
     WordReader *words = &reader->words;

@@ -48,7 +48,7 @@ static bool read_sizes(PovReader *reader, PovCell *array)
     return true;
 }
 
-/* `{ 1, 2, {3, 4} }`: inner braces are those of further sizes. */
+/* Reads `{ 1, 2, {3, 4} }`: inner braces are those of further sizes. */
 static bool read_elements(PovReader *reader, PovCell *array, int *next, int count)
 {
     if (!pov_deeper(reader) || !word_expect(&reader->words, "{"))
@@ -140,7 +140,7 @@ PovCell *pov_take(PovReader *reader, PovKind kind)
 
 /* ---- functions ---- */
 
-/* `function(u, v) { formula }`; without parameters it is of x, y and z. */
+/* Reads `function(u, v) { formula }`; without parameters it is of x, y and z. */
 static bool read_function(PovReader *reader, PovCell *cell)
 {
     WordReader *words    = &reader->words;
@@ -215,7 +215,7 @@ static bool read_value(PovReader *reader, PovCell *cell)
     return pov_color(reader, cell->value.v);
 }
 
-/* A name that is declared for something else than a value. */
+/* Copies a declared name, and refuses one of something else than a value. */
 static bool copy_declared(PovReader *reader, PovCell *cell)
 {
     PovCell *own = reader->words.word.kind == IMPORT_WORD_NAME
@@ -230,7 +230,7 @@ static bool copy_declared(PovReader *reader, PovCell *cell)
     return own != NULL;
 }
 
-/* An array without an index behind its name. */
+/* Tells whether an array without an index follows. */
 static bool is_whole_array(PovReader *reader)
 {
     const char    *at  = reader->words.at;

@@ -15,7 +15,7 @@ static const char *const folders[] = {"/usr/share/povray-3.7/include/",
                                       "/usr/share/povray/include/",
                                       "/usr/local/share/povray-3.7/include/"};
 
-/* A file beside the scene, by the rules for what may be read. */
+/* Reads a file beside the scene, by the rules for what may be read. */
 static Loaded read_beside(const Import *import, const char *name)
 {
     Text   path   = {.arena = import->arena};
@@ -31,7 +31,7 @@ static Loaded read_beside(const Import *import, const char *name)
     return loaded;
 }
 
-/* POV-Ray's own folders are outside of any root. */
+/* Reads a file that is included; POV-Ray's own folders are outside of any root. */
 static Loaded read_included(const Import *import, const char *name)
 {
     Loaded loaded = read_beside(import, name);

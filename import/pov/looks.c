@@ -106,7 +106,7 @@ typedef struct Knots {
     size_t count, capacity;
 } Knots;
 
-/* The part of a map from `from` to `to`, where a pattern has so large a share of its values. */
+/* Adds the part of a map from `from` to `to`, where a pattern has so large a share of its values. */
 static void add_span(Mean *mean, const Knots *map, double from, double to, double share)
 {
     for (size_t i = 0; i <= map->count; i++) {
@@ -125,7 +125,7 @@ static void add_span(Mean *mean, const Knots *map, double from, double to, doubl
     }
 }
 
-/* The mean over the values of the pattern; those of `average` are weights instead of places. */
+/* Sets the mean over the values of the pattern; those of `average` are weights instead of places. */
 static void set_mean_of_map(PovLook *look, const Knots *map, bool weights)
 {
     Mean mean = {{0}};
@@ -147,7 +147,7 @@ static void add_knot(PovReader *reader, Knots *map, double place, const double c
     array_push(reader->import->arena, map, knot);
 }
 
-/* `[place entry] ...`, or in old files `[place, place color A color B]`. */
+/* Reads `[place entry] ...`, or in old files `[place, place color A color B]`. */
 static bool read_entries(PovReader *reader, ReadEntry *read, PovLook *look)
 {
     WordReader *words   = &reader->words;
@@ -179,7 +179,7 @@ static bool read_entries(PovReader *reader, ReadEntry *read, PovLook *look)
     return true;
 }
 
-/* A block of entries, or the name of one that was declared. */
+/* Reads a block of entries, or the name of one that was declared. */
 static bool read_map(PovReader *reader, ReadEntry *read, PovLook *look)
 {
     words_advance(&reader->words);
@@ -188,7 +188,7 @@ static bool read_map(PovReader *reader, ReadEntry *read, PovLook *look)
            word_expect(&reader->words, "}");
 }
 
-/* `checker A, B`: each has its share. */
+/* Reads `checker A, B`: each has its share. */
 static bool read_list_of_looks(PovReader *reader, int most, PovLook *look)
 {
     Mean mean = {{0}};
@@ -286,7 +286,7 @@ static bool pigment(PovReader *reader, PovLook *look)
     return true;
 }
 
-/* Whatever stands in a look: parts of a texture, or of a pigment alone. */
+/* Reads whatever stands in a texture: its parts, or those of a pigment alone. */
 bool pov_look_inside(PovReader *reader, PovLook *look)
 {
     bool taken = false;
@@ -298,7 +298,7 @@ bool pov_look_inside(PovReader *reader, PovLook *look)
     return taken || pigment(reader, look);
 }
 
-/* An optional number behind a word. */
+/* Reads an optional number behind a word. */
 static bool amount(PovReader *reader, double otherwise, double *number)
 {
     PovValue value = {.v = {otherwise}};
@@ -309,7 +309,7 @@ static bool amount(PovReader *reader, double otherwise, double *number)
     return true;
 }
 
-/* A number, or a colour, for each of three channels. */
+/* Reads a number, or a colour, for each of three channels. */
 static bool channels(PovReader *reader, double channels[3])
 {
     double color[5];
@@ -320,7 +320,7 @@ static bool channels(PovReader *reader, double channels[3])
     return true;
 }
 
-/* `diffuse albedo 0.6, 0.2`: the second one is for what is lit from behind. */
+/* Reads `diffuse albedo 0.6, 0.2`: the second one is for what is lit from behind. */
 static bool diffuse(PovReader *reader, PovFinish *finish)
 {
     double behind;
@@ -334,7 +334,8 @@ static bool diffuse(PovReader *reader, PovFinish *finish)
     return pov_number(reader, &behind);
 }
 
-/* `reflection R`, or `reflection { least, most ... }`, of which the first one is seen from above. */
+/* Reads `reflection R`, or `reflection { least, most ... }`, of which the first one is seen from
+   above. */
 static bool reflection(PovReader *reader, PovFinish *finish)
 {
     unsigned line = reader->words.word.line;
@@ -537,7 +538,7 @@ PovLook pov_usual_look(void)
     return (PovLook){.finish = {.diffuse = 0.6, .ambient = {0.1, 0.1, 0.1}}};
 }
 
-/* Four digits of a colour, which the curve of a screen hides the rest of. */
+/* Returns four digits of a colour, which the curve of a screen hides the rest of. */
 static const char *color_text(PovReader *reader, const double color[3])
 {
     double rounded[3];
@@ -546,8 +547,9 @@ static const char *color_text(PovReader *reader, const double color[3])
     return import_vector_text(reader->import, rounded, 3);
 }
 
-/* What a look mirrors of each channel; *part: of what it mirrors and scatters, on average.  The colour of
-   a metal is that of both: the more it scatters, the more of that hue its mirror gets. */
+/* Finds what a material mirrors of each channel; *part: of what it mirrors and scatters, on
+   average.  The colour of a metal is that of both: the more it scatters, the more of that hue its
+   mirror gets. */
 static void mirrored(PovReader *reader, const PovLook *look, double light[3], double *part)
 {
     double sum = 0, all = 0, body[3], share;
@@ -564,9 +566,9 @@ static void mirrored(PovReader *reader, const PovLook *look, double light[3], do
         light[i] = share * light[i] + (1 - share) * (sum / 3) * 3 * body[i] / (all - sum);
 }
 
-/* `color` and `emission`, as POV-Ray has them: what is transmitted has no colour of the thing, what
-   is filtered has, and neither is scattered.  A metal mirrors in its colour, which a part of it
-   scatters: so the colour is the sum of both. */
+/* Adds `color` and `emission`, as POV-Ray has them: what is transmitted has no colour of the thing,
+   what is filtered has, and neither is scattered.  A metal mirrors in its colour, which a part of
+   it scatters: so the colour is the sum of both. */
 static void add_colors(PovReader *reader, const PovLook *look, double through,
                        const double mirror[3], Text *text)
 {
@@ -588,7 +590,7 @@ static void add_colors(PovReader *reader, const PovLook *look, double through,
         text_format(text, ", emission: %s", color_text(reader, emission));
 }
 
-/* The name of a material with this text in its braces. */
+/* Returns the name of a material with this text in its braces. */
 static const char *material_name(PovReader *reader, const char *inside)
 {
     Text   name   = {.arena = reader->import->arena};

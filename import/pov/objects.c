@@ -74,8 +74,8 @@ static bool is_missing(const PovReader *reader)
     return false;
 }
 
-/* An object of a join; *item is NULL where nothing is seen of it.  One that is refused is left out of
-   a union with --keep-going. */
+/* Reads an object of a join; *item is NULL where nothing is seen of it.  One that is refused is
+   left out of a union with --keep-going. */
 static bool read_item(PovReader *reader, bool may_lack, Part **item)
 {
     unsigned line = reader->words.word.line;
@@ -140,7 +140,7 @@ static bool read_join(PovReader *reader, unsigned line, Part **part)
                          "`intersection` and `difference`");
 }
 
-/* A name, or an object in the object. */
+/* Reads a name, or an object in the object. */
 static bool read_object(PovReader *reader, unsigned line, Part **part)
 {
     Part    *inner = NULL;
@@ -201,7 +201,7 @@ static void stretch_box(Import *import, Part *part)
     part->shape = text.bytes;
 }
 
-/* `{ objects }`: what is within all of them is left of the part, as it is placed so far. */
+/* Reads `{ objects }`: what is within all of them is left of the part, as it is placed so far. */
 static bool read_clip(PovReader *reader, const Transform *transform, Part **part)
 {
     unsigned line = reader->words.word.line;
@@ -220,7 +220,7 @@ static bool read_clip(PovReader *reader, const Transform *transform, Part **part
            (!*part || pov_clip(reader, transform, part, line, region));
 }
 
-/* The modifiers of an object, up to its `}`; what they cut is another part. */
+/* Reads the modifiers of an object, up to its `}`; what they cut is another part. */
 static bool read_modifiers(PovReader *reader, const char *name, Part **part)
 {
     WordReader *words     = &reader->words;
@@ -279,7 +279,7 @@ static bool read_modifiers(PovReader *reader, const char *name, Part **part)
     return true;
 }
 
-/* `*part` is NULL where it is nothing to be seen. */
+/* Reads an object; `*part` is NULL if nothing of it is seen. */
 bool pov_object(PovReader *reader, Part **part)
 {
     int      found = find_object(reader);

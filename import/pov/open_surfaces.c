@@ -17,7 +17,8 @@ enum { MAX_POINTS = 10000, MAX_FIGURES = 500 };
 
 static const double FAR_AWAY = 1e5; /* open surfaces end somewhere */
 
-/* What is cut: `open surfaces` has them in the space of the whole object, and `region` is in that space. */
+/* The arguments of a cut: `open_surfaces` has them in the space of the whole object, and `region`
+   is in that space. */
 typedef struct Cut {
     Import     *import;
     Part       *open_surfaces;
@@ -48,7 +49,7 @@ static bool is_bounded(const Part *part)
                                                              : bounded == count);
 }
 
-/* Both, or the one that there is. */
+/* Returns both parts joined, or the one that there is. */
 static Part *both(Import *import, PartJoin join, Part *a, Part *b)
 {
     if (!a || !b)
@@ -60,7 +61,8 @@ static Part *both(Import *import, PartJoin join, Part *a, Part *b)
     return part;
 }
 
-/* `equation` as the language has it, within `own`, a region of the same space, if there is one. */
+/* Adds `equation` as the language has it, within `own`, a region of the same space, if there is
+   one. */
 static void add_open_surface(Cut *cut, const Part *like, const Transform *transform,
                              const char *look, Part *region, const char *equation, const char *own)
 {
@@ -79,7 +81,7 @@ static void add_open_surface(Cut *cut, const Part *like, const Transform *transf
     part_add(cut->import, cut->open_surfaces, part);
 }
 
-/* A normal times the point. */
+/* Returns a normal times the point. */
 static const char *along(Import *import, const double n[3])
 {
     Text text = {.arena = import->arena};
@@ -105,7 +107,7 @@ static const char *formatted(Import *import, const char *format, ...)
     return text.bytes;
 }
 
-/* Its side, and the discs that end it. */
+/* Cuts a column: its side, and the discs that end it. */
 static void cut_column(Cut *cut, const Part *part, const Transform *transform, const char *look,
                        Part *region)
 {
@@ -199,7 +201,7 @@ static Part *placed(Import *import, Part *part, const Transform *transform)
     return moved;
 }
 
-/* The region within which the surface of item i of a join is seen. */
+/* Returns the region within which the surface of item i of a join is seen. */
 static Part *region_of(Cut *cut, const Part *join, size_t i, const Transform *transform,
                        Part *region)
 {
@@ -283,7 +285,7 @@ bool pov_open(PovReader *reader, unsigned line, Part **part)
 
 /* ---- flat figures ---- */
 
-/* The axes of the plane of points, and its normal; false: they are on a line. */
+/* Finds the axes of the plane of points, and its normal; false: they are on a line. */
 static bool frame_of(double (*points)[3], size_t count, Transform *frame)
 {
     double x[3], y[3] = {0}, z[3] = {0}, most = 0;
@@ -310,7 +312,8 @@ static bool frame_of(double (*points)[3], size_t count, Transform *frame)
     return true;
 }
 
-/* The plane within what stands on a figure; points are POV-Ray's, and become those of the figure. */
+/* Finds the plane within what stands on a figure; points are POV-Ray's, and become those of the
+   figure. */
 static bool flat(PovReader *reader, unsigned line, double (*points)[3], size_t count, Part **part)
 {
     Transform frame = transform_identity(), back;

@@ -27,7 +27,7 @@ static bool is_setting(const PovReader *reader)
 
 /* ---- the file ---- */
 
-/* What has no look has that of `#default`. */
+/* Shows a part, with the material of `#default` unless it has one. */
 static void show(PovReader *reader, Part *part)
 {
     PovLook usual = reader->usual;
@@ -91,7 +91,7 @@ static bool statement(PovReader *reader)
     return word_accept(words, ";") || word_refuse(words, "an object such as `sphere`");
 }
 
-/* Where an object is refused, --keep-going goes on behind it. */
+/* Reads a statement; behind an object that is refused, --keep-going goes on. */
 static bool statement_or_less(PovReader *reader)
 {
     unsigned line = reader->words.word.line;
@@ -121,9 +121,10 @@ static void add_placed(PovReader *reader, Part *part, const Transform *transform
     part_add(reader->import, reader->shown, placed);
 }
 
-/* POV-Ray's rays begin inside of solids, too, and see their surface from there.  Here they would end
-   where they begin, so that such a solid becomes what is outside of it, which has the same surface.
-   Parts of a union come apart: what is inside of one of them is seen. */
+/* Adds a part as it is seen.  POV-Ray's rays begin inside of solids, too, and see their surface
+   from there.  Here they would end where they begin, so that such a solid becomes what is outside
+   of it, which has the same surface.  Parts of a union come apart: what is inside of one of them is
+   seen. */
 static void add_seen(PovReader *reader, Part *part, const Transform *transform, const char *look)
 {
     Transform back = *transform, all = transform_chain(&part->transform, transform);
@@ -174,7 +175,7 @@ static void look_around(PovReader *reader)
     }
 }
 
-/* Where the camera mirrors its picture, space is mirrored once more instead. */
+/* Mirrors space once more if the camera mirrors its picture. */
 static void mirror(PovReader *reader)
 {
     Part     *all  = reader->shown;
@@ -233,7 +234,7 @@ bool import_pov(Import *import)
     PovReader reader = {.import = import};
     if (!read(&reader, 1))
         return false;
-    /* From 3.7 on colours are linear, unless a file says otherwise; before, they were shown as they
+    /* Colours are linear from 3.7 on, unless a file says otherwise; before, they were shown as they
        are. */
     double gamma = reader.found_gamma >= 0 ? reader.found_gamma : reader.version >= 3.7 ? 1 : 0;
     return (gamma == 1 || read(&reader, gamma)) && write(&reader);

@@ -18,8 +18,8 @@ typedef struct PovValue {
     int    count; /* 1: a number, which may stand for a vector of equal ones */
 } PovValue;
 
-/* How light comes back: `exponent` of highlights is that of the cosine between
- * the normal and the middle of both directions. */
+/* The ways in which light comes back: `exponent` of highlights is that of the cosine between the
+   normal and the middle of both directions. */
 typedef struct PovFinish {
     bool   specular, phong, mirrors_metal;
     double exponent, metallic, diffuse, ambient[3], emission[3];
@@ -171,7 +171,7 @@ void pov_start(PovReader *reader);
 PovCell *pov_find(PovReader *reader, const char *name);
 /* Carries out a directive or macro that waits at the word. */
 bool pov_release(PovReader *reader);
-/* `default { ... }`, up to its `}`. */
+/* Reads `default { ... }`, up to its `}`. */
 bool pov_default(PovReader *reader);
 /* The state of reading, to go back to after a refusal. */
 typedef struct PovState {
@@ -184,19 +184,19 @@ typedef struct PovState {
 } PovState;
 void pov_keep_state(PovReader *reader, PovState *state);
 void pov_restore_state(PovReader *reader, const PovState *state);
-/* The cell that a declaration fills; NULL after a refusal. */
+/* Returns the cell that a declaration fills; NULL after a refusal. */
 PovCell *pov_cell_to_fill(PovReader *reader, const char *name, bool local);
 /* Goes on behind what called the macro, or included the file, that is read. */
 void pov_pop_source(PovReader *reader);
-/* What a function is for these numbers. */
+/* Evaluates a function for these numbers. */
 bool pov_evaluate(PovReader *reader, const PovMacro *function, const double *numbers,
                   PovValue *value);
 
 /* ---- conditions and loops: blocks.c ---- */
 
-/* `#if`, `#while`, `#end` and others, whose name is the word; *taken: it was one of them. */
+/* Reads `#if`, `#while`, `#end` and others, whose name is the word; *taken: it was one of them. */
 bool pov_block_directive(PovReader *reader, const char *name, bool *taken);
-/* NULL: there is none. */
+/* Returns the innermost block; NULL: there is none. */
 PovBlock *pov_top_block(PovReader *reader);
 void      pov_push_block(PovReader *reader, PovBlock block);
 /* Skips to the end of so many blocks. */
@@ -204,9 +204,9 @@ bool pov_leave(PovReader *reader, int depth);
 
 /* ---- what may be declared: declared.c ---- */
 
-/* Whatever may stand behind `#declare NAME =`. */
+/* Reads whatever may stand behind `#declare NAME =`. */
 bool pov_rvalue(PovReader *reader, PovCell *cell);
-/* A parameter of a macro: a name stands for what is named. */
+/* Reads a parameter of a macro: a name stands for what is named. */
 bool pov_argument(PovReader *reader, PovCell **cell);
 /* Reads the indices behind the name of an array; NULL after a refusal. */
 PovCell *pov_element(PovReader *reader, PovCell *array);
@@ -219,7 +219,7 @@ PovCell *pov_take(PovReader *reader, PovKind kind);
 /* Tells whether the next word begins a number or a vector. */
 bool pov_value_follows(PovReader *reader);
 bool pov_value(PovReader *reader, PovValue *value);
-/* The same between parentheses, where values may be compared. */
+/* Does the same between parentheses, where values may be compared. */
 bool pov_condition(PovReader *reader, PovValue *value);
 bool pov_string_follows(PovReader *reader);
 bool pov_string(PovReader *reader, const char **string);
@@ -230,12 +230,12 @@ void pov_promote(PovValue *value, int count);
 
 /* ---- colours: colors.c ---- */
 
-/* `color rgb <1, 0, 0>`, a vector, or a name. */
+/* Tells whether `color rgb <1, 0, 0>`, a vector, or a name follows. */
 bool pov_color_follows(PovReader *reader);
-/* Red, green, blue, filter, transmit. */
+/* Reads red, green, blue, filter, transmit. */
 bool pov_color(PovReader *reader, double color[5]);
-/* What a channel of a colour is in light.  Colours of files are in the space of
- * `assumed_gamma`; without it, those of old ones are as they are shown. */
+/* Returns the light of a channel of a colour.  Colours of files are in the space of
+   `assumed_gamma`; without it, those of old ones are as they are shown. */
 double pov_light_of(const PovReader *reader, double channel);
 
 /* ---- words: words.c ---- */
@@ -246,30 +246,29 @@ bool pov_skip_block(PovReader *reader);
 /* Leaves out a word with a note (`what` NULL: without one), and the values or the block behind
  * it. */
 bool pov_leave_out(PovReader *reader, const char *what);
-/* `translate`, `rotate`, `scale`, `matrix`: adds to a transform in POV-Ray's space.
-   *taken: it was one of them. */
+/* Adds `translate`, `rotate`, `scale` or `matrix` to a transform in POV-Ray's space; *taken: it was
+   one of them. */
 bool pov_transform(PovReader *reader, Transform *transform, bool *taken);
 /* Finds where a point is in the space of scenes. */
 void pov_point(const double q[3], double p[3]);
 
 /* ---- looks: looks.c ---- */
 
-/* `pigment`, `finish`, `texture` and `material` with their blocks; *taken
- * likewise. */
+/* Reads `pigment`, `finish`, `texture` and `material` with their blocks; *taken likewise. */
 bool pov_look(PovReader *reader, PovLook *look, bool *taken);
-/* The look of what says nothing, and nothing of `#default` yet. */
+/* Returns the look of what says nothing, and nothing of `#default` yet. */
 PovLook pov_usual_look(void);
-/* A layer of a sky on those before it, which show as far as light goes through. */
+/* Adds a layer of a sky on those before it, which show as far as light goes through. */
 void pov_add_layer(PovLook *below, const PovLook *layer);
-/* What stands in such a block, or where one may be left away. */
+/* Reads what stands in such a block, or where one may be left away. */
 bool pov_look_inside(PovReader *reader, PovLook *look);
-/* The argument of `.paint`; NULL: the look says nothing. */
+/* Returns the argument of `.paint`; NULL: the look says nothing. */
 const char *pov_look_text(PovReader *reader, const PovLook *look);
 
 /* ---- files: include.c ---- */
 
-/* The text of an included file, in the import's arena; NULL: there is none, which is noted.  Returns
-   false after a refusal. */
+/* Reads the text of an included file, in the import's arena; NULL: there is none, which is noted.
+   Returns false after a refusal. */
 bool pov_read_included(Import *import, unsigned line, const char *name, const char **text);
 
 /* ---- objects: objects.c and shapes.c ---- */
@@ -277,7 +276,7 @@ bool pov_read_included(Import *import, unsigned line, const char *name, const ch
 bool pov_object_follows(const PovReader *reader);
 bool pov_object(PovReader *reader, Part **part);
 
-/* What stands in the block of a shape before its modifiers. */
+/* Reads what stands in the block of a shape before its modifiers. */
 typedef bool PovBuild(PovReader *reader, unsigned line, Part **part);
 PovBuild     pov_prism, pov_lathe, pov_text, pov_disc, pov_blob, pov_superellipsoid, pov_julia;
 PovBuild     pov_polygon, pov_triangle, pov_smooth_triangle;
@@ -286,8 +285,8 @@ bool     pov_modifier_follows(const PovReader *reader);
 PovBuild pov_sphere, pov_box, pov_cylinder, pov_cone, pov_torus, pov_plane, pov_quadric, pov_cubic,
     pov_quartic, pov_poly;
 
-/* A figure in x and y of contours that end where they begin, and cut holes into each other; NULL: of
-   no area. */
+/* Returns a figure in x and y of contours that end where they begin, and cut holes into each other;
+   NULL: of no area. */
 Part *pov_figure(PovReader *reader, unsigned line, double (*points)[3], size_t count);
 
 /* ---- surfaces that enclose nothing: open_surfaces.c ---- */
@@ -305,14 +304,14 @@ bool pov_open(PovReader *reader, unsigned line, Part **part);
 bool pov_camera(PovReader *reader, PovView *view);
 bool pov_light(PovReader *reader, PovLight *light);
 bool pov_background(PovReader *reader);
-/* `sky_sphere { ... }`; nothing is coloured where it has no pigment. */
+/* Reads `sky_sphere { ... }`; nothing is coloured where it has no pigment. */
 bool pov_sky_look(PovReader *reader, PovLook *sky);
 /* The mean of its colours is the background. */
 bool pov_sky_sphere(PovReader *reader);
-/* `global_settings` */
+/* Reads `global_settings`. */
 bool pov_settings(PovReader *reader);
-/* When all was read: without a camera POV-Ray has one at the origin; shapes alone are seen as a whole
-   here. */
+/* Ends the view when all was read: without a camera POV-Ray has one at the origin; shapes alone are
+   seen as a whole here. */
 void pov_finish_view(PovReader *reader);
 void pov_write_view(PovReader *reader);
 

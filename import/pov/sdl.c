@@ -113,7 +113,7 @@ static PovCell *find_local(PovReader *reader, const char *name)
     return NULL;
 }
 
-/* The cell that a declaration fills. */
+/* Returns the cell that a declaration fills. */
 PovCell *pov_cell_to_fill(PovReader *reader, const char *name, bool local)
 {
     PovCell *cell = local ? find_local(reader, name) : pov_find(reader, name);
@@ -201,8 +201,8 @@ static bool do_include(PovReader *reader)
 
 /* ---- declarations ---- */
 
-/* A name for the scene.  Names of the language have no capital letters, so
- * others get a prefix. */
+/* Returns a name for the scene.  Names of the language have no capital letters, so others get a
+   prefix. */
 static const char *scene_name(PovReader *reader, const char *name)
 {
     Text text  = {.arena = reader->import->arena};
@@ -219,8 +219,9 @@ static const char *scene_name(PovReader *reader, const char *name)
     return text.bytes;
 }
 
-/* What an included file declares, and cannot be said, is refused where it is used.  With --keep-going an
-   object of the file itself that is refused is one of which nothing is seen. */
+/* Reads a declared name.  What an included file declares, and cannot be said, is refused where it
+   is used.  With --keep-going an object of the file itself that is refused is one of which nothing
+   is seen. */
 static bool declared(PovReader *reader, PovCell *cell)
 {
     const char *behind = reader->words.at + strspn(reader->words.at, " \t\r\n");
@@ -294,7 +295,7 @@ static bool do_words(PovReader *reader, PovCell *said, bool *next)
     return good;
 }
 
-/* That of included files is their own. */
+/* Reads the version; that of included files is their own. */
 static bool do_version(PovReader *reader, bool *next)
 {
     PovCell said = {0};
@@ -306,7 +307,7 @@ static bool do_version(PovReader *reader, bool *next)
     return true;
 }
 
-/* Nothing is written; what a program reads from files is not known. */
+/* Ignores files: nothing is written; what a program reads from files is not known. */
 static bool do_file(PovReader *reader, const char *name, bool *next)
 {
     WordReader *words = &reader->words;

@@ -12,7 +12,7 @@ enum { MAX_ORDER = 24 };
 
 static void comma(PovReader *reader) { word_accept(&reader->words, ","); }
 
-/* The point of POV-Ray to which the part's own origin goes. */
+/* Moves a part so that its own origin goes to a point of POV-Ray. */
 static void move_to(Part *part, const double q[3])
 {
     double p[3];
@@ -44,7 +44,7 @@ bool pov_sphere(PovReader *reader, unsigned line, Part **part)
     return true;
 }
 
-/* Open surfaces are no solids; a box with one length of 0 gets a little of it. */
+/* Refuses open surfaces, which are no solids; a box with one length of 0 gets a little of it. */
 static bool thicken(PovReader *reader, unsigned line, double size[3])
 {
     double most = fmax(size[0], fmax(size[1], size[2]));
@@ -161,7 +161,7 @@ bool pov_torus(PovReader *reader, unsigned line, Part **part)
     return true;
 }
 
-/* What is on the side that the normal points away from. */
+/* Builds what is on the side that the normal points away from. */
 bool pov_plane(PovReader *reader, unsigned line, Part **part)
 {
     double v[3], normal[3], offset;
@@ -182,8 +182,7 @@ bool pov_plane(PovReader *reader, unsigned line, Part **part)
 
 /* ---- polynomials ---- */
 
-/* A factor of x^i y^j z^k, in the space of scenes: odd powers of z change their
- * sign. */
+/* Adds a factor of x^i y^j z^k, in the space of scenes: odd powers of z change their sign. */
 static void add_term(Import *import, Text *text, double factor, const int powers[3])
 {
     const char *between = "";
@@ -211,8 +210,7 @@ static Part *algebraic(PovReader *reader, unsigned line, const char *stem, const
     return part;
 }
 
-/* `<` and all factors, from x^order down, with falling powers of x, then y,
- * then z. */
+/* Reads `<` and all factors, from x^order down, with falling powers of x, then y, then z. */
 static bool polynomial(PovReader *reader, unsigned line, int order, Part **part)
 {
     Text terms = {.arena = reader->import->arena};

@@ -74,7 +74,7 @@ static double between(double a, double b, double c, double d, double t, bool squ
     return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
 }
 
-/* What a spline goes through, as a polygon. */
+/* Returns what a spline goes through, as a polygon. */
 static Points flattened(PovReader *reader, Spline spline, const Points *points)
 {
     Points flat  = {0};
@@ -125,9 +125,9 @@ static bool is_same(const Points *points, size_t i, size_t k)
     return distance3(points->items[i], points->items[k]) < 1e-9;
 }
 
-/* The number of points up to the end of the contour that begins there: it comes back to where it has
-   started.  Splines that need neighbours have a point before the start, cubic ones another one behind
-   the end, and those of Bezier four points a curve. */
+/* Returns the number of points up to the end of the contour that begins there: it comes back to
+   where it has started.  Splines that need neighbours have a point before the start, cubic ones
+   another one behind the end, and those of Bezier four points a curve. */
 static size_t end_of_contour(const Points *points, Spline spline, size_t begin)
 {
     size_t start = begin + (spline == QUADRATIC || spline == CUBIC),
@@ -140,7 +140,7 @@ static size_t end_of_contour(const Points *points, Spline spline, size_t begin)
     return points->count;
 }
 
-/* Several contours cut holes. */
+/* Returns a figure; several contours cut holes. */
 static Part *figure_of(PovReader *reader, unsigned line, Spline spline, const Points *points)
 {
     Part *figure = NULL;
@@ -235,7 +235,7 @@ bool pov_lathe(PovReader *reader, unsigned line, Part **part)
 
 /* ---- texts ---- */
 
-/* `ttf "file.ttf" "string" thickness, offset` */
+/* Reads `ttf "file.ttf" "string" thickness, offset`. */
 bool pov_text(PovReader *reader, unsigned line, Part **part)
 {
     WordReader *words = &reader->words;
@@ -333,7 +333,7 @@ static void grow_box(BlobReader *blob, const double p[3], double radius)
     }
 }
 
-/* A component: a sphere, or a cylinder with round ends. */
+/* Reads a component: a sphere, or a cylinder with round ends. */
 static bool read_component(BlobReader *blob, bool round)
 {
     PovReader *reader = blob->reader;
@@ -434,8 +434,8 @@ bool pov_blob(PovReader *reader, unsigned line, Part **part)
     return true;
 }
 
-/* (|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) = 1; where e is less than n, solved
- * for the first sum. */
+/* Builds (|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) = 1; if e is less than n, solved for the first
+   sum. */
 bool pov_superellipsoid(PovReader *reader, unsigned line, Part **part)
 {
     double v[3];

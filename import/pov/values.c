@@ -121,7 +121,7 @@ static int find_function(const char *name)
     return -1;
 }
 
-/* An element of an array that was filled. */
+/* Returns an element of an array that was filled. */
 static const PovCell *first_element(const PovCell *array)
 {
     int count = 1;
@@ -135,7 +135,7 @@ static const PovCell *first_element(const PovCell *array)
     return NULL;
 }
 
-/* Those that need more than numbers and vectors. */
+/* The functions that need more than numbers and vectors. */
 static const char *const special[] = {
     "vrotate", "seed",   "rand",           "strlen",     "asc",         "val",
     "strcmp",  "select", "dimension_size", "dimensions", "vaxis_rotate"};
@@ -171,7 +171,7 @@ bool pov_value_follows(PovReader *reader)
            find_special(words->word.text) >= 0;
 }
 
-/* A number where a vector is wanted. */
+/* Makes a vector of a number where one is wanted. */
 void pov_promote(PovValue *value, int count)
 {
     for (int i = value->count; i < count; i++)
@@ -240,7 +240,7 @@ static bool call_function(PovReader *reader, int function, PovValue *value)
 
 /* ---- functions of strings and arrays, and of chance ---- */
 
-/* POV-Ray's generator, a linear congruence. */
+/* Returns the next number of POV-Ray's generator, a linear congruence. */
 static double next_random(PovCell *stream)
 {
     uint32_t state     = (uint32_t)stream->value.v[0] * 1812433253U + 12345U;
@@ -254,7 +254,7 @@ static bool next_argument(PovReader *reader, PovValue *value)
     return pov_condition(reader, value);
 }
 
-/* About an axis, by degrees. */
+/* Rotates about an axis, by degrees. */
 static void rotate_about(const double v[3], const double axis[3], double degrees, double to[3])
 {
     double c = cos(to_radians(degrees)), s = sin(to_radians(degrees)), u[3], across[3];
@@ -477,7 +477,7 @@ static bool read_factor(PovReader *reader, PovValue *value)
     return good;
 }
 
-/* Element by element. */
+/* Combines values element by element. */
 static bool combine(PovReader *reader, char sign, PovValue *a, PovValue *b)
 {
     int count = a->count > b->count ? a->count : b->count;
@@ -529,7 +529,7 @@ bool pov_value(PovReader *reader, PovValue *value)
     return true;
 }
 
-/* 1 and 0 of what is compared; else the value itself. */
+/* Reads a comparison, which is 1 or 0; without one the value itself. */
 static bool read_comparison(PovReader *reader, PovValue *value)
 {
     WordReader *words = &reader->words;
@@ -625,7 +625,7 @@ bool pov_string_follows(PovReader *reader)
     return false;
 }
 
-/* `str(number, least length, digits)` */
+/* Reads `str(number, least length, digits)`. */
 static bool number_string(PovReader *reader, Text *text)
 {
     PovValue value, length, digits;

@@ -11,7 +11,7 @@ static const double DEGREE = 3.14159265358979323846 / 180;
 
 /* ---- reading ---- */
 
-/* A word and the vector behind it; *taken: it is that word. */
+/* Reads a word and the vector behind it; *taken: it is that word. */
 static bool vector_of(PovReader *reader, const char *name, double v[3], bool *taken)
 {
     if (*taken || !word_accept(&reader->words, name))
@@ -27,8 +27,8 @@ static double distance_of_picture(const PovView *view)
                            : length3(view->direction);
 }
 
-/* `orthographic` behind the rest of a camera shows as much as that camera does at the distance of
-   `look_at`. */
+/* Widens the view: `orthographic` behind the rest of a camera shows as much as that camera does at
+   the distance of `look_at`. */
 static void widen(PovView *view)
 {
     double away        = distance_of_picture(view);
@@ -60,7 +60,7 @@ static void move_camera(PovReader *reader, PovView *view, const Transform *trans
         import_note(reader->import, reader->words.word.line, "the camera is not sheared");
 }
 
-/* `angle` from side to side, and of spherical cameras another one from top to bottom. */
+/* Reads `angle` from side to side, and of spherical cameras another one from top to bottom. */
 static bool camera_angle(PovReader *reader, PovView *view)
 {
     view->angle_up = 0;
@@ -88,7 +88,7 @@ static bool camera_kind(PovReader *reader, PovView *view, bool *taken)
     return true;
 }
 
-/* What is sharp. */
+/* Reads what is sharp. */
 static bool camera_lens(PovReader *reader, PovView *view, bool *taken)
 {
     double nothing;
@@ -153,7 +153,7 @@ static bool camera_word(PovReader *reader, PovView *view)
     return pov_leave_out(reader, "of the camera is");
 }
 
-/* Those of 360 by 180 degrees are panoramas; of others nothing can be said. */
+/* Makes a spherical camera of 360 by 180 degrees a panorama; others are refused. */
 static void settle_sphere(PovReader *reader, PovView *view)
 {
     double across = view->angle > 0 ? view->angle : 360;
@@ -325,7 +325,7 @@ bool pov_sky_sphere(PovReader *reader)
     return true;
 }
 
-/* Those of how POV-Ray computes, and not of what. */
+/* The words that change how POV-Ray computes, and not what. */
 static const char *const technical[] = {"max_trace_level", "adc_bailout",     "max_intersections",
                                         "noise_generator", "number_of_waves", "irid_wavelength",
                                         "charset",         "mm_per_unit",     "hf_gray_16"};
@@ -393,9 +393,9 @@ static void write_lens(PovReader *reader)
                 import_number_text(reader->import, focus));
 }
 
-/* Rays end 10,000 times as far as the target of the camera, if planes are endless.  Where these are
-   high above the eye, as skies are, the target is farther along the same line, so that what is missing
-   at their horizon is less than a pixel high. */
+/* Returns the target.  Rays end 10,000 times as far as the target of the camera, if planes are
+   endless.  Where these are high above the eye, as skies are, the target is farther along the same
+   line, so that what is missing at their horizon is less than a pixel high. */
 static const char *target_text(PovReader *reader)
 {
     const double   STEEPEST = 5e-4 * 1e4;
@@ -430,7 +430,7 @@ static void write_camera(PovReader *reader)
         text_format(scene, "image { size: [%d, 720] }\n", width);
 }
 
-/* POV-Ray's angles are from the axis; here it is the whole one. */
+/* Writes a spot: POV-Ray's angles are from the axis; here it is the whole one. */
 static void write_spot(PovReader *reader, const PovLight *light)
 {
     double falloff = fmin(fmax(light->falloff, 0.5), 89),
@@ -440,8 +440,8 @@ static void write_spot(PovReader *reader, const PovLight *light)
                 fmax(1 - full / falloff, 0.01));
 }
 
-/* POV-Ray's lights grow no weaker with distance, so they get as much stronger
- * as they are far. */
+/* Writes a light: POV-Ray's grow no weaker with distance, so they get as much stronger as they are
+   far. */
 static void write_light(PovReader *reader, const PovLight *light)
 {
     const double FULL  = 3.14159265358979323846; /* a white surface is as bright as rgb 1 */

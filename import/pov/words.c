@@ -76,7 +76,7 @@ static Transform rotate_by_angles(const double angles[3])
     return transform;
 }
 
-/* Twelve numbers: where x, y, z and the origin go. */
+/* Reads twelve numbers: where x, y, z and the origin go. */
 static bool read_matrix(PovReader *reader, Transform *transform)
 {
     if (!word_expect(&reader->words, "<"))
@@ -93,7 +93,7 @@ static bool read_matrix(PovReader *reader, Transform *transform)
     return true;
 }
 
-/* `transform { ... }`, or the name of one. */
+/* Reads `transform { ... }`, or the name of one. */
 static bool read_transform(PovReader *reader, Transform *transform)
 {
     PovCell  *own     = pov_take(reader, POV_PLACE);

@@ -65,7 +65,7 @@ static const char *const functions[] = {"sin", "cos",  "tan",  "asin",  "acos", 
                                         "log", "sqrt", "ceil", "floor", "abs",  "sign"};
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
-/* A parameter's name in the scene: most names of the language are longer than a letter. */
+/* Adds a parameter's name in the scene: most names of the language are longer than a letter. */
 static void add_parameter_name(Text *text, const char *name)
 {
     bool is_free = name[1] == '\0' && isalpha((unsigned char)name[0]) && !strchr("puv", name[0]);
@@ -144,7 +144,7 @@ static bool parse_factor(Equation *equation)
     return refuse_equation(equation, "a number, a name or a parenthesis");
 }
 
-/* What stands alone before `^` may have one more behind it. */
+/* Parses a power: what stands alone before `^` may have one more behind it. */
 static bool parse_power(Equation *equation)
 {
     if (++equation->depth > MAX_DEPTH)

@@ -6,7 +6,7 @@
 
 #include "import/surfer/properties.h"
 
-/* The equation in the language of scenes, and the parameters that it uses. */
+/* Finds the equation in the language of scenes, and the parameters that it uses. */
 bool jsurf_equation(JsurfSurface *surface, Text *equation);
 bool jsurf_write_parameters(const JsurfSurface *surface);
 

@@ -27,7 +27,7 @@ typedef struct Space {
     double rows[3][4];
 } Space;
 
-/* a after b. */
+/* Returns a after b. */
 static Space space_after(const Space *a, const Space *b)
 {
     Space both;
@@ -40,7 +40,7 @@ static Space space_after(const Space *a, const Space *b)
     return both;
 }
 
-/* `shifted` 1 for points, 0 for directions. */
+/* Applies a space; `shifted` is 1 for points, 0 for directions. */
 static void space_apply(const Space *space, const double v[3], double shifted, double to[3])
 {
     for (int i = 0; i < 3; i++)
@@ -57,8 +57,8 @@ static bool read_space(const JsurfSurface *surface, const char *key, Space *spac
     return true;
 }
 
-/* The factor by which a space is larger than another that is rotated against it at most; 0: not so,
-   or mirrored.  Files have seven digits. */
+/* Returns the factor by which a space is larger than another that is rotated against it at most; 0:
+   not so, or mirrored.  Files have seven digits. */
 static double space_factor(const Space *space)
 {
     const double  CLOSE = 1e-4;
@@ -198,7 +198,8 @@ static bool write_camera(const JsurfSurface *surface, const Space *camera)
     return true;
 }
 
-/* Lights of SURFER grow no weaker with distance, so they get as much stronger as they are far. */
+/* Writes a light: those of SURFER grow no weaker with distance, so they get as much stronger as
+   they are far. */
 static bool write_light(const JsurfSurface *surface, const Space *camera, int number)
 {
     static const double white[3] = {1, 1, 1};

@@ -28,7 +28,8 @@ static int hexadecimal(const char **at)
     return code > 0 && code < 128 ? code : '?'; /* nothing that counts here is beyond ASCII */
 }
 
-/* The next character of a line that backslashes may make several; *escaped: it means itself. */
+/* Returns the next character of a line that backslashes may make several; *escaped: it means
+   itself. */
 static int next_character(Reader *reader, bool *escaped)
 {
     *escaped = *reader->at == '\\' && reader->at[1] != '\0';
@@ -54,7 +55,7 @@ static int next_character(Reader *reader, bool *escaped)
     }
 }
 
-/* Everything up to a blank, `=` or `:`, or all of the line. */
+/* Reads everything up to a blank, `=` or `:`, or all of the line. */
 static const char *read_piece(const JsurfSurface *surface, Reader *reader, bool key)
 {
     Text text = {.arena = surface->import->arena};

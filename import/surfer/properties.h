@@ -24,13 +24,13 @@ typedef struct JsurfSurface {
     double               scale; /* radius of the ball in the space of the equation */
 } JsurfSurface;
 
-/* False after words about what cannot be read. */
+/* Reads a file; false after words about what cannot be read. */
 bool jsurf_read(JsurfSurface *surface);
 /* The last one of a name counts; NULL when there is none. */
 const JsurfProperty *jsurf_property(const JsurfSurface *surface, const char *key);
 /* Returns the line of the property; 1 when there is none. */
 unsigned jsurf_line(const JsurfSurface *surface, const char *key);
-/* `count` numbers; those given stay as they are when there is no such property. */
+/* Reads `count` numbers; those given stay as they are when there is no such property. */
 bool jsurf_numbers(const JsurfSurface *surface, const char *key, double *numbers, int count);
 
 #endif

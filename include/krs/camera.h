@@ -39,11 +39,11 @@ void krs_camera_toggle_perspective(KrsCamera *camera);
 /* Looks at a point from where the eye is, with the point as the new center of orbits. */
 void krs_camera_aim(KrsCamera *camera, const double point[3]);
 
-/* The unit direction of sight, and those of the picture's right and top. */
+/* Finds the unit direction of sight, and those of the picture's right and top. */
 void krs_camera_axes(const KrsCamera *camera, double forward[3], double right[3], double up[3]);
-/* The box around a component at the values of a state; false: it has no end, or is empty. */
+/* Finds the box around a component at the values of a state; false: it has no end, or is empty. */
 bool krs_state_component_box(KrsState *state, size_t component, double low[3], double high[3]);
-/* The box around all components that have an end; false: there is none. */
+/* Finds the box around all components that have an end; false: there is none. */
 bool krs_state_box(KrsState *state, double low[3], double high[3]);
 
 #ifdef __GNUC__

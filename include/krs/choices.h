@@ -15,7 +15,7 @@ extern "C" {
 /* Names stand in arrays of this size, whose last elements are NULL: there will be more choices. */
 #define KRS_MAX_CHOICES 32
 
-/* How light is found: KRS_INTEGRATOR_PREVIEW and so on. */
+/* The ways in which light is found: KRS_INTEGRATOR_PREVIEW and so on. */
 typedef enum KrsIntegrator {
     KRS_INTEGRATOR_DEFAULT, /* as the scene says, or preview */
 #define KRS_INTEGRATOR(id, name, about) KRS_INTEGRATOR_##id,
@@ -24,8 +24,8 @@ typedef enum KrsIntegrator {
 } KrsIntegrator;
 extern const char *const krs_integrator_names[KRS_MAX_CHOICES]; /* "default", "preview", ... */
 
-/* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on.  KRS_TRACE_TAYLOR and all behind it want a
-   scene that was compiled with `research`. */
+/* The ways in which rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on.  KRS_TRACE_TAYLOR
+   and all behind it want a scene that was compiled with `research`. */
 typedef enum KrsTrace {
 #define KRS_TRACE(id, name, about) KRS_TRACE_##id,
 #include "krs/choices.def"
@@ -33,7 +33,7 @@ typedef enum KrsTrace {
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_MAX_CHOICES]; /* "default", "plain", ... */
 
-/* How rays are assigned to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
+/* The ways in which rays are assigned to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
 typedef enum KrsSchedule {
 #define KRS_SCHEDULE(id, name, about) KRS_SCHEDULE_##id,
 #include "krs/choices.def"
@@ -69,7 +69,7 @@ typedef enum KrsShadows {
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_MAX_CHOICES];
 
-/* Who marches the rays of a camera: KRS_EXECUTOR_KERNELS, KRS_EXECUTOR_LANES. */
+/* The executors that march the rays of a camera: KRS_EXECUTOR_KERNELS, KRS_EXECUTOR_LANES. */
 typedef enum KrsExecutor {
 #define KRS_EXECUTOR(id, name, about) KRS_EXECUTOR_##id,
 #include "krs/choices.def"
@@ -77,7 +77,8 @@ typedef enum KrsExecutor {
 } KrsExecutor;
 extern const char *const krs_executor_names[KRS_MAX_CHOICES];
 
-/* How far above surfaces rays of paths begin: KRS_STARTS_PRECISION, KRS_STARTS_DISTANCE. */
+/* The heights above surfaces at which rays of paths begin: KRS_STARTS_PRECISION,
+   KRS_STARTS_DISTANCE. */
 typedef enum KrsStarts {
 #define KRS_STARTS(id, name, about) KRS_STARTS_##id,
 #include "krs/choices.def"
@@ -85,7 +86,7 @@ typedef enum KrsStarts {
 } KrsStarts;
 extern const char *const krs_starts_names[KRS_MAX_CHOICES];
 
-/* How the rays of a pixel are weighed by their place: KRS_PIXEL_FILTER_BOX and so on. */
+/* The weights of the rays of a pixel by their place: KRS_PIXEL_FILTER_BOX and so on. */
 typedef enum KrsPixelFilter {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) KRS_PIXEL_FILTER_##id,
 #include "krs/choices.def"
@@ -93,7 +94,7 @@ typedef enum KrsPixelFilter {
 } KrsPixelFilter;
 extern const char *const krs_pixel_filter_names[KRS_MAX_CHOICES];
 
-/* What falls on a plate: KRS_CATCHER_DEFAULT, KRS_CATCHER_SHADOWS and so on. */
+/* The light that a plate catches: KRS_CATCHER_DEFAULT, KRS_CATCHER_SHADOWS and so on. */
 typedef enum KrsCatcher {
 #define KRS_CATCHER(id, name, about) KRS_CATCHER_##id,
 #include "krs/choices.def"
@@ -102,8 +103,8 @@ typedef enum KrsCatcher {
 extern const char *const krs_catcher_names[KRS_MAX_CHOICES];
 
 /*
- * How a picture is found, for who compares methods: pictures are the same within the permitted error, but take other
- * times.  Zero asks for the fastest that is known.
+ * The methods by which a picture is found, for programs that compare them: pictures are the same
+ * within the permitted error, but take other times.  Zero asks for the fastest that is known.
  */
 typedef struct KrsMethods {
     uint32_t      max_steps;     /* of a primary ray; 0: 16384, which is also the most */

@@ -62,7 +62,7 @@ KRS_RENAMED(KrsStatus, krs_texture_places, krs_texture_uvs,
             (KrsState * state, const double (*points)[3], size_t count, double (*uvs)[2]),
             (state, points, count, uvs))
 
-/* Those of camera.h. */
+/* These do what those of camera.h do. */
 void krs_camera_orbit(KrsCamera *camera, double right, double up);
 KRS_RENAMED_VOID(krs_camera_turn, krs_camera_orbit, (KrsCamera * camera, double right, double up),
                  (camera, right, up))

@@ -49,9 +49,10 @@ typedef struct KrsGridShape {
     double  cell, band; /* lengths; band 0: none */
     int64_t first[3];
     size_t  count[3]; /* of samples; 0: there is nothing solid */
-    /* How far distances may be below the true ones where `exact` is asked for, else 0. */
+    /* The length by which distances may be below the true ones where `exact` is asked for, else 0. */
     double error;
-    /* How many places of the mesh behind exact distances have no proof of that, and the first of them. */
+    /* The places of the mesh behind exact distances that have no proof of that, and the first of
+       them. */
     size_t unresolved;
     double unresolved_at[3];
     bool   outside;  /* distances are exact outside of the solid, but for rounding */
@@ -82,8 +83,9 @@ KRS_SIZED KrsStatus    krs_grid_new(KrsState *state, const KrsGridOptions *optio
 void                   krs_grid_free(KrsGrid *grid);
 KRS_SIZED KrsGridShape krs_grid_shape(const KrsGrid *grid);
 
-/* Another band and another alignment than those of the options, for other files of the same distances: what they come from
-   stays.  KRS_BAD_ARGUMENT: as of krs_grid_new; then this is to be called again before the samples are visited. */
+/* Sets another band and another alignment than those of the options, for other files of the same
+   distances: what they come from stays.  KRS_BAD_ARGUMENT: as of krs_grid_new; then this is to be
+   called again before the samples are visited. */
 KrsStatus krs_grid_set_band(KrsGrid *grid, double band, bool aligned);
 
 /* Told of a brick, which lives until it returns; false: stop, with KRS_IO_ERROR. */

@@ -70,7 +70,7 @@ extern "C" {
     }
 #endif
 
-/* The version of the library that a program runs with, as KRS_VERSION has it. */
+/* Returns the version of the library that a program runs with, as KRS_VERSION has it. */
 const char *krs_version(void);
 
 /* The numbers are also the exit statuses of the command `krs`. */
@@ -149,7 +149,8 @@ typedef enum KrsSpecialize {
                                  many that drivers would take minutes */
 } KrsSpecialize;
 
-/* What compiling a scene, or meshing a state, may use where nothing else is asked for: 2 GiB. */
+/* The memory that compiling a scene, or meshing a state, may use if nothing else is asked for: 2
+   GiB. */
 #define KRS_USUAL_MEMORY ((size_t)2 << 30)
 
 typedef struct KrsOptions {
@@ -173,9 +174,9 @@ typedef struct KrsOptions {
     bool
         figures; /* plane figures may be shown: each is made solid along z, about as high as it is long.  Its section
                       by the plane z = 0 is the figure */
-    /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
-       links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
-       must be in the folder for `use` to work.  NULL: all files may be read. */
+    /* The folder of the files that are read; others are E0504, also behind symbolic links.  That
+       includes the scene itself in krs_compile_file.  With krs_compile_text, `name` must be in the
+       folder for `use` to work.  NULL: all files may be read. */
     const char *root;
     /* The text of the scene, where krs_compile_file has only its name: use krs_compile_text. */
     const char *text   KRS_DEPRECATED("krs_compile_text");
@@ -207,9 +208,10 @@ KRS_SIZED KrsStatus krs_compile_file(const char *path, const KrsOptions *options
    is ignored, as in all functions that free. */
 void krs_scene_free(KrsScene *scene);
 
-/* E0401: why no shader is made of the scene, for which drivers would take minutes; NULL: shaders are made.  It lives as
-   long as the scene.  krs_text is refused, and so are renderings, but for previews by lanes of the host
-   (KRS_EXECUTOR_LANES), which all previews are then.  Answers, meshes, sections and grids need no shader. */
+/* Returns E0401: why no shader is made of the scene, for which drivers would take minutes; NULL:
+   shaders are made.  It lives as long as the scene.  krs_text is refused, and so are renderings,
+   but for previews by lanes of the host (KRS_EXECUTOR_LANES), which all previews are then.
+   Answers, meshes, sections and grids need no shader. */
 const KrsDiagnostic *krs_scene_too_large(const KrsScene *scene);
 
 /*
@@ -242,7 +244,7 @@ KRS_SIZED KrsStatus krs_format_file(const char *path, const KrsOptions *options,
  */
 KrsStatus krs_words(const KrsAllocator *allocator, char **json);
 
-/* What is different in an edited scene. */
+/* The difference of an edited scene. */
 typedef enum KrsChange {
     KRS_CHANGE_NOTHING,  /* but names, comments and blanks: pictures and distances are the same */
     KRS_CHANGE_VALUES,   /* numbers, colours, parameters, cameras, lights, image: shaders stay */
@@ -274,7 +276,7 @@ typedef struct KrsChanges {
 KRS_SIZED KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
                                      KrsScene **updated, KrsChanges *changes);
 
-/* The same with the scene's own file as it is now, which is read by the rules of the first
+/* Does the same with the scene's own file as it is now, which is read by the rules of the first
    compilation, and told of to KrsOptions.opened.  KRS_IO_ERROR: it cannot be read. */
 KRS_SIZED KrsStatus krs_scene_reload(const KrsScene *scene, KrsScene **updated,
                                      KrsChanges *changes);
@@ -298,7 +300,7 @@ typedef struct KrsParameter {
 } KrsParameter;
 
 size_t krs_parameter_count(const KrsScene *scene);
-/* Parameter `index` in the order of the text; KRS_BAD_ARGUMENT when there is none. */
+/* Finds parameter `index` in the order of the text; KRS_BAD_ARGUMENT when there is none. */
 KRS_SIZED KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter);
 
 /* The properties of the `image` block; 0 or NULL where one is not given. */
@@ -333,8 +335,9 @@ double    krs_state_time(const KrsState *state);
 /* Moves the camera of a scene that has none so that all is in the picture at the values and the time of
    the state; until then that holds for the defaults and time 0.  Other scenes are left as they are. */
 KrsStatus krs_state_fit_camera(KrsState *state);
-/* The location ("scene.krs:3:14") of an expression whose slope has no bound for the last value or
-   time, which was refused for that reason.  NULL if it was accepted, or refused for another one. */
+/* Returns the location ("scene.krs:3:14") of an expression whose slope has no bound for the last
+   value or time, which was refused for that reason.  NULL if it was accepted, or refused for
+   another one. */
 const char *krs_state_unbounded(const KrsState *state);
 
 /* The languages in which a scene is printed, a row of targets.def each. */
@@ -357,11 +360,11 @@ typedef struct KrsTextOptions {
 } KrsTextOptions;
 
 /*
- * The text of a scene, for engines that have shaders of their own: functions for its distance and its surface, and all
- * that they need (docs/library.md).  It is the same for all states.  `options` may be NULL.
- *
- * On KRS_OK the caller releases *text by the allocator of the scene's options, or by free() where there is none.  On any
- * other status it is NULL: KRS_BAD_SCENE (krs_scene_too_large), KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY.
+ * Writes the text of a scene, for engines that have shaders of their own: functions for its
+ * distance and its surface, and all that they need (docs/library.md).  It is the same for all
+ * states.  `options` may be NULL.  On KRS_OK the caller releases *text by the allocator of the
+ * scene's options, or by free() where there is none.  On any other status it is NULL: KRS_BAD_SCENE
+ * (krs_scene_too_large), KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY.
  */
 KRS_SIZED KrsStatus krs_text(const KrsScene *scene, KrsTarget target, const KrsTextOptions *options,
                              char **text);
@@ -376,10 +379,10 @@ KRS_SIZED KrsStatus krs_text(const KrsScene *scene, KrsTarget target, const KrsT
 size_t krs_parameter_slots(const KrsScene *scene);
 void   krs_state_parameters(const KrsState *state, float (*block)[4]);
 /*
- * With KrsTextOptions.state_values the text has krs_value_slots more slots behind those.  They
- * are for other values that depend on the state alone, such as rotations by a parameter and sines
- * of the time.  So these are not computed at each point, which saves registers, and they are
- * computed in double precision.
+ * Returns how many more slots the text has behind those with KrsTextOptions.state_values.  They are
+ * for other values that depend on the state alone, such as rotations by a parameter and sines of
+ * the time.  So these are not computed at each point, which saves registers, and they are computed
+ * in double precision.
  */
 size_t krs_value_slots(const KrsScene *scene);
 void   krs_state_values(const KrsState *state, float (*block)[4]);
@@ -432,7 +435,7 @@ typedef enum KrsProjection {
 #include "krs/camera.def"
 } KrsProjection;
 
-/* How many numbers a member has, by its kind in camera.def. */
+/* The numbers of a member, by its kind in camera.def. */
 #define KRS_CAMERA_place [3]
 #define KRS_CAMERA_axis  [3]
 #define KRS_CAMERA_pair  [2]
@@ -451,10 +454,10 @@ typedef struct KrsCamera {
    is the default.  The name is NULL if the camera has none, and lives as long as the scene. */
 size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);
-/* The place of a camera's block in the text, from `camera` to behind the `}`.  KRS_BAD_ARGUMENT: there is no such
-   camera, or the compiler places it. */
+/* Finds the place of a camera's block in the text, from `camera` to behind the `}`.
+   KRS_BAD_ARGUMENT: there is no such camera, or the compiler places it. */
 KRS_SIZED KrsStatus krs_camera_location(const KrsScene *scene, size_t index, KrsLocation *location);
-/* A camera at the state's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
+/* Finds a camera at the state's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
    index. */
 KRS_SIZED KrsStatus krs_state_camera(KrsState *state, size_t index, KrsCamera *camera);
 
@@ -477,7 +480,7 @@ typedef struct KrsComponent {
 } KrsComponent;
 
 size_t krs_component_count(const KrsScene *scene);
-/* Component `index`, from 0 in the order of the text; KRS_BAD_ARGUMENT when there is none. */
+/* Finds component `index`, from 0 in the order of the text; KRS_BAD_ARGUMENT when there is none. */
 KRS_SIZED KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
 
 /* Names of the scene's materials, each once, for the numbers that answers and mattes have: from 1 on.
@@ -485,7 +488,7 @@ KRS_SIZED KrsStatus krs_component(const KrsScene *scene, size_t index, KrsCompon
 size_t      krs_material_count(const KrsScene *scene);
 const char *krs_material_name(const KrsScene *scene, size_t number);
 
-/* What is known of the distance of one shape of a component, in the shape's own space. */
+/* The bounds of the distance of one shape of a component, in the shape's own space. */
 typedef struct KrsBound {
     uint32_t    depth;           /* 0: the whole component; its parts follow, with 1, and so on */
     const char *name;            /* "torus", "union" */
@@ -497,17 +500,17 @@ typedef struct KrsBound {
     bool        exact, estimate; /* as in KrsComponent, like the next two */
     uint32_t    levels;
     double      instances;
-    /* How many parts of the same structure, made at the same place, have no entry. */
+    /* The parts of the same structure, made at the same place, that have no entry. */
     KRS_WAS(uint32_t similar, uint32_t alike, "similar");
     size_t      same;       /* number from 1 of the entry that lists its parts; 0: this one */
     uint32_t    start, end; /* bytes of `source`; zeros where that is a text of the library */
     const char *given;      /* what the author calls it, by the `let` that has it first; or NULL */
 } KrsBound;
 
-/* The number of entries, at most 256; 0 if there is no such component.  *more, unless NULL, becomes
-   the number of shapes for which there was no room. */
+/* Returns the number of entries, at most 256; 0 if there is no such component. *more, unless NULL,
+   becomes the number of shapes for which there was no room. */
 size_t krs_bound_count(const KrsScene *scene, size_t component, size_t *more);
-/* KRS_BAD_ARGUMENT when there is no such entry. */
+/* Finds a bound of a component; KRS_BAD_ARGUMENT when there is no such entry. */
 KRS_SIZED KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index,
                               KrsBound *bound);
 
@@ -517,18 +520,18 @@ KRS_SIZED KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t in
  * KRS_BAD_ARGUMENT and writes nothing.
  */
 
-/* Distances for `count` points in world units: never above the distance to the nearest surface,
-   negative inside.  +infinity in a scene with nothing in it. */
+/* Finds the distances of `count` points in world units: never above the distance to the nearest
+   surface, negative inside.  +infinity in a scene with nothing in it. */
 KrsStatus krs_distance(KrsState *state, const double (*points)[3], size_t count, double *distances);
-/* Unit gradients of the distance, outwards; 0 where there is none. */
+/* Finds unit gradients of the distance, outwards; 0 where there is none. */
 KrsStatus krs_normal(KrsState *state, const double (*points)[3], size_t count,
                      double (*normals)[3]);
 
-/* How many numbers a member has, by its type in surface.def. */
+/* The numbers of a member, by its type in surface.def. */
 #define KRS_NUMBERS_FLOAT
 #define KRS_NUMBERS_VEC3 [3]
 
-/* What is known at a point, or where a ray ends. */
+/* The distance and surface at a point, or where a ray ends. */
 typedef struct KrsHit {
     bool   hit;        /* for rays; always true for points */
     bool   unresolved; /* for rays: ended after KRS_MAX_STEPS steps; nothing before `t` */
@@ -550,7 +553,7 @@ typedef struct KrsHit {
 #include "krs/surface.def"
 } KrsHit;
 
-/* Distance, normal and identity at points. */
+/* Finds distance, normal and identity at points. */
 KRS_SIZED KrsStatus krs_probe(KrsState *state, const double (*points)[3], size_t count,
                               KrsHit *hits);
 

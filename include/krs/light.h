@@ -11,7 +11,7 @@ extern "C" {
 #pragma GCC visibility push(default)
 #endif
 
-/* How many numbers a member has, by its kind in lights.def. */
+/* The numbers of a member, by its kind in lights.def. */
 #define KRS_LIGHT_NUMBERS_vector [3]
 #define KRS_LIGHT_NUMBERS_color  [3]
 #define KRS_LIGHT_NUMBERS_axis   [3]

@@ -30,7 +30,7 @@ typedef struct KrsMeasureOptions {
     void                *user;
 } KrsMeasureOptions;
 
-/* How a part lies on the plate. */
+/* An orientation of a part on the plate. */
 typedef struct KrsOrientation {
     double up[3];    /* unit; in the scene, away from the plate */
     double height;   /* along it */
@@ -72,8 +72,9 @@ typedef struct KrsMeasures {
 } KrsMeasures;
 
 /*
- * On KRS_OK the caller frees *measures with krs_measures_free; where nothing is solid, volume and area are 0.
- * KRS_BAD_ARGUMENT as of krs_mesh, and if an angle or a length cannot be.
+ * Measures what a state shows.  On KRS_OK the caller frees *measures with krs_measures_free; where
+ * nothing is solid, volume and area are 0.  KRS_BAD_ARGUMENT as of krs_mesh, and if an angle or a
+ * length cannot be.
  */
 KRS_SIZED KrsStatus krs_measure(KrsState *state, const KrsMeasureOptions *options,
                                 KrsMeasures **measures);

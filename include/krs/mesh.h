@@ -29,9 +29,10 @@ typedef struct KrsMeshOptions {
     /* Leaves out triangles that the error permits to leave out, as krs_mesh_simplify does.  Half of the error is for
        that where not all faces are flat or round.  Where memory does not suffice for so small an error, none is left out. */
     bool simplify;
-    /* Only the shape counts.  Without it triangles have one material each where materials change in steps, as from part to
-       part (KrsMesh.steps).  Where they change evenly, or parts are blended, triangles stay as even as the mesher makes them, so that
-       colours at their corners show it. */
+    /* The shape alone counts.  Without it triangles have one material each where materials change
+       in steps, as from part to part (KrsMesh.steps).  Where they change evenly, or parts are
+       blended, triangles stay as even as the mesher makes them, so that colours at their corners
+       show it. */
     bool shape;
     /* Looks at points and proves nothing: several times as fast.  What is thinner than some errors may be missed, and the
        error is that of these points. */
@@ -81,7 +82,7 @@ void                krs_mesh_free(KrsMesh *mesh);
 KRS_SIZED KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
                                       KrsMesh **simplified);
 
-/* How an item is placed: x -> matrix (x, 1), which rotates, moves, mirrors and scales evenly. */
+/* The placing of an item: x -> matrix (x, 1), which rotates, moves, mirrors and scales evenly. */
 typedef struct KrsTransform {
     size_t item;
     double matrix[3][4];
@@ -98,7 +99,7 @@ typedef struct KrsItem {
     const char *name;
 } KrsItem;
 
-/* What a state shows, as meshes and their copies; the last item is all of it. */
+/* The meshes that a state shows, and their copies; the last item is all of it. */
 typedef struct KrsAssembly {
     KrsItem *items;
     KRS_WAS(KrsTransform *transforms, KrsTransform *placings, "transforms");
@@ -129,14 +130,15 @@ KrsStatus krs_assembly_transform(KrsState *state, KrsAssembly *assembly);
 typedef bool KrsVisitCopy(void *user, const KrsItem *item, const double matrix[3][4]);
 bool         krs_assembly_visit(const KrsAssembly *assembly, KrsVisitCopy *visit, void *user);
 
-/* What the time does to a component, of a scene that was compiled with KrsOptions.motion.  All are false for one that
-   stands still. */
+/* The motion of a component, of a scene that was compiled with KrsOptions.motion.  All are false
+   for one that stands still. */
 typedef struct KrsMotion {
     bool moves;    /* parts of it are moved or rotated: krs_assemble takes it apart */
     bool deforms;  /* something changes its form, or its size: a mesh is that of one time */
     bool recolors; /* its material changes */
 } KrsMotion;
-/* KRS_BAD_ARGUMENT: there is no component `index`, from 0, or nobody asked. */
+/* Finds the motion of component `index`, from 0.  KRS_BAD_ARGUMENT: there is none, or nobody
+   asked. */
 KRS_SIZED KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *motion);
 
 /* The convex hull of two balls. */

@@ -35,8 +35,8 @@ typedef struct KrsSectionPlane {
     double point[3], normal[3];
 } KrsSectionPlane;
 
-/* The unit directions of a plane's x and y, as it is seen: y goes up as the scene's y does; where that is along the
-   normal, x goes as the scene's. */
+/* Finds the unit directions of a plane's x and y, as it is seen: y goes up as the scene's y does;
+   where that is along the normal, x goes as the scene's. */
 void krs_plane_axes(const KrsSectionPlane *plane, double right[3], double up[3]);
 
 /* Points first to first + count - 1 of a section, of which the last is joined to the first. */
@@ -65,16 +65,17 @@ typedef struct KrsSection {
 typedef struct KrsSlicer KrsSlicer;
 
 /*
- * What is needed to make sections of what a state shows, which must stay as it is until the slicer is freed.
- * KRS_BAD_ARGUMENT: there is no such component; what is cut has no end, or is no solid (surfaces without thickness);
- * or the error is below a ten-millionth of the size.
+ * Makes what is needed to make sections of what a state shows, which must stay as it is until the
+ * slicer is freed.  KRS_BAD_ARGUMENT: there is no such component; what is cut has no end, or is no
+ * solid (surfaces without thickness); or the error is below a ten-millionth of the size.
  */
 KRS_SIZED KrsStatus krs_slicer_new(KrsState *state, const KrsSliceOptions *options,
                                    KrsSlicer **slicer);
 void                krs_slicer_free(KrsSlicer *slicer);
-/* Another error than that of the options, which the box may tell: at least a ten-millionth of the size. */
+/* Sets another error than that of the options, which the box may tell: at least a ten-millionth of
+   the size. */
 KrsStatus krs_slicer_set_error(KrsSlicer *slicer, double error);
-/* The box around what is cut; false: there is nothing. */
+/* Finds the box around what is cut; false: there is nothing. */
 bool krs_slicer_box(const KrsSlicer *slicer, double low[3], double high[3]);
 
 /*

@@ -83,7 +83,7 @@ typedef struct KrsRendererOptions {
                                a picture; then it counts as lost: KRS_INTERNAL.  0: 300 */
 } KrsRendererOptions;
 
-/* The devices of this machine, in Vulkan's order.  *count is how many there are, of which the
+/* Lists the devices of this machine, in Vulkan's order.  *count is how many there are, of which the
    first `capacity` are written.  KRS_NO_DEVICE: Vulkan cannot be started, or knows no device. */
 KRS_SIZED KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count);
 
@@ -93,17 +93,17 @@ KRS_SIZED KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *cou
 KRS_SIZED KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **renderer);
 void krs_renderer_free(KrsRenderer *renderer); /* its renderings must be freed before */
 
-/* Why the last call on this renderer, or on one of its renderings, failed: one line, "" when it
-   did not.  Lives until the next such call. */
+/* Returns why the last call on this renderer, or on one of its renderings, failed: one line, ""
+   when it did not.  It lives until the next such call. */
 const char *krs_renderer_message(const KrsRenderer *renderer);
-/* The device that was opened. */
+/* Returns the device that was opened. */
 KRS_SIZED KrsDevice krs_renderer_device(const KrsRenderer *renderer);
-/* How many messages the validation layers have had so far. */
+/* Returns how many messages the validation layers have had so far. */
 uint64_t krs_renderer_validation_messages(const KrsRenderer *renderer);
 
-/* What a rendering is mostly for.  Those shaders are compiled at once, others when they are
-   first needed.  Empty zones (krs_state_set_zones) need shaders of their own: for the first
-   zone, and when there are more than 1, 2, 4 or 8 for the first time. */
+/* The main use of a rendering.  Its shaders are compiled at once, others when they are first
+   needed.  Empty zones (krs_state_set_zones) need shaders of their own: for the first zone, and
+   when there are more than 1, 2, 4 or 8 for the first time. */
 typedef enum KrsPurpose {
     KRS_FOR_PICTURES,       /* krs_render, by the integrator preview */
     KRS_FOR_QUESTIONS,      /* krs_device_probe, krs_device_raycast */
@@ -136,8 +136,8 @@ typedef struct KrsShaderStats {
     bool     cached;     /* its SPIR-V was found in the cache, or in the library */
 } KrsShaderStats;
 
-/* The shaders made so far, those without a scene first.  Writes up to `capacity` of them, and
-   returns how many there are. */
+/* Returns the shaders made so far, those without a scene first.  Writes up to `capacity` of them,
+   and returns how many there are. */
 KRS_SIZED size_t krs_rendering_shaders(const KrsRendering *rendering, KrsShaderStats *shaders,
                                        size_t capacity);
 
@@ -177,10 +177,10 @@ typedef struct KrsWindow {
     uint32_t x, y, width, height; /* of pixels; row 0 is the top */
 } KrsWindow;
 
-/* Which eye of a camera sees, for stereo; KrsCamera.eyes is their distance. */
+/* The eye of a camera that sees, for stereo; KrsCamera.eyes is their distance. */
 typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEye;
 
-/* What is meant where neither the caller nor the scene says, and the most there may be. */
+/* The sizes if neither the caller nor the scene gives them, and the greatest ones. */
 #define KRS_DEFAULT_WIDTH         1280
 #define KRS_DEFAULT_HEIGHT        720
 #define KRS_DEFAULT_SAMPLES       1
@@ -225,12 +225,13 @@ typedef struct KrsRenderOptions {
     uint32_t light;
     bool     light_groups; /* makes KrsPicture.lights; neither with max_radiance nor with noise */
     bool     mattes;       /* count what the rays of each pixel hit: KrsPicture.mattes */
-    /* What another renderer has made: a number and a colour for each pixel of the whole picture, from the top;
-       NULL: none.  Rays end at the depths, which are as those of the depth AOV; what is not a number is no
-       limit.  What rays do not hit shows the plate: premultiplied light and alpha.  Both must live as long as
-       the film.  Where both are known, the plate catches shadows of the scene, as a surface whose normals
-       follow from the depths: see KrsPicture.caught.  Shapes mirror the plate, and lie in its shadow, where a
-       camera that is no panorama shows what rays meet of it. */
+    /* The picture of another renderer: a number and a colour for each pixel of the whole picture,
+       from the top; NULL: none.  Rays end at the depths, which are as those of the depth AOV; what
+       is not a number is no limit.  What rays do not hit shows the plate: premultiplied light and
+       alpha.  Both must live as long as the film.  Where both are known, the plate catches shadows
+       of the scene, as a surface whose normals follow from the depths: see KrsPicture.caught.
+       Shapes mirror the plate, and lie in its shadow, where a camera that is no panorama shows what
+       rays meet of it. */
     const float *depth;
     const float (*plate)[4];
     KrsCatcher catcher;             /* anything but KRS_CATCHER_NONE needs depths */
@@ -312,12 +313,13 @@ typedef struct KrsPicture {
     /* The light of a plate that catches shadows, with the scene, relative to that without, by which
        the plate is multiplied; 1 where it has no depth.  Else NULL. */
     float (*caught)[3];
-    /* What the surface of a glossy plate mirrors of the scene, less what that hides from it, which
-       is added to the plate.  It may be negative.  Else NULL. */
+    /* The light that the surface of a glossy plate mirrors of the scene, less what that hides from
+       it, which is added to the plate.  It may be negative.  Else NULL. */
     float (*mirrored)[3];
-    /* Without a camera these change nothing.  For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
-       has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
-       For a panorama NDC is camera space. */
+    /* The matrices of the camera; without one these change nothing.  For row vectors, v * M.
+       Camera space has x to the right, y up, z along the view axis.  NDC has x and y from -1 to 1;
+       in perspective z goes from 0 at distance 0.001 to 1 at infinity.  For a panorama NDC is
+       camera space. */
     float          world_to_camera[4][4], world_to_ndc[4][4];
     KrsRenderStats stats;
     KrsAllocator   allocator; /* where the memory came from */
@@ -338,17 +340,18 @@ KRS_SIZED KrsStatus krs_render(KrsRendering *rendering, KrsState *state,
                                const KrsRenderOptions *options, KrsPicture **picture);
 void                krs_picture_free(KrsPicture *picture);
 
-/* What a screen shows of a picture: its window as 8-bit sRGB, `channels` bytes a pixel (3, or 4 with
-   an alpha of 255), as a PNG of `krs render` has it.  The curve, the exposure and the white balance
-   are those of the scene's `image` block; `stops` are added to the exposure.  Colours are
+/* Fills what a screen shows of a picture: its window as 8-bit sRGB, `channels` bytes a pixel (3, or
+   4 with an alpha of 255), as a PNG of `krs render` has it.  The curve, the exposure and the white
+   balance are those of the scene's `image` block; `stops` are added to the exposure.  Colours are
    dithered by their place in the whole picture.  KRS_BAD_ARGUMENT: other channels, or the picture
    has no colour. */
 KrsStatus krs_picture_to_srgb8(const KrsPicture *picture, const KrsScene *scene, double stops,
                                uint32_t channels, uint8_t *pixels);
 
-/* Two pictures of the same size and AOVs, without `lights`, as one: the second to the right of the
-   first, or below it.  Its statistics are the sums.  It has no camera, so its matrices change
-   nothing.  On KRS_OK the caller owns *joined.  KRS_BAD_ARGUMENT: they differ, or have a crop; KRS_OUT_OF_MEMORY. */
+/* Joins two pictures of the same size and AOVs, without `lights`: the second to the right of the
+   first, or below it.  The statistics are the sums.  The result has no camera, so its matrices
+   change nothing.  On KRS_OK the caller owns *joined.  KRS_BAD_ARGUMENT: they differ, or have a
+   crop; KRS_OUT_OF_MEMORY. */
 KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bool below,
                            KrsPicture **joined);
 
@@ -367,8 +370,8 @@ KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bo
  */
 typedef struct KrsFilm KrsFilm;
 
-/* A film of a rendering's scene; `options` (or NULL) are checked and copied, and hold for all of its
-   samples.  Where it fails *film is NULL: KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY. */
+/* Makes a film of a rendering's scene; `options` (or NULL) are checked and copied, and hold for all
+   of its samples.  If it fails *film is NULL: KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY. */
 KRS_SIZED KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
                                  KrsFilm **film);
 void                krs_film_free(KrsFilm *film); /* before its rendering */
@@ -392,8 +395,9 @@ KRS_SIZED KrsStatus krs_film_try_lanes(KrsFilm *film, KrsState *state, const Krs
 typedef struct KrsRays {
     const double (*origins)[3];    /* in world units */
     const double (*directions)[3]; /* of any length but 0 */
-    /* What a pixel is for a camera: how wide a ray is at its origin, and how much wider it gets for
-       each unit along it, both at least 0.  The permitted error counts in these widths. */
+    /* The width of a ray, which is what a pixel is for a camera: at its origin, and how much
+       wider it gets for each unit along it, both at least 0.  The permitted error counts in
+       these widths. */
     double width, spread;
     /* No ray goes farther, in world units along it; 0: as far as the scene's box reaches, or, where
        it has no end, 10,000 times its size or that of the box around the origins (at least 1). */
@@ -404,7 +408,7 @@ typedef struct KrsRays {
    along the ray.  The first time it compiles shaders. */
 KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsState *state, const KrsRays *rays);
 
-/* The mean of the samples so far, with AOVs of the options (bits; 0: all of these).  The film
+/* Reads the mean of the samples so far, with AOVs of the options (bits; 0: all of these).  The film
    stays as it is.  On KRS_OK the caller owns *picture; its statistics are sums over the samples.
    KRS_BAD_ARGUMENT: there is no sample, or no such AOV; KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
 KrsStatus krs_film_read(KrsFilm *film, uint32_t aovs, KrsPicture **picture);

@@ -68,7 +68,7 @@ static bool take(Builder *builder, View *view)
     return taken;
 }
 
-/* What was given up may go on later; a canvas that failed is not used again. */
+/* Ends a build.  One that was given up may go on later; a canvas that failed is not used again. */
 static void finish(Builder *builder, KrsStatus status)
 {
     const bool failed = status != KRS_OK && status != KRS_INTERRUPTED;

@@ -15,7 +15,8 @@ typedef struct BuilderState {
 
 typedef struct Builder Builder;
 
-/* `told` is called in the builder's thread, when the state has changed.  NULL: without memory. */
+/* Makes a builder; `told` is called in its thread, when the state has changed.  NULL: without
+   memory. */
 Builder *builder_new(const KrsRendererOptions *options, void (*told)(void *user), void *user);
 void     builder_free(Builder *builder);
 

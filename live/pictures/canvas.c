@@ -27,10 +27,11 @@ struct Canvas {
     bool          previews;    /* such shaders there are */
     bool          paths_first; /* what the rendering is for */
     Film          films[FILM_COUNT];
-    /* How far the picture is that is being made: films keep the functions that they were made with. */
+    /* The progress of the picture that is being made: films keep the functions that they were made
+       with. */
     KrsProgressCallback *progress;
     void                *user;
-    /* While canvas_prepare compiles. */
+    /* The progress of shaders while canvas_prepare compiles. */
     KrsProgressCallback *compiling;
     void                *compiling_user;
 };
@@ -217,7 +218,7 @@ static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool path
     return KRS_OK;
 }
 
-/* Frame and rendering are of the same scene, whatever fails. */
+/* Updates frame and rendering to one scene, whatever fails. */
 static KrsStatus update(Canvas *canvas, const KrsScene *scene)
 {
     KrsState *state  = NULL;
@@ -261,7 +262,7 @@ KrsStatus canvas_adopt(Canvas *canvas, const View *view)
 #define MIN_SIDE          32
 #define MIN_SIDE_OF_LANES 8
 
-/* Some shaders are compiled when a picture needs them: a small one is made. */
+/* Makes a small picture: some shaders are compiled when one needs them. */
 static KrsStatus try_out(Canvas *canvas, const View *view)
 {
     KrsStatus status = canvas_adopt(canvas, view);
@@ -320,7 +321,7 @@ static bool report_progress(void *user, double done)
     return !canvas->progress || canvas->progress(canvas->user, done);
 }
 
-/* A film of this size, empty if it is new. */
+/* Makes a film of this size, empty if it is new. */
 static KrsStatus make_film(Canvas *canvas, Film *film, const View *view, uint32_t width,
                            uint32_t height)
 {

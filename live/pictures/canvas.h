@@ -10,7 +10,7 @@
 #include "live/text/document.h"
 #include "krs/vulkan.h"
 
-/* What is to be seen. */
+/* The scene and settings that are to be seen. */
 typedef struct View {
     Version  *version; /* held */
     KrsCamera camera;
@@ -26,7 +26,7 @@ typedef struct View {
     ShadingMode   shading;
 } View;
 
-/* A copy, which view_free frees; false: without memory. */
+/* Copies a view for view_free; false: without memory. */
 bool view_copy(const View *view, View *copy);
 void view_free(View *view);
 
@@ -41,10 +41,10 @@ KrsStatus canvas_new(const KrsRendererOptions *options, KrsExecutor executor, Ca
 void      canvas_free(Canvas *canvas);
 /* Tells whether the device is of type CPU. */
 bool canvas_is_of_cpu(const Canvas *canvas);
-/* One line about the last failure. */
+/* Returns one line about the last failure. */
 const char *canvas_message(const Canvas *canvas);
 
-/* What the shaders of a view depend on. */
+/* The properties that the shaders of a view depend on. */
 typedef struct Needs {
     unsigned structure; /* of the version */
     bool     paths;     /* or previews */
@@ -57,12 +57,13 @@ bool  needs_are_equal(const Needs *a, const Needs *b);
 /* Tells whether a canvas shows what has these needs without compiling shaders. */
 bool canvas_meets(const Canvas *canvas, const Needs *needs);
 
-/* The structure that a canvas has shaders of; 0: none. */
+/* Returns the structure that a canvas has shaders of; 0: none. */
 unsigned canvas_structure(const Canvas *canvas);
 /* Takes out of a view of that structure what the canvas has no shaders for. */
 void canvas_reduce(const Canvas *canvas, View *view);
 
-/* What executors take for a view, by estimate: milliseconds of a sample of all pixels by lanes, and of compilers. */
+/* The times of executors for a view, by estimate: milliseconds of a sample of all pixels by lanes,
+   and of compilers. */
 typedef struct Estimate {
     double lanes_ms, compiler_ms;
 } Estimate;
@@ -82,7 +83,7 @@ void canvas_rest(Canvas *canvas);
    KRS_BAD_ARGUMENT. */
 KrsStatus canvas_set(Canvas *canvas, const View *view);
 
-/* A camera of the scene, as it is at the values and the time. */
+/* Finds a camera of the scene, as it is at the values and the time. */
 KrsStatus canvas_camera(Canvas *canvas, size_t index, KrsCamera *camera);
 
 /* Samples of a film of this size, which begins anew when `again`.  `progress` is asked between slices. */
@@ -90,7 +91,7 @@ KrsStatus canvas_add(Canvas *canvas, FilmKind kind, const View *view, uint32_t w
                      uint32_t height, uint32_t samples, bool again, KrsProgressCallback *progress,
                      void *user);
 uint32_t  canvas_samples(const Canvas *canvas, FilmKind kind);
-/* The picture of a film, with these AOVs (0: all that it has); the caller frees it. */
+/* Reads the picture of a film, with these AOVs (0: all that it has); the caller frees it. */
 KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t aovs, KrsPicture **picture);
 
 /* Tells how fast the distance changes along the normal of each pixel of a picture, of how fast it may; 0

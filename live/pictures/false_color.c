@@ -45,7 +45,7 @@ static void set_number(uint8_t *pixel, uint32_t number, double shade)
         shade * (0.6 + 0.35 * cos(hue + 2.1)));
 }
 
-/* The geometric mean of the depths, or 1. */
+/* Returns the geometric mean of the depths, or 1. */
 static double middle_depth(const KrsPicture *picture)
 {
     double       sum = 0, used = 0;

@@ -14,11 +14,12 @@ typedef enum ShadingMode {
 } ShadingMode;
 extern const char *const shading_mode_names[SHADING_COUNT];
 
-/* Four bytes for each pixel of a picture with all AOVs; `shading` is not SHADING_LIGHT.  `slopes` has a
-   number for each pixel, for SHADING_SLOPE alone. */
+/* Fills four bytes for each pixel of a picture with all AOVs; `shading` is not SHADING_LIGHT.
+   `slopes` has a number for each pixel, for SHADING_SLOPE alone. */
 void false_color(const KrsPicture *picture, ShadingMode shading, const float *slopes,
                  uint8_t *pixels);
-/* Four bytes for a part of the most: dark blue, magenta, orange, yellow, each brighter than the one before. */
+/* Fills four bytes for a part of the most: dark blue, magenta, orange, yellow, each brighter than
+   the one before. */
 void heat_color(double part, uint8_t pixel[4]);
 
 #endif

@@ -25,7 +25,7 @@ bool lanes_meet(const Needs *needs);
    *fresh: they did not draw its structure before.  `compiling` is asked between shaders, and false ends it. */
 bool lanes_take(Lanes *lanes, const View *view, double budget, KrsProgressCallback *compiling,
                 void *user, bool *fresh);
-/* They have failed at a view of their structure. */
+/* Notes that lanes have failed at a view of their structure. */
 void lanes_give_up(Lanes *lanes, KrsStatus status);
 
 #endif

@@ -31,11 +31,11 @@
 #define QUIET_MS  30.0
 /* Samples are added in portions that take about this long. */
 #define PORTION_MS 400.0
-/* While compilers need all processors, lanes take one of so many parts of the time that compilers are expected to take, or
-   have taken.  Coarse pictures of what moves are not counted. */
+/* The part of the time that compilers are expected to take, or have taken, that lanes take while
+   compilers need all processors.  Coarse pictures of what moves are not counted. */
 #define LANES_PART 4
 
-/* What executors take for a coarse picture of a structure. */
+/* The times of executors for a coarse picture of a structure. */
 typedef struct Timing {
     unsigned structure;
     double   lanes_ms, shaders_ms;
@@ -199,7 +199,7 @@ static bool lanes_draw(const Painter *painter)
     return painter->drawing && painter->drawing == painter->lanes.canvas;
 }
 
-/* Shaders that take over wait for the picture at hand, unless that takes long. */
+/* Takes the progress of a picture: shaders that take over wait for it, unless that takes long. */
 static bool report_progress(void *user, double done)
 {
     Painter     *painter = user;
@@ -424,7 +424,7 @@ static KrsStatus show_view(Painter *painter)
 
 /* ---- which canvas ---- */
 
-/* Called in the builder's thread. */
+/* Wakes the painter when the builder has news; called in the builder's thread. */
 static void hear_builder(void *user)
 {
     Painter           *painter = user;
@@ -467,7 +467,7 @@ static bool choose_canvas(Painter *painter, const View *next)
     return !painter->orders;
 }
 
-/* Asked while lanes make the first shaders. */
+/* Tells whether lanes go on while they make the first shaders. */
 static bool goes_on(void *user, double done)
 {
     Painter *painter = user;
@@ -493,7 +493,7 @@ static bool begin_lanes(Painter *painter, const View *next)
     return true;
 }
 
-/* Milliseconds of a canvas for a coarse picture, the best of so many. */
+/* Returns the milliseconds of a canvas for a coarse picture, the best of so many. */
 static double time_canvas(Painter *painter, Canvas *canvas, const View *view, int repeats)
 {
     const double   divisor = fmax(painter->resolutions[1].divisor, 1);
@@ -512,8 +512,8 @@ static double time_canvas(Painter *painter, Canvas *canvas, const View *view, in
     return status == KRS_OK ? ms : INFINITY;
 }
 
-/* Times both.  Lanes have drawn the structure already, so it takes one picture; where none with all pixels was ready before
-   shaders were, they are slower. */
+/* Times lanes and shaders.  Lanes have drawn the structure already, so it takes one picture; if
+   none with all pixels was ready before shaders were, they are slower. */
 static void time_executors(Painter *painter, const View *next)
 {
     const unsigned structure = version_structure(next->version);
@@ -552,7 +552,7 @@ static bool keep_lanes(Painter *painter, const View *next)
     return left * painter->timing.lanes_ms <= all * painter->timing.shaders_ms;
 }
 
-/* Values of parameters of the same name, where there are such. */
+/* Takes values of parameters of the same name, where there are such. */
 static void take_values(View *view, const View *from)
 {
     const KrsScene *scene = version_scene(view->version), *other = version_scene(from->version);

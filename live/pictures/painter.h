@@ -28,7 +28,7 @@ typedef struct Shot {
     KrsRenderStats stats;
 } Shot;
 
-/* What the first ray of each pixel met, for the last view of which there is a picture. */
+/* The hits of the first ray of each pixel, for the last view of which there is a picture. */
 typedef struct Found {
     bool     hit;
     double   position[3], normal[3], depth;
@@ -50,7 +50,7 @@ typedef struct PainterState {
 
 typedef struct Painter Painter;
 
-/* NULL: without memory.  The device is opened in the thread. */
+/* Makes a painter, whose device is opened in its thread; NULL: without memory. */
 Painter *painter_new(const PainterOptions *options);
 void     painter_free(Painter *painter);
 
@@ -60,9 +60,9 @@ unsigned painter_show(Painter *painter, const View *view);
    they are there. */
 bool painter_prepare(Painter *painter, const View *view);
 void painter_set_budget(Painter *painter, double ms);
-/* The newest picture, if none took it before; the caller frees its pixels. */
+/* Takes the newest picture, if none took it before; the caller frees its pixels. */
 bool painter_take(Painter *painter, Shot *shot);
-/* What is in the picture at these parts of its width and height, from the top left. */
+/* Finds what is in the picture at these parts of its width and height, from the top left. */
 Found        painter_find(Painter *painter, double x, double y);
 PainterState painter_state(Painter *painter);
 

@@ -55,7 +55,7 @@ static bool report_progress(void *user, double done)
     return !atomic_load(&profiler->given_up);
 }
 
-/* Asked while shaders are compiled and frames are rendered. */
+/* Tells whether shaders are compiled and frames rendered on. */
 static bool goes_on(void *user, double done)
 {
     Profiler *profiler = user;
@@ -74,7 +74,7 @@ static KrsStatus compile(void *user, const KrsLocation *without, KrsScene **scen
     return krs_compile_file(profiler->path, &options, scene);
 }
 
-/* Parameters that the file no longer has, or no longer so, have its defaults. */
+/* Makes a state.  Parameters that the file no longer has, or no longer so, have its defaults. */
 static KrsStatus make_state(void *user, const KrsScene *scene, KrsState **state)
 {
     const Profiler *profiler = user;
@@ -174,7 +174,7 @@ static KrsStatus profile_scene(Profiler *profiler, KrsRenderer *renderer, Costs 
     return status;
 }
 
-/* Where memory runs out, longjmp returns here. */
+/* Profiles a scene; where memory runs out, longjmp returns here. */
 static KrsStatus profile_guarded(Profiler *profiler, KrsRenderer *renderer, Costs *costs)
 {
     jmp_buf exhausted;

@@ -15,7 +15,7 @@ typedef struct CostLine {
 
 #define MAX_COST_LINES 52 /* parts of 2 % and more are 50 at most */
 
-/* What was found of a view. */
+/* The costs of a view. */
 typedef struct Costs {
     CostLine lines[MAX_COST_LINES];
     size_t   count, untimed; /* parts for which there was no time */
@@ -43,11 +43,11 @@ Profiler *profiler_new(const KrsRendererOptions *renderer, const KrsOptions *sce
                        const char *path, void (*told)(void *user), void *user);
 void      profiler_free(Profiler *profiler);
 
-/* Times what this view shows.  False: it is busy, or there is no memory. */
+/* Times what this view shows; false: it is busy, or there is no memory. */
 bool          profiler_start(Profiler *profiler, const View *view);
 void          profiler_cancel(Profiler *profiler);
 ProfilerState profiler_state(Profiler *profiler);
-/* What the last order has found, which the caller frees; false: nothing, or it was taken. */
+/* Takes what the last order has found, which the caller frees; false: nothing, or it was taken. */
 bool profiler_take(Profiler *profiler, Costs *costs);
 
 #endif

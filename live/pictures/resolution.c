@@ -13,7 +13,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* What pixels do not cause may be found to be so many times longer by a single picture, and this much. */
+/* The greatest growth and length that a single picture may find for the time that pixels do not
+   cause. */
 #define MAX_GROWTH 1.5
 #define MAX_STEP   1.0
 
@@ -62,7 +63,8 @@ void resolution_learn_whole(Resolution *resolution, double ms, double pixels)
 double resolution_divide(Resolution *resolution, double pixels, double budget)
 {
     static const double steps[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, MAX_DIVISOR};
-    /* What pixels do not cause, fewer of them do not mend: they have half of the time in any case. */
+    /* Fewer pixels do not shorten the time that pixels do not cause: they have half of it in any
+       case. */
     const double left   = fmax(budget - resolution->fixed_ms, budget / 2);
     double       needed = resolution->pixel_ms > 0 ? sqrt(pixels * resolution->pixel_ms / left) : 8;
     if (resolution->coarse_ms > LATE * budget &&

@@ -15,7 +15,7 @@
 #include "krs/camera.h"
 #include "live/pictures/picture_file.h"
 
-/* So much of an order is done when its shaders are compiled; not more than a frame is. */
+/* The part of an order that is done when its shaders are compiled; not more than a frame is. */
 #define COMPILED_PART 0.2
 
 const char *const save_names[SAVE_COUNT] = {
@@ -69,7 +69,7 @@ static bool report_progress(void *user, double done)
     return tell(saver, (saver->frame + before) / frames_of(&saver->order));
 }
 
-/* What a frame of the order shows. */
+/* Sets what a frame of the order shows. */
 static void aim(const Saver *saver, View *view)
 {
     const SaveOrder *order = &saver->order;

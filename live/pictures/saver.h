@@ -6,7 +6,7 @@
 
 #include "live/pictures/canvas.h"
 
-/* What is saved: one picture, a turn around the target, or a range of time; a row of saves.def
+/* The kinds of saves: one picture, an orbit of the target, or a range of time; a row of saves.def
    each. */
 typedef enum SaveKind {
 #define SAVE(id, name, about) SAVE_##id,
@@ -37,9 +37,10 @@ typedef struct SaverState {
 
 typedef struct Saver Saver;
 
-/* `told` is called in the saver's thread, when the state has changed.  NULL: without memory. */
+/* Makes a saver; `told` is called in its thread, when the state has changed.  NULL: without
+   memory. */
 Saver *saver_new(const KrsRendererOptions *options, void (*told)(void *user), void *user);
-/* What is not saved by then is given up. */
+/* Frees the saver; what is not saved by then is given up. */
 void saver_free(Saver *saver);
 
 /* Saves copies of what the order has: NAME.png, or NAME-0000.png and so on.  False: it is busy, or

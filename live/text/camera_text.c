@@ -27,7 +27,7 @@ static const char *const names[PROPERTIES] = {
 #include "krs/camera.def"
 };
 
-/* Zero has no sign. */
+/* Prints numbers, in which zero has no sign. */
 static void print_numbers(FILE *out, const double *v, int count)
 {
     for (int i = 0; i < count; i++)
@@ -35,7 +35,7 @@ static void print_numbers(FILE *out, const double *v, int count)
     fprintf(out, "]");
 }
 
-/* Print a member of each kind and type of camera.def. */
+/* Each of these prints a member of one kind and type of camera.def. */
 static void print_place(FILE *out, const double *v) { print_numbers(out, v, 3); }
 static void print_axis(FILE *out, const double *v) { print_numbers(out, v, 3); }
 static void print_pair(FILE *out, const double *v) { print_numbers(out, v, 2); }
@@ -79,7 +79,7 @@ static bool is_needed(Property property, const KrsCamera *camera)
     return needed[property];
 }
 
-/* The caller frees it; NULL: without memory. */
+/* Returns the value as text, which the caller frees; NULL: without memory. */
 static char *value_text(Property property, const KrsCamera *camera)
 {
     char  *text   = NULL;
@@ -224,8 +224,8 @@ static char *add_property(char *block, const char *name, const char *value)
     return splice(block, brace, brace, label, value);
 }
 
-/* The comma before a property, which has one: it stands behind the value of the property before.
-   Others may stand in comments. */
+/* Returns the comma before a property, which has one: it stands behind the value of the property
+   before.  Others may stand in comments. */
 static size_t comma_before(const char *block, const Place *place)
 {
     size_t at = strcspn(block, "{") + 1, comma = at;
@@ -277,7 +277,7 @@ char *camera_text_edit(const char *block, const KrsCamera *before, const KrsCame
 
 /* ---- files ---- */
 
-/* What is written in place of bytes [start, end) of a file. */
+/* Replaces bytes [start, end) of a file. */
 static KrsStatus write_instead(const char *path, const Bytes *before, size_t start, size_t end,
                                const char *text)
 {

@@ -6,12 +6,12 @@
 
 #include "krs/krs.h"
 
-/* A `camera` block, with its newline; the caller frees it.  NULL: without memory. */
+/* Returns a `camera` block, with its newline; the caller frees it.  NULL: without memory. */
 char *camera_text(const KrsCamera *camera);
 
-/* A block with what a camera has in place of what is `before`: properties that differ get other
-   values, are added, or go; all else, comments as well, stays.  The caller frees it.  NULL: this is
-   no block of a camera, or without memory. */
+/* Returns a block with what a camera has in place of what is `before`: properties that differ get
+   other values, are added, or go; all else, comments as well, stays.  The caller frees it.  NULL:
+   this is no block of a camera, or without memory. */
 char *camera_text_edit(const char *block, const KrsCamera *before, const KrsCamera *camera);
 
 /* Changes the block of the scene's camera of this number in its file, or, where the scene has none,

@@ -168,13 +168,14 @@ void document_free(Document *document)
     free(document);
 }
 
-/* What the next version is compared with. */
+/* Returns what the next version is compared with. */
 static Version *version_before(const Document *document)
 {
     return document->spare ? document->spare : document->version;
 }
 
-/* What is there instead of a file, such as a pipe, may never end: nobody could save the scene any more. */
+/* Tells whether there is something else than a file, such as a pipe, which may never end: nobody
+   could save the scene any more. */
 static bool is_no_file(Document *document)
 {
     struct stat about;

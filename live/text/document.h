@@ -19,10 +19,10 @@ unsigned version_structure(const Version *version);
 /* Tells what differs from the version before; of the first, everything is new. */
 KrsChanges version_changes(const Version *version);
 
-/* "a.krs:3" */
+/* Writes a place such as "a.krs:3". */
 void diagnostic_location(const KrsDiagnostic *diagnostic, char place[300]);
 
-/* What was said of a text that was read.  The strings are its own. */
+/* The diagnostics of a text that was read.  The strings are its own. */
 typedef struct Diagnostics {
     KrsDiagnostic *items;
     size_t         count, errors;
@@ -30,9 +30,9 @@ typedef struct Diagnostics {
 
 typedef struct Document Document;
 
-/* A document of a file, which is not read yet.  The callbacks of `options` are called as well as the
-   document's own; `path` and the options' strings must outlive the document.  NULL: the system does
-   not let files be watched, or memory ran out. */
+/* Returns a document of a file, which is not read yet.  The callbacks of `options` are called as
+   well as the document's own; `path` and the options' strings must outlive the document.  NULL: the
+   system does not let files be watched, or memory ran out. */
 Document *document_new(const char *path, const KrsOptions *options);
 void      document_free(Document *document);
 
@@ -45,13 +45,14 @@ KrsStatus document_read(Document *document);
    first (KRS_SPECIALIZE_AUTO).  The next reading is compared with that: what was made for its shaders
    serves the edit.  If the file has changed meanwhile, this is a reading. */
 void document_prepare(Document *document);
-/* What that has made, which the caller releases; NULL: nothing, or a reading came after it.  For any
-   thread. */
+/* Returns what that has made, which the caller releases; NULL: nothing, or a reading came after
+   it.  For any thread. */
 Version *document_spare(Document *document);
 
-/* The last good version, which the caller releases; NULL: there is none.  For any thread. */
+/* Returns the last good version, which the caller releases; NULL: there is none.  For any thread. */
 Version *document_version(Document *document);
-/* A copy of what was said when the file was last read, which the caller frees; for any thread. */
+/* Returns a copy of what was said when the file was last read, which the caller frees; for any
+   thread. */
 Diagnostics document_diagnostics(Document *document);
 void        diagnostics_free(Diagnostics *diagnostics);
 /* Tells how often the file was read; for any thread. */

@@ -39,7 +39,7 @@ static bool add_value(Preset *preset, const PresetValue *value)
     return true;
 }
 
-/* "r=1.5" or "tint=[1, 0.5, 0]". */
+/* Parses "r=1.5" or "tint=[1, 0.5, 0]". */
 static bool parse_value(const char *line, PresetValue *value)
 {
     int at = 0;

@@ -13,7 +13,7 @@
 
 /* ---- values ---- */
 
-/* A hexadecimal colour, if there is one that is this. */
+/* Prints a hexadecimal colour, if there is one that is this. */
 static bool print_color(FILE *out, const double *value)
 {
     unsigned bytes[3];
@@ -28,7 +28,8 @@ static bool print_color(FILE *out, const double *value)
     return true;
 }
 
-/* Six digits do, but for values at the end of a range: rounded, they would be outside. */
+/* Prints a number.  Six digits do, but for values at the end of a range: rounded, they would be
+   outside. */
 static void print_number(FILE *out, const KrsParameter *parameter, uint32_t i, double value)
 {
     enum { FEWEST_DIGITS = 6, MAX_DIGITS = 17 };
@@ -104,7 +105,7 @@ static KrsStatus write_default(const KrsParameter *parameter, const double *valu
     return status;
 }
 
-/* The parameter that stands last before this byte, in whatever file; false: there is none. */
+/* Finds the parameter that stands last before this byte, in whatever file; false: there is none. */
 static bool find_last(const KrsScene *scene, uint64_t before, size_t *last)
 {
     uint64_t found = 0;

@@ -26,7 +26,7 @@ bool watcher_changed(Watcher *watcher);
 /* Waits until files have changed.  False: `seconds` are over, or a signal has come. */
 bool watcher_wait(Watcher *watcher, double seconds);
 
-/* How long editors take that save a file in several steps. */
+/* The time that editors take that save a file in several steps. */
 #define SETTLED_SECONDS 0.05
 /* Forgets the changes so far.  Where a file was only made or taken away, waits until something is written
    or put in its place, for no longer than SETTLED_SECONDS. */

@@ -53,7 +53,7 @@ void set_colors(ImVec4 *colors)
     colors[ImGuiCol_ScrollbarGrab]    = over;
 }
 
-// Whole pixels: sums that are not would need a bar to scroll.
+// Returns whole pixels: sums that are not would need a bar to scroll.
 ImVec2 rounded(float x, float y) { return ImVec2(std::floor(x), std::floor(y)); }
 
 void set_style(float size)
@@ -94,7 +94,7 @@ void place(GuiCorner corner, float below)
         ImGui::SetNextWindowPos(at, ImGuiCond_Always, ImVec2(right ? 1 : 0, low ? 1 : 0));
 }
 
-// A text, or what of it fits into a width and three dots: then its tip has it all.
+// Draws a text, or what of it fits into a width and three dots: then its tip has it all.
 void text_within(const char *text, const char *end, float width)
 {
     const char *cut = end;

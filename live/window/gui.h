@@ -28,7 +28,7 @@ void gui_navigate(const char *panel);
 bool gui_navigates(void);
 bool gui_is_inside(void); /* of an item of the panel, which Esc leaves first */
 
-/* A texture behind all panels, over this part of the window's width from the left. */
+/* Draws a texture behind all panels, over this part of the window's width from the left. */
 void gui_backdrop(unsigned texture, float part);
 
 typedef enum GuiCorner {
@@ -54,7 +54,7 @@ typedef struct GuiPlace {
    margin. */
 void  gui_panel(const char *name, GuiPlace place, bool quiet);
 float gui_panel_end(void);
-/* What a panel of this width needs of the window's, with its margins. */
+/* Returns what a panel of this width needs of the window's, with its margins. */
 float gui_panel_space(float width);
 /* Tells how wide and high the window is, but for the margins. */
 float gui_window_width(void);
@@ -80,7 +80,7 @@ bool gui_choice(const char *label, int *chosen, const char *const *names, size_t
 bool gui_input(const char *label, char *text, size_t size);
 void gui_progress(double done);                    /* a bar; `done` is from 0 to 1 */
 void gui_keys(const char *keys, const char *does); /* a row of the help */
-/* Columns side by side, each as wide as what it has; below each other in a narrow window. */
+/* Begins columns side by side, each as wide as what it has; below each other in a narrow window. */
 void gui_columns(int count);
 void gui_next_column(void);
 void gui_columns_end(void);

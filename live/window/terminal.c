@@ -99,8 +99,8 @@ void terminal_wait(Terminal *terminal, double seconds)
         terminal->closed = true;
 }
 
-/* What terminals send for keys without a letter, behind ESC; with modifiers `1;2` stands before the
-   last character, or `;2` before the tilde. */
+/* The texts that terminals send for keys without a letter, behind ESC; with modifiers `1;2` stands
+   before the last character, or `;2` before the tilde. */
 static const struct {
     const char *sent;
     int         key;
@@ -215,7 +215,7 @@ void terminal_size(const Terminal *terminal, uint32_t *width, uint32_t *height)
     *height           = (uint32_t)(grid.rows * (pixels ? grid.cell_height : SYMBOL_HEIGHT));
 }
 
-/* The first line, as far as there is room for its characters. */
+/* Prints the first line, as far as there is room for its characters. */
 static void print_line(const char *line, uint32_t columns)
 {
     uint32_t shown = 0;

@@ -24,9 +24,10 @@ void terminal_wake(Terminal *terminal);
    *closed when nobody can press one any more. */
 bool terminal_key(Terminal *terminal, int *key, int *modifiers, bool *closed);
 
-/* The pixels that it shows at once. */
+/* Finds the pixels that it shows at once. */
 void terminal_size(const Terminal *terminal, uint32_t *width, uint32_t *height);
-/* A picture over the whole terminal, four bytes a pixel, and lines below it; NULL pixels: none yet. */
+/* Shows a picture over the whole terminal, four bytes a pixel, and lines below it; NULL pixels:
+   none yet. */
 void terminal_show(Terminal *terminal, const uint8_t *pixels, uint32_t width, uint32_t height,
                    const char *const *lines, size_t count);
 

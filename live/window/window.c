@@ -94,7 +94,7 @@ static void on_move(GLFWwindow *glfw, double x, double y)
 
 /* ---- the window ---- */
 
-/* A font file for a family, which the caller frees; NULL: none is found. */
+/* Returns a font file for a family, which the caller frees; NULL: none is found. */
 static char *find_font(const char *family)
 {
     char      *path    = NULL;
@@ -196,7 +196,7 @@ void window_ask_to_close(Window *window) { glfwSetWindowShouldClose(window->glfw
 
 /* ---- frames ---- */
 
-/* Coarse pictures are smoothed; whole ones are shown pixel by pixel. */
+/* Sets the filter: coarse pictures are smoothed; whole ones are shown pixel by pixel. */
 static void set_filter(Window *window, bool linear)
 {
     const GLint filter = linear ? GL_LINEAR : GL_NEAREST;
@@ -230,8 +230,8 @@ bool window_has_room_beside(const Window *window)
     return width >= window->reserved + MIN_PICTURE;
 }
 
-/* The part of the window's width that the picture has.  In a narrow window it has all, and lies
-   behind what is to its right. */
+/* Returns the part of the window's width that the picture has.  In a narrow window it has all, and
+   lies behind what is to its right. */
 static double part_of_picture(const Window *window)
 {
     int width, height;

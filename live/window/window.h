@@ -9,7 +9,7 @@
 
 typedef struct Window Window;
 
-/* What to do with events; all in the thread of the window. */
+/* The callbacks for events; all are called in the thread of the window. */
 typedef struct WindowEvents {
     void (*key)(void *user, int key, int modifiers);
     void (*scroll)(void *user, double steps);
@@ -23,7 +23,7 @@ typedef struct WindowEvents {
 /* Called when the connection to the display is lost; does not return. */
 typedef void WindowLost(void);
 
-/* NULL: there is no display, or none that can draw; *why is one line about it. */
+/* Opens a window; NULL: there is no display, or none that can draw; *why is one line about it. */
 Window *window_open(const char *title, uint32_t width, uint32_t height, const WindowEvents *events,
                     WindowLost *lost, const char **why);
 void    window_close(Window *window);
@@ -34,7 +34,7 @@ bool window_wait(Window *window, double seconds);
 void window_wake(void);
 void window_ask_to_close(Window *window);
 
-/* A frame: whatever gui.h has comes between the two. */
+/* These begin and end a frame: whatever gui.h has comes between the two. */
 void window_begin(Window *window);
 void window_end(Window *window);
 
@@ -43,9 +43,9 @@ void window_end(Window *window);
 void window_reserve(Window *window, double right);
 /* Tells whether the picture stands beside that; in a narrow window it lies behind. */
 bool window_has_room_beside(const Window *window);
-/* The picture behind everything, stretched to the rest of the window; four bytes a pixel. */
+/* Sets the picture behind everything, stretched to the rest of the window; four bytes a pixel. */
 void window_set_picture(Window *window, const uint8_t *pixels, uint32_t width, uint32_t height);
-/* The size of the picture in the window, in pixels of the screen; 0 when it is minimised. */
+/* Finds the size of the picture in the window, in pixels of the screen; 0 when it is minimised. */
 void window_size(const Window *window, uint32_t *width, uint32_t *height);
 /* Finds where the mouse is, in parts of the picture's width and height from its top left. */
 void window_mouse(const Window *window, double *x, double *y);

@@ -9,8 +9,8 @@
 #include "compiler/field/field.h"
 #include "mesh/contour/groups.h"
 
-/* What is computed: `find` takes up to MAX_FIELD_POINTS items.  For each it evaluates the field
-   `questions` times, no farther than `margin` from the item's box. */
+/* The task: `find` takes up to MAX_FIELD_POINTS items.  For each it evaluates the field `questions`
+   times, no farther than `margin` from the item's box. */
 typedef struct Batches {
     void (*box)(const void *user, size_t number, double low[3], double high[3]);
     void (*find)(const void *user, const MeshField *field, const uint32_t *numbers, size_t count);
@@ -18,8 +18,8 @@ typedef struct Batches {
     size_t questions;
 } Batches;
 
-/* With what it is computed: fields for each part of run_in_parallel, the cube that has all boxes,
-   and room for groups. */
+/* The means of the task: fields for each part of run_in_parallel, the cube that has all boxes, and
+   room for groups. */
 typedef struct BatchContext {
     MeshField *fields;
     double     origin[3], side, margin;

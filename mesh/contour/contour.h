@@ -33,7 +33,7 @@ typedef struct FaceLine {
 /* A tetrahedron with inside and outside corners. */
 typedef struct Patch {
     uint32_t tet, corner_count; /* 3 or 4 crossings */
-    /* In order around it, outside to the front; lines[i] follows crossings[i]. */
+    /* The crossings in order around it, outside to the front; lines[i] follows crossings[i]. */
     uint32_t crossings[4], lines[4];
     bool     fan;
     double   apex[3], value;

@@ -11,7 +11,7 @@
 void keep_inside(const double *weights, const double *inner, int count, double point[3],
                  const double center[3]);
 
-/* Find barycentric coordinates; the point is in the plane of the face with this normal. */
+/* Finds barycentric coordinates; the point is in the plane of the face with this normal. */
 void face_weights(const double corners[3][3], const double normal[3], const double point[3],
                   double weights[3]);
 void tet_weights(const double corners[4][3], const double point[3], double weights[4]);

@@ -21,8 +21,8 @@ enum {
 };
 /* Boxes after which a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
-/* At each attempt planes are moved otherwise; from SEPARATE_FROM on short edges stay, so that
-   solids that touch stay separate. */
+/* The attempts, at each of which planes are moved otherwise; from SEPARATE_FROM on short edges
+   stay, so that solids that touch stay separate. */
 enum { ATTEMPTS = 4, SEPARATE_FROM = 2 };
 static const double MIN_KNOWN = 0.02;
 /* Parts of the size: how far the surface may be from a face, the length of the shortest edges that

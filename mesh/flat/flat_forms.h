@@ -30,7 +30,7 @@ typedef struct Form {
     int      kink_count;
 } Form;
 
-/* What is found of one box. */
+/* The findings about one box. */
 typedef struct Finding {
     const MeshField *field;
     const LaneTape  *tape;

@@ -24,7 +24,7 @@ static int join(Finding *f, int kind, int a, int b)
     return add_node(f, (FlatNode){kind, a, b});
 }
 
-/* How two half-spaces with parallel planes are related. */
+/* The relation of two half-spaces with parallel planes. */
 typedef enum Relation { DISJOINT, COVERING, WITHIN, AROUND, CROSSING } Relation;
 
 static Relation find_relation(const Finding *f, const FlatNode *a, const FlatNode *b)

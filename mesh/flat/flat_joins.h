@@ -6,8 +6,8 @@
 
 #include "mesh/flat/flat_forms.h"
 
-/* Intersect and unite solids, without what makes no difference: faces of parts within others, and
-   where parts touch. */
+/* These intersect and unite solids, without what makes no difference: faces of parts within others,
+   and where parts touch. */
 int flat_both(Finding *f, int a, int b);
 int flat_either(Finding *f, int a, int b);
 int flat_complement(Finding *f, int solid);

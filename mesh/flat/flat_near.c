@@ -15,11 +15,11 @@ enum {
     ASK_EVERY                 = 256,
     HALVINGS_OF_REGION        = 3
 };
-/* In errors: sides of boxes that are not halved any more, first and after some have been left; and
-   of those in which shifts are shorter than the error, and how long these are. */
+/* Lengths in errors: sides of boxes that are not halved any more, first and after some have been
+   left; and of those in which shifts are shorter than the error, and how long these are. */
 static const double SMALLEST = 0.02, SMALLEST_OF_MANY = 0.1, SMALL = 1.5, SHORT_SHIFT = 0.6;
 
-/* What one thread finds. */
+/* The findings of one thread. */
 typedef struct NearPart {
     FlatPieces pieces;
     FlatWork   work;

@@ -12,7 +12,7 @@ typedef struct HalfSpace {
     double normal[3], offset;
 } HalfSpace;
 
-/* By how much less, or more, the number may be that a half-space approximates. */
+/* The bounds by which the number may be less, or more, that a half-space approximates. */
 typedef struct FlatSlack {
     double below, above;
 } FlatSlack;

@@ -12,8 +12,8 @@
 #include "compiler/base/minmax.h"
 #include "mesh/flat/flat_shifts.h"
 
-/* What is to be proven: a box, the length of shifts, and the part of the slack that counts, with
-   its least value. */
+/* The task of a proof: a box, the length of shifts, and the part of the slack that counts, with its
+   least value. */
 typedef struct Proof {
     const FlatPieces *pieces;
     const Box        *box;
@@ -267,7 +267,8 @@ static bool sets_have_shifts(const Proof *proof)
 
 /* ---- boxes ---- */
 
-/* In sharp wedges no planes are near enough, since their number is limited. */
+/* Tells whether planes are near enough to the surface.  In sharp wedges none are, since their
+   number is limited. */
 FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double error)
 {
     Proof now = {pieces, box, error, 1, 0}, finer = {pieces, box, 0.3 * error, 0.1, 0.02 * error};

@@ -55,7 +55,7 @@ void flat_rounds_note_curves(FlatRounds *rounds, uint32_t table, double length, 
 void flat_rounds_count(FlatRounds *rounds);
 /* Makes those finer that are blamed; returns false if all are as fine as is of use. */
 bool flat_rounds_refine(FlatRounds *rounds);
-/* Save how fine all are, and restore that. */
+/* These save how fine all are, and restore that. */
 void flat_rounds_save(FlatRounds *rounds);
 void flat_rounds_restore(FlatRounds *rounds);
 bool flat_rounds_has_curves(const FlatRounds *rounds);

@@ -245,9 +245,9 @@ static bool join_holes(Cutting *c)
 
 /* ---- ears ---- */
 
-/* What counts as an ear.  First ears that no corner comes near; where there are none, those that
-   corners may touch, then those without area, since collinear corners are common, and last any that
-   is as narrow as corners are inexact. */
+/* The rules of ears.  First ears that no corner comes near; if there are none, those that corners
+   may touch, then those without area, since collinear corners are common, and last any that is as
+   narrow as corners are inexact. */
 typedef struct EarRule {
     /* Twice the areas of an ear, and of the triangles that a corner makes with each side of it. */
     double least, touching;

@@ -17,7 +17,7 @@ typedef struct Around {
     bool     mixed;            /* perhaps not all by the same function */
 } Around;
 
-/* How pieces of a cell grow: derivatives of each are within `rest` of `middle`. */
+/* The pieces of a cell whose growth is known: derivatives of each are within `rest` of `middle`. */
 enum { MAX_GROWING = 4 };
 typedef struct Growth {
     float    direction[3]; /* in which all grow */

@@ -13,7 +13,7 @@ Tet   *tet_of_group(Mesher *m, const Group *group, uint32_t i);
 
 /* Returns the state of a tetrahedron whose deviation and slope are known. */
 TetState state_by_bounds(const Mesher *m, const Tet *tet);
-/* Before and after the states of all groups are found. */
+/* These are called before and after the states of all groups are found. */
 void bounds_begin(Mesher *m);
 void bounds_end(Mesher *m);
 /* Finds the states of the tetrahedra of a group. */

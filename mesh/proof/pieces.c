@@ -266,7 +266,7 @@ static void add_cone(Cones *c, int p, int q, int r)
     c->most = max2(c->most, measure_part(&c->m, &part, 0));
 }
 
-/* How the mesh cuts a face: from the edge of `single` and `a` to that of `single` and `b`. */
+/* The cut of a face by the mesh: from the edge of `single` and `a` to that of `single` and `b`. */
 typedef struct FaceCut {
     int single, a, b, at_a, at_b, bend; /* `single` is NONE where it does not */
 } FaceCut;

@@ -15,10 +15,10 @@
 #include "compiler/field/gradient.h"
 #include "mesh/proof/verifier.h"
 
-/* What is known of a box: d^T (second derivatives) d is at most d^T above d, and at least -d^T
-   below d, for all d; and along some direction the value grows by `slope` at least.  After
-   smooth_narrow forms are those of the box without its margin, and the slope is that of paths no
-   longer than the error, from points there whose value is no larger. */
+/* The bounds in a box: d^T (second derivatives) d is at most d^T above d, and at least -d^T below
+   d, for all d; and along some direction the value grows by `slope` at least.  After smooth_narrow
+   forms are those of the box without its margin, and the slope is that of paths no longer than the
+   error, from points there whose value is no larger. */
 typedef struct SmoothCell {
     Box      box;
     bool     known, empty;

@@ -472,7 +472,8 @@ static TetState verify_parts(Verifier *verifier, const Tet *tet, const Cell *who
     return !near || verifier->unresolved > 0 ? TET_UNRESOLVED : TET_PROVEN;
 }
 
-/* Small tetrahedra need no proof where the mesh goes through, for so does the surface. */
+/* Verifies a tetrahedron.  Small ones need no proof where the mesh goes through, for so does the
+   surface. */
 TetState verify_tet(Verifier *verifier, Tet *tet)
 {
     int  side  = find_side(verifier->tets, tet);

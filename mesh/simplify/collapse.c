@@ -32,16 +32,16 @@ typedef struct Collapse {
     const double (*at)[3];
     uint32_t (*triangles)[3];
     bool *dead;
-    /* Of a vertex, its first corner + 1, and of a corner, the next of its vertex. */
+    /* The first corner + 1 of a vertex, and of a corner, the next of its vertex. */
     uint32_t *first, *next;
     uint32_t *stamps; /* of a vertex: counts changes of its triangles */
     uint32_t *marks, mark;
     bool     *fixed;
     Quadric  *quadrics;
-    /* Of a triangle, bounds of how far it is from the mesh that is simplified, and of how far what
-       it replaces is from it. */
+    /* Bounds of how far a triangle is from the mesh that is simplified, and of how far what it
+       replaces is from it. */
     double *off, *missed;
-    /* Of a triangle, the first vertex + 1 that it replaced, and of a vertex the next. */
+    /* The first vertex + 1 that a triangle replaced, and of a vertex the next. */
     uint32_t *points, *other;
     struct {
         Candidate *items;

@@ -16,12 +16,12 @@ typedef bool IsWanted(void *user, double part);
 
 typedef struct CollapseRules {
     const bool *kept; /* of triangles: corners stay */
-    /* Of vertices without triangles: a triangle that they are near to, or UINT32_MAX. What replaces
-       it must be within the error of them, and takes its place here. */
+    /* The triangles near to vertices without one, or UINT32_MAX.  What replaces it must be within
+       the error of them, and takes its place here. */
     uint32_t *below;
     double    error;
-    /* Of triangles, bounds of how far they are from that mesh, and of how far what they replace is
-       from them; afterwards of those that are left. */
+    /* Bounds of how far triangles are from that mesh, and of how far what they replace is from
+       them; afterwards of those that are left. */
     double         *off, *missed;
     IsGoodTriangle *is_good; /* NULL: only what these bounds prove is good */
     IsWanted       *is_wanted;

@@ -12,7 +12,7 @@
 typedef struct NearMesh {
     Bvh           bvh;
     TriangleEdges edges;
-    /* Of each edge of a triangle, the other with that edge; NO_TRIANGLE: none, or several. */
+    /* The other triangle at each edge of a triangle; NO_TRIANGLE: none, or several. */
     uint32_t (*beyond)[3];
     double size; /* the largest coordinate */
 } NearMesh;

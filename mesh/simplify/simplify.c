@@ -30,7 +30,7 @@ static const double FIRST_RADIUS = 1, FIRST_RADIUS_OF_COLLAPSE = 0.25;
    goes too far in many places. */
 static const double FIRST_ERROR = 0.25, LAST_ERROR = 0.5;
 
-/* What is known of triangles, as rules of collapses have it. */
+/* The properties of triangles, for the rules of collapses. */
 typedef struct Known {
     double   *off, *missed;
     uint32_t *below;
@@ -53,8 +53,8 @@ typedef struct Simplifier {
     Numbering judged; /* of new triangles, bounds of how far they are from the mesh, in steps */
     Numbering noted;  /* new triangles that are near, and in `facing` */
     NearMesh  original;
-    /* For each triangle of the mesh, the vertices of one above or below it, in the last trial and
-       in the best; all 0: none. */
+    /* The vertices of a triangle above or below each one of the mesh, in the last trial and in the
+       best; all 0: none. */
     uint32_t (*facing)[3], (*best_facing)[3];
     NearQuery *queries;               /* of each part */
     double     fraction, begun, goal; /* of the work: done, and before and after the present step */

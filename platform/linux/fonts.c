@@ -77,8 +77,8 @@ static FontSearch search_fonts(const char *name, FoundFont *found)
     return search == FONT_FOUND && !found->path ? FONT_NO_MEMORY : search;
 }
 
-/* fontconfig goes on without fonts where it could not allocate something: a second time says whether
-   there are none. */
+/* Finds a font.  fontconfig goes on without fonts where it could not allocate something: a second
+   time says whether there are none. */
 FontSearch font_find(const char *name, FoundFont *found)
 {
     FontSearch search = FONT_NONE;

@@ -94,7 +94,7 @@ int sandbox_open(int root, const char *path)
     return sandbox_open_by_steps(root, path); /* EAGAIN: other processes keep renaming folders */
 }
 
-/* The rest of an absolute path that leads below the current folder; NULL: it does not. */
+/* Returns the rest of an absolute path that leads below the current folder; NULL: it does not. */
 static const char *below_current_folder(const char *path)
 {
     char         here[PATH_MAX];

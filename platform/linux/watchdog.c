@@ -40,7 +40,7 @@ static double seconds_of(clockid_t clock)
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
-/* The letter of proc(5) for what a thread does; 0: nobody knows. */
+/* Returns the letter of proc(5) for what a thread does; 0: nobody knows. */
 static char state_of_thread(int threads, const char *number)
 {
     char    path[64], text[512];

@@ -5,7 +5,8 @@
 
 #include <stdio.h>
 
-/* A permitted memory type with all `needed` properties, if possible one with `liked` ones too. */
+/* Finds a permitted memory type with all `needed` properties, if possible one with `liked` ones
+   too. */
 static bool find_type(const Gpu *gpu, uint32_t permitted, VkMemoryPropertyFlags needed,
                       VkMemoryPropertyFlags liked, uint32_t *type)
 {

@@ -144,15 +144,15 @@ static bool read_fully(int fd, void *bytes, size_t length)
     return true;
 }
 
-/* So that what is in use outlives what is not.  In the folder of another user, or on a disk that
-   cannot be written, it has no effect. */
+/* Marks a file as used, so that what is in use outlives what is not.  In the folder of another
+   user, or on a disk that cannot be written, it has no effect. */
 static void touch(int fd, const struct stat *info)
 {
     if (time(NULL) - info->st_mtime > TOUCH_SECONDS)
         (void)futimens(fd, NULL);
 }
 
-/* The content behind a header that the file must have; NULL when it does not. */
+/* Reads the content behind a header that the file must have; NULL when it does not. */
 static void *read_entry(const Cache *cache, int fd, CacheKind kind, CacheKey key, size_t *length)
 {
     struct stat info;
@@ -209,14 +209,14 @@ static bool is_entry(const char *name)
     return false;
 }
 
-/* A temporary file whose writer did not live to rename it. */
+/* Tells whether a file is a temporary one whose writer did not live to rename it. */
 static bool is_orphan(const char *name, const struct stat *info)
 {
     return strncmp(name, temporary_prefix, strlen(temporary_prefix)) == 0 &&
            time(NULL) - info->st_mtime > ORPHANED_SECONDS;
 }
 
-/* The next entry of the folder; orphans on the way are removed.  False at the end. */
+/* Finds the next entry of the folder; orphans on the way are removed.  False at the end. */
 static bool next_entry(const Cache *cache, Kept *kept)
 {
     const struct dirent *found;
@@ -298,7 +298,7 @@ static void remove_oldest(Cache *cache)
     release_memory(cache, kept);
 }
 
-/* Called when a file of `bytes` was added.  The folder is looked through for the first one and
+/* Removes files when one of `bytes` was added.  The folder is looked through for the first one and
    when it seems full: in between, what others write is not seen. */
 static void keep_the_bound(Cache *cache, uint64_t bytes)
 {
@@ -328,7 +328,8 @@ static bool write_fully(int fd, const void *bytes, size_t length)
     return true;
 }
 
-/* A new file for the user alone, with a name that no other writer has; -1 when there is none. */
+/* Returns a new file for the user alone, with a name that no other writer has; -1 when there is
+   none. */
 static int create_temporary(const Cache *cache, char name[NAME_SIZE])
 {
     for (unsigned attempt = 0; attempt < 100; attempt++) {

@@ -22,7 +22,7 @@
 #define CACHE_BYTES (UINT64_C(64) << 20)
 enum { CACHE_FILES = 4096, CACHE_ENTRY_BYTES = 16 << 20 /* a longer one is not kept */ };
 
-/* What an entry is; a file is called by its key and one of these. */
+/* The kind of an entry; a file is called by its key and one of these. */
 typedef enum CacheKind {
     CACHE_SPIRV,
     CACHE_PIPELINES,
@@ -48,11 +48,11 @@ void cache_close(Cache *cache);
 /* Tells whether nothing is kept in a folder, as before the first picture. */
 bool cache_is_empty(const char *folder);
 
-/* The key of what is made from `content` by whatever `maker` names, versions included. */
+/* Returns the key of what is made from `content` by whatever `maker` names, versions included. */
 CacheKey cache_key(const char *maker, const void *content, size_t length);
 
-/* The entry as it was written, in memory of the allocator that is the caller's; NULL when there
-   is none. */
+/* Returns the entry as it was written, in memory of the allocator that is the caller's; NULL when
+   there is none. */
 void *cache_load(Cache *cache, CacheKind kind, CacheKey key, size_t *length);
 /* Writes an entry, or replaces it. */
 void cache_store(Cache *cache, CacheKind kind, CacheKey key, const void *bytes, size_t length);

@@ -24,7 +24,7 @@ static void memory_barrier(VkCommandBuffer commands, VkPipelineStageFlags after,
         0, NULL, 0, NULL);
 }
 
-/* What was written can be used, and written again. */
+/* Lets what was written be used, and written again. */
 static void barrier(VkCommandBuffer commands)
 {
     memory_barrier(commands, WORK | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
@@ -58,7 +58,7 @@ failed:
     return false;
 }
 
-/* The timestamps: the first, the marks in their order, and after these the last. */
+/* Writes the timestamps: the first, the marks in their order, and after these the last. */
 void gpu_mark(Gpu *gpu)
 {
     gpu->marks++;
@@ -100,8 +100,8 @@ static VkResult wait_for(Gpu *gpu, double seconds)
     return vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE, (uint64_t)(seconds * 1e9));
 }
 
-/* Most steps take no longer than the first slice; what the process does during more of them decides how much of
-   the time counts, since drivers for CPUs work in its threads. */
+/* Waits for a device.  Most steps take no longer than the first slice; what the process does during
+   more of them decides how much of the time counts, since drivers for CPUs work in its threads. */
 static VkResult wait_with_timeout(Gpu *gpu)
 {
     const double slice    = min2(gpu->timeout, WATCHDOG_LONGEST_GAP);

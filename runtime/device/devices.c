@@ -11,7 +11,7 @@
 
 #include "runtime/device/instance.h"
 
-/* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
+/* The texels below which buffers are read in their place: the lowest band of the widest picture has
    so many (band.c). */
 #define MIN_TEXELS (1u << 22)
 
@@ -33,7 +33,7 @@ static bool is_capable(const VkPhysicalDeviceProperties *properties)
            limits->maxPerStageDescriptorStorageBuffers >= needed_buffers(limits);
 }
 
-/* The first queue family with compute, and how many bits its clock has; false when there is
+/* Finds the first queue family with compute, and how many bits its clock has; false when there is
    none.  No device has more families than are looked at. */
 static bool find_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *clock_bits)
 {
@@ -69,7 +69,7 @@ KrsDevice gpu_describe(VkPhysicalDevice physical)
     return device;
 }
 
-/* All physical devices, in memory of the host; NULL with the failure noted. */
+/* Returns all physical devices, in memory of the host; NULL with the failure noted. */
 static VkPhysicalDevice *find_devices(Gpu *gpu, uint32_t *count)
 {
     VkPhysicalDevice *devices = NULL;
@@ -112,8 +112,8 @@ static bool wanted(const KrsDevice *device, uint32_t index, const char *words)
     return strcasestr(device->name, words) != NULL;
 }
 
-/* The usable device that is wanted; of several the first when words name it, else the first of
-   the best kind.  `count` when there is none. */
+/* Returns the usable device that is wanted; of several the first when words name it, else the first
+   of the best kind.  `count` when there is none. */
 static uint32_t choose(const VkPhysicalDevice *devices, uint32_t count, const char *words)
 {
     uint32_t      best      = count;

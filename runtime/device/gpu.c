@@ -9,7 +9,7 @@
 #include "runtime/device/resources.h"
 #include "runtime/device/shared_shaders.h"
 
-/* What every device must have at least (Vulkan, table 53). */
+/* The limit that every device must have at least (Vulkan, table 53). */
 #define MIN_TEXEL_LIMIT (1u << 16)
 #define MIN_RANGE_LIMIT (1u << 27)
 
@@ -43,10 +43,10 @@ static void read_properties(Gpu *gpu, unsigned emulation)
                                                                 : 8;
 }
 
-/* What is attempted, in messages. */
+/* The attempt that messages name. */
 #define OPENING "open the device"
 
-/* The device itself, and its queue. */
+/* Makes the device and its queue. */
 static bool make_device(Gpu *gpu)
 {
     const char *extensions[] = {PORTABILITY_SUBSET};
@@ -80,7 +80,7 @@ failed:
     return false;
 }
 
-/* What commands need that are recorded, submitted, waited for and timed. */
+/* Makes what commands need that are recorded, submitted, waited for and timed. */
 static bool make_commands(Gpu *gpu)
 {
     const VkCommandPoolCreateInfo pool = {

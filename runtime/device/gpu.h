@@ -19,7 +19,7 @@ enum {
 /* Opens the device that the options ask for, with bits of emulation; `gpu` must stay where it is.  On failure only the
    status and the message remain. */
 bool gpu_open(Gpu *gpu, const KrsRendererOptions *options, unsigned emulation);
-/* A second device of the kind of `other`, which must stay longer; it has no caches. */
+/* Opens a second device of the kind of `other`, which must stay longer; it has no caches. */
 bool gpu_open_beside(Gpu *gpu, const Gpu *other);
 void gpu_close(Gpu *gpu);
 

@@ -12,7 +12,7 @@
 #include "runtime/device/cache.h"
 #include "krs/vulkan.h"
 
-/* What a stage of a shader binds of storage buffers (layouts.h), and how many more in place of
+/* The storage buffers that a stage of a shader binds (layouts.h), and how many more in place of
    texels; devices may have four and no more, but those of desktops have 16 and more. */
 enum { STORAGE_BUFFERS = 8, STORAGE_BUFFERS_FOR_TEXELS = 3 };
 
@@ -70,10 +70,10 @@ typedef struct Gpu {
 
 /* Tells whether the device is of type CPU, and not to be treated as a graphics card. */
 bool gpu_is_cpu(const Gpu *gpu);
-/* Bytes of the largest memory that is the device's own. */
+/* Returns the bytes of the largest memory that is the device's own. */
 uint64_t gpu_memory(const Gpu *gpu);
 
-/* Zeroed memory of the host, or NULL with the failure noted. */
+/* Returns zeroed memory of the host, or NULL with the failure noted. */
 void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt);
 void  gpu_release(Gpu *gpu, void *block);
 
@@ -88,7 +88,7 @@ bool gpu_tell_compiled(Gpu *gpu, double done);
 /* Gives an object a name in the messages of the validation layers. */
 void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
 
-/* Milliseconds of the host's steady clock. */
+/* Returns the milliseconds of the host's steady clock. */
 double clock_ms(void);
 
 /* Run a Vulkan call, or note why not and go to `failed`. */

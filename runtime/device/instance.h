@@ -10,7 +10,7 @@
    them by this; and one that says so of itself wants to hear that it is known. */
 #define PORTABILITY_SUBSET "VK_KHR_portability_subset" /* in a header of its own */
 
-/* Into gpu->instance; with validation, what its layers say goes to gpu->validation_message. */
+/* Makes gpu->instance; with validation, what its layers say goes to gpu->validation_message. */
 bool instance_create(Gpu *gpu, bool validation);
 void instance_destroy(Gpu *gpu);
 /* Tells whether an extension is among those that are offered: by a device, or without one by Vulkan. */

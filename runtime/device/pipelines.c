@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What grows with every scene must start anew at some time. */
+/* The size at which data that grow with every scene start anew. */
 static const size_t LARGE = CACHE_ENTRY_BYTES / 2;
 
 bool pipelines_fit(const VkPhysicalDeviceProperties *device, const void *bytes, size_t length)
@@ -54,8 +54,8 @@ void pipelines_open(Gpu *gpu)
     gpu_release(gpu, bytes);
 }
 
-/* lavapipe's data is a header and nothing else, which does not fit, so nothing is written: Mesa
-   keeps its pipelines by itself. */
+/* Saves the pipelines.  lavapipe's data is a header and nothing else, which does not fit, so
+   nothing is written: Mesa keeps its pipelines by itself. */
 static void save(Gpu *gpu)
 {
     size_t length = 0;

@@ -42,7 +42,8 @@ unsigned threads_of_software_device(void)
     return 2 * (unsigned)(cores < 1 ? 1 : cores > MAX_CORES ? MAX_CORES : cores) + 1;
 }
 
-/* lavapipe and its compiler take 200 MiB of addresses before anything is drawn. */
+/* Tells whether memory suffices: lavapipe and its compiler take 200 MiB of addresses before
+   anything is drawn. */
 bool memory_suffices_to_start(void)
 {
     const size_t bytes = (size_t)256 << 20;

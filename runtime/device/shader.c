@@ -54,8 +54,8 @@ static void *compile(void *user)
     return NULL;
 }
 
-/* The SPIR-V that the program carries of a shader without a scene: FILE.spv, or FILE-NAME-NAME.spv of
-   a shader for which these names are defined, and nothing else is. */
+/* Returns the SPIR-V that the program carries of a shader without a scene: FILE.spv, or
+   FILE-NAME-NAME.spv of a shader for which these names are defined, and nothing else is. */
 static const EmbeddedFile *find_module(const ShaderSource *source)
 {
     char        wanted[128], defined[32];
@@ -76,7 +76,7 @@ static const EmbeddedFile *find_module(const ShaderSource *source)
     return NULL;
 }
 
-/* The cache's key: all that the text depends on but cannot show, and the text. */
+/* Makes the cache's key: all that the text depends on but cannot show, and the text. */
 static CacheKey make_key(const ShaderSource *source, const char *text)
 {
     const ShaderScene *s       = source->scene;
@@ -220,7 +220,7 @@ void shader_code_release(Gpu *gpu, ShaderCode *code)
     *code = (ShaderCode){0};
 }
 
-/* What is known of a shader before the device has it. */
+/* Describes a shader before the device has it. */
 static Shader describe(const ShaderCode *code)
 {
     return (Shader){.file        = code->file,

@@ -19,7 +19,7 @@ typedef struct Shader {
     SharedShader *shared;  /* whose pipeline it is, if others may use it as well */
 } Shader;
 
-/* What a shader calls of a scene: its text takes the place of "scene.glsl". */
+/* The scene of a shader: its text takes the place of "scene.glsl". */
 typedef struct ShaderScene {
     const KrsScene *scene;
     KrsVariant      variant;
@@ -27,16 +27,16 @@ typedef struct ShaderScene {
     size_t          wanted_count;
 } ShaderScene;
 
-/* What a shader is made from. */
+/* The source of a shader. */
 typedef struct ShaderSource {
     const char        *file;    /* of runtime/shaders */
     const ShaderScene *scene;   /* NULL for a shader without one */
     const char        *defines; /* lines of `#define NAME VALUE` that choose a variant, or NULL */
 } ShaderSource;
 
-/* The text of a shader: its includes in place, its defines after the `#version` line, and without
-   comments, so that the cache knows a scene again that differs in them, in its name or folder.  The
-   caller's to release; NULL with the failure noted. */
+/* Returns the text of a shader: its includes in place, its defines after the `#version` line, and
+   without comments, so that the cache knows a scene again that differs in them, in its name or
+   folder.  The caller's to release; NULL with the failure noted. */
 char *shader_text(Gpu *gpu, const ShaderSource *source);
 /* Takes comments and blank lines out of a text in GLSL. */
 void shader_strip(char *text);
@@ -59,7 +59,7 @@ typedef struct ShaderCode {
     CacheKey      key;      /* of its text, then */
 } ShaderCode;
 
-/* So much of the making of shaders is done when all are SPIR-V. */
+/* The part of the making of shaders that is done when all are SPIR-V. */
 #define COMPILED_PART 0.5
 
 typedef struct ShaderRequest {
@@ -69,20 +69,19 @@ typedef struct ShaderRequest {
 
 /* Tells whether a shader of this text is in the cache, or was made by this process. */
 bool shader_is_known(Gpu *gpu, const ShaderSource *source);
-/* The two halves of it: several shaders are compiled at the same time, and become pipelines of a
-   device.  Codes are the caller's to release, in either case; a shader that was not made is
-   zero. */
+/* These compile several shaders at the same time, and make them pipelines of a device.  Codes are
+   the caller's to release, in either case; a shader that was not made is zero. */
 bool shader_compile_all(Gpu *gpu, const ShaderRequest *requests, size_t count, ShaderCode *codes,
                         double *spirv_ms);
 bool shader_load(Gpu *gpu, Shader *shader, const ShaderCode *code, VkPipelineLayout layout,
                  double *pipeline_ms);
 bool shader_load_all(Gpu *gpu, const ShaderRequest *requests, const ShaderCode *codes, size_t count,
                      VkPipelineLayout layout);
-/* What the driver has taken for a shader so far. */
+/* Returns what the driver has taken for a shader so far. */
 double shader_driver_ms(const Gpu *gpu, const Shader *shader);
 void   shader_code_release(Gpu *gpu, ShaderCode *code);
 
-/* The same for several shaders, which are compiled at the same time.  On failure some may have
+/* Does the same for several shaders, which are compiled at the same time.  On failure some may have
    been made: shader_destroy in either case. */
 bool shader_create_all(Gpu *gpu, const ShaderRequest *requests, size_t count,
                        VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms);

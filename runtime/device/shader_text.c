@@ -65,8 +65,9 @@ static bool append_file(IncludeExpansion *to, const char *name, size_t name_leng
     return text != NULL;
 }
 
-/* The end of the comment that begins at `text`, at the line's end or behind the closing mark; NULL
-   where none begins.  GLSL has no strings, in which such a mark would mean something else. */
+/* Returns the end of the comment that begins at `text`, at the line's end or behind the closing
+   mark; NULL where none begins.  GLSL has no strings, in which such a mark would mean something
+   else. */
 static const char *comment_end(const char *text)
 {
     if (text[0] != '/' || (text[1] != '/' && text[1] != '*'))
@@ -99,7 +100,7 @@ void shader_strip(char *text)
     *to = '\0';
 }
 
-/* The text of a shader around that of its scene, or NULL. */
+/* Returns the text of a shader around that of its scene, or NULL. */
 static char *expand(Gpu *gpu, const ShaderSource *source, const char *scene)
 {
     IncludeExpansion expansion = {source, scene, NULL, 0};

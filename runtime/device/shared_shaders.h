@@ -16,14 +16,14 @@ struct SharedShader {
     SharedShader *next;
 };
 
-/* How many shaders stay that nobody uses. */
+/* The shaders that stay though nobody uses them. */
 enum { MAX_UNUSED_SHADERS = 64 };
 
-/* The shader with this key, for one more user; NULL: there is none. */
+/* Returns the shader with this key, for one more user; NULL: there is none. */
 SharedShader *shared_shader_find(Gpu *gpu, CacheKey key);
 /* Takes over a pipeline, which has one user then; NULL with the failure noted. */
 SharedShader *shared_shader_add(Gpu *gpu, CacheKey key, VkPipeline pipeline);
-/* A user ends.  The device must have run all that uses the shader. */
+/* Ends the use by one user.  The device must have run all that uses the shader. */
 void shared_shader_leave(Gpu *gpu, SharedShader *shared);
 /* Destroys all; none may have a user. */
 void shared_shaders_destroy(Gpu *gpu);

@@ -27,7 +27,7 @@ static void encoding_fill(Encoding *encoding)
         encoding->at[i] = srgb_encode((double)i / PIECES * i / PIECES);
 }
 
-/* The encoded value of a number in [0, 1], by the table. */
+/* Returns the encoded value of a number in [0, 1], by the table. */
 static double encode(const Encoding *encoding, double linear)
 {
     double place = sqrt(linear) * PIECES;
@@ -36,7 +36,7 @@ static double encode(const Encoding *encoding, double linear)
     return below + (place - piece) * (encoding->at[piece + 1] - below);
 }
 
-/* The byte that the definition of sRGB gives.  Where an error of the table could change it,
+/* Returns the byte that the definition of sRGB gives.  Where an error of the table could change it,
    srgb_encode itself decides. */
 static uint8_t to_byte(const Encoding *encoding, double linear, double step)
 {
@@ -47,11 +47,11 @@ static uint8_t to_byte(const Encoding *encoding, double linear, double step)
     return (uint8_t)value;
 }
 
-/* The fractional part of a number that is not negative; floor would be a call. */
+/* Returns the fractional part of a number that is not negative; floor would be a call. */
 static double fraction(double value) { return value - (double)(int64_t)value; }
 
-/* Interleaved gradient noise (Jimenez 2014) in [0, 1).  Among a few neighbouring pixels its values
-   are evenly spread, so dithered areas keep their mean and have no clumps. */
+/* Returns interleaved gradient noise (Jimenez 2014) in [0, 1).  Among a few neighbouring pixels its
+   values are evenly spread, so dithered areas keep their mean and have no clumps. */
 static double noise(double x, double y)
 {
     return fraction(52.9829189 * fraction(0.06711056 * x + 0.00583715 * y));

@@ -13,7 +13,8 @@
 /* Far beyond any curve's shoulder.  It keeps infinity from becoming infinity / infinity. */
 static const double BRIGHTEST = 1e9;
 
-/* fmin and fmax are calls, since they must treat NaN; here there is none. */
+/* Returns the lesser number.  fmin and fmax are calls, since they must treat NaN; here there is
+   none. */
 static double min_of(double a, double b) { return a < b ? a : b; }
 static double max_of(double a, double b) { return a > b ? a : b; }
 
@@ -58,14 +59,15 @@ static void curve_aces(const double color[3], double out[3])
     color_multiply(back, curved, out);
 }
 
-/* The curve of AgX over the logarithm of light; the sigmoid of the original has no simple powers. */
+/* Returns the curve of AgX over the logarithm of light; the sigmoid of the original has no simple
+   powers. */
 static double agx_curve(double x)
 {
     return -0.00232 +
            x * (0.1191 + x * (0.4298 + x * (-6.868 + x * (31.96 + x * (-40.14 + x * 15.5)))));
 }
 
-/* Light is cut to 10 stops below middle grey (0.18) and 6.5 above. */
+/* Returns the logarithm of light, which is cut to 10 stops below middle grey (0.18) and 6.5 above. */
 static double agx_logarithm(double light)
 {
     const double low = -12.47393, high = 4.026069;

@@ -13,7 +13,7 @@ typedef enum ToneMap {
     TONE_MAP_COUNT
 } ToneMap;
 
-/* False when no curve has that name. */
+/* Finds a curve; false when none has that name. */
 bool tone_map_find(const char *name, ToneMap *tone_map);
 
 /* Applies a curve to a linear Rec.709 colour.  Each component of the result is in [0, 1], and 0

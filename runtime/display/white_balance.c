@@ -32,7 +32,7 @@ static ColorMatrix invert(ColorMatrix of)
     return out;
 }
 
-/* u, v (CIE 1960) of a black body, within 1e-4 from 1000 to 15000 kelvins (Krystek 1985). */
+/* Computes u, v (CIE 1960) of a black body, within 1e-4 from 1000 to 15000 kelvins (Krystek 1985). */
 static void black_body(double t, double uv[2])
 {
     uv[0] = (0.860117757 + 1.54118254e-4 * t + 1.28641212e-7 * t * t) /
@@ -41,7 +41,7 @@ static void black_body(double t, double uv[2])
             (1 - 2.89741816e-5 * t + 1.61456053e-7 * t * t);
 }
 
-/* The white of the light as X, Y, Z with Y = 1. */
+/* Finds the white of the light as X, Y, Z with Y = 1. */
 static void white_of(WhiteBalance balance, double xyz[3])
 {
     const double step = 1e-3 * balance.kelvins, distance = balance.tint / 3000;

@@ -20,8 +20,8 @@ static inline void color_multiply(const double matrix[3][3], const double v[3], 
         out[i] = matrix[i][0] * v[0] + matrix[i][1] * v[1] + matrix[i][2] * v[2];
 }
 
-/* The matrix for linear Rec.709 colours, by which such light becomes white: an adaptation in
-   Bradford's space of cones.  Kelvins that are 0 make the identity. */
+/* Returns the matrix for linear Rec.709 colours, by which such light becomes white: an adaptation
+   in Bradford's space of cones.  Kelvins that are 0 make the identity. */
 ColorMatrix white_balance_matrix(WhiteBalance balance);
 
 #endif

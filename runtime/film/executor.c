@@ -16,10 +16,10 @@
 #include "runtime/tracer/rendering.h"
 #include "runtime/tracer/shaders.h"
 
-/* How long small parts are marched, at about. */
+/* The time that small parts are marched, at about. */
 #define TRIAL_MS 10
-/* Where primary rays take one part of the time, those to a light that casts shadows and those over the
-   hemisphere take so many. */
+/* The times of rays to a light that casts shadows, and of those over the hemisphere, in parts of
+   that of primary rays. */
 #define SHADOW_RAYS    0.8
 #define OCCLUSION_RAYS 3.0
 /* Milliseconds of compilers for the shaders of a picture, and for each byte of the scene's text.  Measured on two cores with

@@ -121,7 +121,7 @@ static bool follow_rendering(KrsFilm *film)
 
 /* ---- samples ---- */
 
-/* A window with a halo around it, cut off at the edges of the picture. */
+/* Returns a window with a halo around it, cut off at the edges of the picture. */
 static KrsWindow with_halo(const Job *job, uint32_t halo, KrsWindow window)
 {
     const uint32_t right = window.x + window.width + halo, bottom = window.y + window.height + halo;
@@ -301,7 +301,7 @@ static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
     return good;
 }
 
-/* What is added to a film by one call, or one moment of it. */
+/* The samples that one call adds to a film, or one moment of it. */
 typedef struct Addition {
     KrsState        *state;
     const KrsCamera *camera; /* NULL: that of the options, or rays */
@@ -343,7 +343,8 @@ static KrsStatus add_moment(KrsFilm *film, const Addition *a)
     return KRS_OK;
 }
 
-/* When the shutter opens and closes, in seconds after the frame's time; false: it makes no blur. */
+/* Finds when the shutter opens and closes, in seconds after the frame's time; false: it makes no
+   blur. */
 static bool find_shutter(const KrsFilm *film, const Addition *a, double seconds[2])
 {
     KrsCamera camera = {0};

@@ -6,7 +6,7 @@
 
 #include "runtime/tracer/job.h"
 
-/* The room that they need behind the lights, in rays of a list. */
+/* Returns the room that they need behind the lights, in rays of a list. */
 size_t inputs_room(const Job *job);
 /* Copies those of a band to the device, behind the lights, and says in the control block where. */
 void inputs_upload(const Job *job, const KrsWindow *traced);

@@ -40,7 +40,7 @@ static void count_ray(KrsPicture *picture, KrsMatteKind kind, size_t pixel, uint
     }
 }
 
-/* A number of results that is an integer: its bits are there. */
+/* Returns a number of results that is an integer: its bits are there. */
 static uint32_t bits_at(const float *results, size_t row_pixels, uint32_t row, size_t pixel,
                         size_t number)
 {

@@ -54,7 +54,7 @@ static bool list_pixels(Job *job, const Plan *plan, const WorkBlock *work, uint3
     return true;
 }
 
-/* The bound of errors; samples never end by a bound of -1. */
+/* Sets the bound of errors; samples never end by a bound of -1. */
 static void set_bound(Job *job)
 {
     ControlBlock *control = job->rendering->control.bytes;
@@ -87,7 +87,7 @@ bool noise_restore(Job *job, const WorkBlock *work, uint32_t samples)
            run_phase(job, work, NOISE_RESTORES, samples);
 }
 
-/* The number of samples at which errors were estimated last; 0: never. */
+/* Returns the number of samples at which errors were estimated last; 0: never. */
 static uint32_t last_estimate(uint32_t samples)
 {
     uint32_t at = 2 * FIRST_NOISE_SAMPLES;

@@ -7,11 +7,11 @@
 #include "runtime/device/gpu.h"
 #include "runtime/shared/blocks.h"
 
-/* A picture whose wanted AOVs (bits of KrsAov) are zero; NULL with the failure noted. */
+/* Returns a picture whose wanted AOVs (bits of KrsAov) are zero; NULL with the failure noted. */
 KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window,
                         uint32_t wanted);
 
-/* The rows of results (bit ROW_... of each) that the AOVs of a picture come from. */
+/* Returns the rows of results (bit ROW_... of each) that the AOVs of a picture come from. */
 uint32_t picture_rows(const KrsPicture *picture);
 
 /* Copies `count` pixels of results to those AOVs of the picture that are among `aovs`.  They
@@ -19,10 +19,11 @@ uint32_t picture_rows(const KrsPicture *picture);
    the row of colours; the next row lies `row_pixels` pixels behind. */
 void picture_take(KrsPicture *picture, uint32_t aovs, const float *results, size_t row_pixels,
                   size_t first, size_t count);
-/* The numbers of AOV `index`, and its bytes per pixel: NULL where the picture does not have it.  0:
-   there are no more AOVs. */
+/* Returns the numbers of AOV `index`, and its bytes per pixel: NULL where the picture does not have
+   it. 0: there are no more AOVs. */
 size_t picture_plane(const KrsPicture *picture, int index, void **numbers);
-/* A copy of the picture with those AOVs that are among `aovs`; NULL with the failure noted. */
+/* Returns a copy of the picture with those AOVs that are among `aovs`; NULL with the failure
+   noted. */
 KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t aovs);
 /* Frees those AOVs of the picture that are among `aovs`. */
 void picture_drop(KrsPicture *picture, uint32_t aovs);

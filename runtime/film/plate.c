@@ -43,8 +43,8 @@ typedef struct PlatePoint {
     double position[3], toward[3]; /* relative to the rebase origin; along the ray */
 } PlatePoint;
 
-/* The ray through the middle of a pixel of a camera, as in frame.glsl.  Its direction has such a length
-   that depths count along it. */
+/* Finds the ray through the middle of a pixel of a camera, as in frame.glsl.  Its direction has
+   such a length that depths count along it. */
 static void find_ray(const Job *job, uint32_t x, uint32_t y, double origin[3], double direction[3])
 {
     const FrameBlock *f     = &job->frame;
@@ -74,7 +74,8 @@ static void find_listed_ray(const Job *job, size_t pixel, double origin[3], doub
         origin[i] = job->rays->origins[pixel][i] - job->rebase_origin[i];
 }
 
-/* Pixels outside of the picture do not exist: their numbers wrap round. */
+/* Finds the point of a pixel.  Pixels outside of the picture do not exist: their numbers wrap
+   round. */
 static PlatePoint find_point(const Job *job, uint32_t x, uint32_t y)
 {
     const size_t pixel = (size_t)y * job->options.width + x;
@@ -95,8 +96,8 @@ static PlatePoint find_point(const Job *job, uint32_t x, uint32_t y)
     return point;
 }
 
-/* The change of the position from pixel to pixel, by the two neighbours.  Where one of them lies at
-   another depth, there is an edge, and the other tells it alone. */
+/* Finds the change of the position from pixel to pixel, by the two neighbours.  Where one of them
+   lies at another depth, there is an edge, and the other tells it alone. */
 static bool find_change(const PlatePoint *before, const PlatePoint *at, const PlatePoint *after,
                         double change[3])
 {
@@ -110,7 +111,7 @@ static bool find_change(const PlatePoint *before, const PlatePoint *at, const Pl
     return before->exists || after->exists;
 }
 
-/* The normal towards the eye; where neighbours tell none, the surface faces the eye. */
+/* Finds the normal towards the eye; where neighbours tell none, the surface faces the eye. */
 static void find_normal(const Job *job, uint32_t x, uint32_t y, const PlatePoint *at,
                         double normal[3])
 {
@@ -148,7 +149,8 @@ void plate_find_planes(const Job *job, const KrsWindow *traced, float (*planes)[
 
 /* ---- what is caught ---- */
 
-/* Light on the plate without the scene is nothing where it is black: nothing is darker than that. */
+/* Returns the ratio of light on the plate.  Without light from elsewhere the plate is black:
+   nothing is darker than that. */
 static float ratio_of(float caught, float without) { return without > 0 ? caught / without : 1; }
 
 /* Makes an AOV of a picture; false with the failure noted. */
@@ -160,7 +162,8 @@ static bool make_aov(const KrsFilm *film, KrsPicture *picture, float (**aov)[3])
     return *aov != NULL;
 }
 
-/* What a glossy plate mirrors counts for the part of the pixel that shows the plate, as its sums do. */
+/* Puts a pixel.  What a glossy plate mirrors counts for the part of the pixel that shows the plate,
+   as its sums do. */
 static void put_pixel(const KrsFilm *film, KrsPicture *picture, const float (*sums)[4],
                       size_t pixels, size_t k)
 {

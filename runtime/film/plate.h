@@ -9,7 +9,7 @@
 
 /* Tells whether the plate of a film catches shadows. */
 bool plate_catches(const KrsFilm *film);
-/* So many rows of results are of the plate: 0, 2 or 4. */
+/* Returns the rows of results that are of the plate: 0, 2 or 4. */
 uint32_t plate_rows(const KrsFilm *film);
 /* Tells the shaders what falls on the plate, and where its rows are. */
 void plate_tell(const KrsFilm *film, ControlBlock *control);

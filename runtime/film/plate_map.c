@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where there is no surface all rays are before it. */
+/* The nearness where there is no surface: all rays are before it. */
 #define NOWHERE (-1e30f)
 /* The difference of neighbours, relative to those beside them, or to pixels, up to which they are of the
    same surface. */
@@ -55,7 +55,7 @@ static float change_of_pixel(const Map *map, float nearness)
     return map->perspective ? frame->pixel_slope * nearness : frame->pixel_base;
 }
 
-/* The change from one number to the next; 0 where one is of no surface. */
+/* Returns the change from one number to the next; 0 where one is of no surface. */
 static float change_of(float from, float to)
 {
     return from == NOWHERE || to == NOWHERE ? 0 : fabsf(to - from);
@@ -71,7 +71,7 @@ static bool are_joined(const Map *map, const float row[4])
     return change_of(row[1], row[2]) <= MAX_BEND * beside + STEEP_RISE * steep;
 }
 
-/* Pixels beyond the picture have no surface. */
+/* Returns the nearness of a neighbour; pixels beyond the picture have no surface. */
 static float nearness_beside(const Map *map, size_t x, size_t y)
 {
     return x < map->width && y < map->height ? nearness_of(map, x, y) : NOWHERE;
@@ -98,7 +98,8 @@ static void put_pixel(const Map *map, size_t x, size_t y)
     map->rows[k][3] = (bits & ~(PLATE_JOINS_RIGHT | PLATE_JOINS_BELOW)) | find_joins(map, x, y);
 }
 
-/* The nearest pixel of a block, or of those around it, which a ray reads that has just left it. */
+/* Returns the nearest pixel of a block, or of those around it, which a ray reads that has just left
+   it. */
 static float nearest_of_block(const Map *map, size_t left, size_t top)
 {
     const size_t from_x = left > 0 ? left - 1 : 0, from_y = top > 0 ? top - 1 : 0;

@@ -9,7 +9,7 @@
 /* Tells whether rays of a job's paths may meet the plate: it catches something, its depths and its colours
    are known, and its camera is no panorama. */
 bool plate_map_exists(const Job *job);
-/* The rows of the map, of four numbers each (blocks.h). */
+/* Returns the rows of the map, of four numbers each (blocks.h). */
 size_t plate_map_rows(const Job *job);
 void   plate_map_make(const Job *job, uint32_t (*rows)[4]);
 

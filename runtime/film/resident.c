@@ -28,7 +28,7 @@ size_t resident_kept(const KrsRenderOptions *options)
     return (size_t)KEPT_ROWS * cover.width * cover.height;
 }
 
-/* The rows for the light of lights in the buffers.  They go along with the row of colours. */
+/* Returns the rows for the light of lights in the buffers.  They go along with the row of colours. */
 static uint32_t rows_of_lights(const ResidentBand *resident, uint32_t rows)
 {
     return rows & 1u << ROW_COLORS ? resident->film->light_count : 0;
@@ -108,7 +108,7 @@ static bool find_row(const KrsFilm *film, const ResidentBand *resident, uint32_t
     return true;
 }
 
-/* The rows of pixels of the resident band: [first, end). */
+/* Finds the rows of pixels of the resident band: [first, end). */
 static void rows_of_resident(const KrsFilm *film, const ResidentBand *resident, uint32_t *first,
                              uint32_t *end)
 {
@@ -129,7 +129,7 @@ static void place_positions(KrsFilm *film, const float *position_row, size_t fir
         }
 }
 
-/* The rows of results that samples add to. */
+/* Returns the rows of results that samples add to. */
 static uint32_t rows_of_sums(const KrsFilm *film)
 {
     return 1u << ROW_COLORS | (film->kept ? 1u << ROW_NOISE | 1u << ROW_EARLIER : 0);

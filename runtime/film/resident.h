@@ -23,8 +23,8 @@ struct KrsFilm {
     double   rebase_origin[3]; /* positions of the first sample are relative to it */
 };
 
-/* The crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels of a tile go
-   on together (noise.comp), which must not depend on the crop. */
+/* Returns the crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels
+   of a tile go on together (noise.comp), which must not depend on the crop. */
 KrsWindow resident_cover(const KrsRenderOptions *options);
 /* Tells how many numbers of four members `kept` has: of each pixel of these tiles in the rows of colours,
    noise and earlier sums. */

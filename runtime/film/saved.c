@@ -42,7 +42,7 @@ typedef struct Header {
     uint32_t  samples, max_evaluations;
 } Header;
 
-/* What is true of the film whether it has samples or not. */
+/* Describes the film as it is with samples or without. */
 static Header describe(const KrsFilm *film)
 {
     const KrsPicture *sums   = film->sums;
@@ -104,7 +104,7 @@ static bool fits(const KrsFilm *film, const Header *header)
            header->samples <= KRS_MAX_SAMPLES;
 }
 
-/* All arrays of the film. */
+/* Passes all arrays of the film. */
 static bool pass_arrays(const KrsFilm *film, const Way *way)
 {
     const KrsPicture *sums   = film->sums;

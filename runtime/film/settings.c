@@ -29,7 +29,7 @@ static uint32_t first_nonzero(uint32_t asked, uint32_t scene, uint32_t otherwise
     return asked ? asked : scene ? scene : otherwise;
 }
 
-/* The number of a name that the compiler knows; NULL: the scene has none. */
+/* Returns the number of a name that the compiler knows; NULL: the scene has none. */
 static int find_name(const char *const *names, const char *name, int otherwise)
 {
     for (int i = 0; name && names[i]; i++)
@@ -76,7 +76,7 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
     return true;
 }
 
-/* When samples end by noise.  What is seen as black depends on the exposure. */
+/* Sets when samples end by noise.  What is seen as black depends on the exposure. */
 static void put_noise(const KrsImage *image, KrsRenderOptions *o)
 {
     o->noise = o->noise != 0 ? o->noise : image->noise;

@@ -52,7 +52,7 @@ static void add_items(Preview *p, KrsPhase phase, const Shader *shader, ListId i
                              .constants = constants});
 }
 
-/* The same by a shader without a scene. */
+/* Does the same by a shader without a scene. */
 static void add_pixels(Preview *p, KrsPhase phase, PixelShader shader, ListId in, ListId out,
                        PassConstants constants, float weight)
 {
@@ -75,7 +75,7 @@ static void add_rays(Preview *p, KrsPhase phase, ListId in, ListId out, bool cle
                              .constants     = constants});
 }
 
-/* The first light from number `light` on that has a disc in the sky. */
+/* Returns the first light from number `light` on that has a disc in the sky. */
 static uint32_t find_sun(const KrsView *view, uint32_t light)
 {
     while (light < view->light_count &&
@@ -84,7 +84,7 @@ static uint32_t find_sun(const KrsView *view, uint32_t light)
     return light;
 }
 
-/* The row of results for the light of a light. */
+/* Returns the row of results for the light of a light. */
 static uint32_t row_of_light(const Preview *p, uint32_t light)
 {
     return p->job->options.light_groups ? ROW_OF_LIGHTS + light : ROW_COLORS;
@@ -207,7 +207,7 @@ static LightPass first_lights(const Preview *p)
     return (LightPass){0, count < LIGHTS_AT_ONCE ? count : LIGHTS_AT_ONCE, false};
 }
 
-/* The lights of the next pass; false: there are no more. */
+/* Finds the lights of the next pass; false: there are no more. */
 static bool next_lights(const Preview *p, LightPass *lights)
 {
     const uint32_t count = (uint32_t)p->job->view.light_count;
@@ -361,7 +361,8 @@ static bool find_secondary(Preview *p)
     return p->secondary && (options->no_occlusion || p->occluders || p->plan->surfaces);
 }
 
-/* The shader that shades.  Where lanes march, the host finds surfaces for it; NULL with the failure noted. */
+/* Returns the shader that shades.  Where lanes march, the host finds surfaces for it; NULL with the
+   failure noted. */
 static const Shader *find_shade(Preview *p)
 {
     Job *job = p->job;

@@ -12,7 +12,7 @@ vec2 find_widths(float roughness, float anisotropy)
     return max(vec2(along, across * along), MIN_ALPHA);
 }
 
-// Smith's function: how much of the microfacets is hidden from a direction.
+// Returns Smith's function: how much of the microfacets is hidden from a direction.
 float find_hidden(vec3 direction, vec2 alpha)
 {
     vec2  slope = alpha * direction.xy;
@@ -20,7 +20,7 @@ float find_hidden(vec3 direction, vec2 alpha)
     return 0.5 * (sqrt(1.0 + square) - 1.0);
 }
 
-// GGX: the density of microfacets with a normal.
+// Returns the density of microfacets with a normal (GGX).
 float find_density(vec3 normal, vec2 alpha)
 {
     vec2  slope = normal.xy / alpha;
@@ -28,7 +28,8 @@ float find_density(vec3 normal, vec2 alpha)
     return 1.0 / (PI * alpha.x * alpha.y * across * across);
 }
 
-// The weights of the azimuths whose squared cosines are 0, 1/3, 2/3 and 1: a cubic goes through all.
+// Returns the weights of the azimuths whose squared cosines are 0, 1/3, 2/3 and 1: a cubic goes
+// through all.
 vec4 find_azimuth_weights(vec2 along)
 {
     float square = dot(along, along);
@@ -53,7 +54,7 @@ vec2 mix_wide_albedos(uint low, vec2 part, vec4 weights)
                part.y);
 }
 
-// Light that microfacets reflect: all, and the part by Schlick's factor.
+// Returns light that microfacets reflect: all, and the part by Schlick's factor.
 vec2 find_wide_albedo(vec3 eye, float roughness, float anisotropy)
 {
     uvec3 most = uvec3(WIDE_COSINES, WIDE_ROUGHNESSES, WIDE_ANISOTROPIES) - 1u;

@@ -111,7 +111,7 @@ void add_sky(uvec2 corner, uint misses)
         uvec2 pixel = corner + uvec2(bit & 3u, bit >> 2u);
         vec3  radiance = find_radiance(pixel);
         float factor = clamp_factor(radiance);
-        // What is 0 so far is not fetched: all lanes fetch the first pixel.
+        // A number that is 0 so far is not fetched: all lanes fetch the first pixel.
         uint  index = index_of(pixel), fetched = begins ? 0u : index;
         vec3  before = begins ? vec3(0.0) : load_color(control.color_row, fetched).rgb;
         if (misses != 0u) {

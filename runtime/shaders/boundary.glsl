@@ -13,7 +13,7 @@ struct Boundary {
     float code, beyond; // of rays that stay on this side, and of those that go on beyond
 };
 
-// The part of a surface that lets light through.
+// Returns the part of a surface that lets light through.
 float find_glass(KrsSurface surface)
 {
     return clamp(surface.transmission, 0.0, 1.0) * (1.0 - clamp(surface.metallic, 0.0, 1.0));
@@ -31,13 +31,13 @@ float find_eta(float here, float beyond)
 #ifdef STARTS_BY_DISTANCE
 #include "research/starts_by_distance.glsl"
 #else
-// How many pixels above a surface rays of previews start, where it is even and where it is not, as in
-// secondary.comp.
+// The pixels above a surface at which rays of previews start, where it is even and where it is not,
+// as in secondary.comp.
 const float START_OF_EVEN = 0.125, START = 0.5;
 
-// How high above the surface a ray starts.  Where hits are snapped, that is by what rounding may be wrong
-// by: of coordinates, and of the distance, which shows in differences around the hit.  These are large at
-// edges as well, so they count up to MAX_BEND alone.
+// The height above the surface at which a ray starts.  Where hits are snapped, that is by what
+// rounding may be wrong by: of coordinates, and of the distance, which shows in differences around
+// the hit.  These are large at edges as well, so they count up to MAX_BEND alone.
 const float MAX_BEND = 0.04;
 float find_snapped_height(HitPoint hit, float evenness)
 {
@@ -74,15 +74,15 @@ float find_way(uint index, HitPoint hit, float t, bool first)
     return first ? t : t + dot(lifted, hit.direction);
 }
 
-// What absorption leaves of light on that way.
+// Returns what absorption leaves of light on that way.
 vec3 find_left(Boundary boundary, float way)
 {
     return boundary.absorbs ? exp(-max(boundary.absorption, 0.0) * way) : vec3(1.0);
 }
 
 #ifdef MEDIA
-// What krs_surface needs to know of the ray.  A camera's ray does not know its medium, but whether it
-// began inside of something.
+// Prepares what krs_surface needs to know of the ray.  A camera's ray does not know its medium, but
+// whether it began inside of something.
 void prepare_boundary(inout HitPoint hit, float code, vec3 facing)
 {
     enter_medium(code);
@@ -93,7 +93,7 @@ void prepare_boundary(inout HitPoint hit, float code, vec3 facing)
     }
 }
 
-// What it has told, for the surface that it has found.
+// Returns what it has told, for the surface that it has found.
 Boundary find_boundary(HitPoint hit, KrsSurface surface)
 {
     bool leaves = krs_medium != 0u && krs_struck == krs_medium;

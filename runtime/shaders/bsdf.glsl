@@ -34,7 +34,7 @@ const float MIN_SHEEN_ROUGHNESS = 0.3;
 
 // ---- the surface, and directions seen from it ----
 
-// A number within its limits; NaN becomes the lower one.
+// Returns a number within its limits; NaN becomes the lower one.
 float within(float number, float low, float high) { return number > low ? min(number, high) : low; }
 
 vec3 within(vec3 numbers, float low, float high)
@@ -54,7 +54,8 @@ struct Axes {
     vec3 right, up, normal;
 };
 
-// With ANISOTROPIC the first axis is the tangent; it is no unit vector, nor across the normal.
+// Finds the axes of a surface.  With ANISOTROPIC the first axis is the tangent; it is no unit
+// vector, nor across the normal.
 Axes find_axes(vec3 normal, vec3 tangent)
 {
     Axes axes;
@@ -91,7 +92,7 @@ struct Bsdf {
     WIDTH coat_alpha;
     vec3  sheen;
     float sheen_alpha;
-    // What follows depends on the eye.
+    // The following members depend on the eye.
     vec3  eye;                // unit, towards it
     float sheen_scale;        // keeps sheen from reflecting more than all
     float fuzzy, coated;      // what sheen that is white sends back, and what the coat does
@@ -114,8 +115,8 @@ struct Bsdf {
 
 vec3 load_albedo(uint number) { return uintBitsToFloat(load_input(number).xyz); }
 
-// Light that microfacets reflect: all, the part by Schlick's factor, and sheen, whose rows begin at
-// its least roughness.
+// Returns light that microfacets reflect: all, the part by Schlick's factor, and sheen, whose rows
+// begin at its least roughness.
 vec3 find_albedo(float cosine, float roughness)
 {
     vec2  at = clamp(vec2(sqrt(cosine), roughness), 0.0, 1.0) * float(ALBEDO_SIDE - 1u);
@@ -129,14 +130,14 @@ vec3 find_albedo(float cosine, float roughness)
 // ---- microfacets ----
 
 #ifndef ANISOTROPIC
-// Smith's function: how much of the microfacets is hidden from a direction.
+// Returns Smith's function: how much of the microfacets is hidden from a direction.
 float find_hidden(vec3 direction, float alpha)
 {
     float tangent = dot(direction.xy, direction.xy) / max(square(direction.z), 1e-12);
     return 0.5 * (sqrt(1.0 + alpha * alpha * tangent) - 1.0);
 }
 
-// GGX: the density of microfacets with a normal.
+// Returns the density of microfacets with a normal (GGX).
 float find_density(vec3 normal, float alpha)
 {
     float across = dot(normal.xy, normal.xy) / (alpha * alpha) + normal.z * normal.z;
@@ -144,7 +145,7 @@ float find_density(vec3 normal, float alpha)
 }
 #endif
 
-// The density of normals that are visible from the eye, in solid angle.
+// Returns the density of normals that are visible from the eye, in solid angle.
 float find_visible(vec3 eye, vec3 normal, WIDTH alpha)
 {
     return find_density(normal, alpha) * max(dot(eye, normal), 0.0) /
@@ -157,7 +158,7 @@ float schlick(float cosine)
     return twice * twice * left;
 }
 
-// Reflected light times the cosine, of microfacets that mirror all, and its probability.
+// Returns reflected light times the cosine, of microfacets that mirror all, and its probability.
 vec2 mirror(vec3 eye, vec3 light, WIDTH alpha, out float cosine)
 {
     vec3 sum = eye + light;
@@ -188,7 +189,7 @@ float find_glass_part(Bsdf bsdf, float cosine) { return fresnel(cosine, bsdf.eta
 float find_mirrored_share(Bsdf bsdf, float cosine) { return find_glass_part(bsdf, cosine); }
 #endif
 
-// The density of light that visible microfacets mirror, or refract, into a direction.
+// Returns the density of light that visible microfacets mirror, or refract, into a direction.
 GLASS_PART glass_density(Bsdf bsdf, vec3 light, bool refracts)
 {
     vec3  sum = refracts ? bsdf.eye + bsdf.eta * light : bsdf.eye + light;
@@ -204,9 +205,9 @@ GLASS_PART glass_density(Bsdf bsdf, vec3 light, bool refracts)
     return meets ? density * (refracts ? 1.0 - mirrors : mirrors) : GLASS_PART(0.0);
 }
 
-// The density of light that glass sends into a direction.  What a microfacet mirrors or refracts to
-// the wrong side of the surface is sent to the right one, upside down.  So all light leaves, as if
-// it went on between microfacets.
+// Returns the density of light that glass sends into a direction.  What a microfacet mirrors or
+// refracts to the wrong side of the surface is sent to the right one, upside down.  So all light
+// leaves, as if it went on between microfacets.
 GLASS_PART glass_towards(Bsdf bsdf, vec3 light)
 {
     vec3 upside_down = vec3(light.xy, -light.z);
@@ -262,8 +263,8 @@ void share_below(inout Bsdf bsdf, KrsSurface surface, float body, bool enters, i
 }
 #endif
 
-// `entering`: the ray comes from outside.  The eye's direction may lie below the horizon by
-// rounding.
+// Makes a BSDF; `entering`: the ray comes from outside.  The eye's direction may lie below the
+// horizon by rounding.
 Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
 {
     Bsdf bsdf;
@@ -330,8 +331,8 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
     return bsdf;
 }
 
-// Light from a direction that goes to the eye, times the cosine; and the probability density of
-// sampling that direction.
+// Returns light from a direction that goes to the eye, times the cosine; and the probability
+// density of sampling that direction.
 vec4 scatter(Bsdf bsdf, vec3 light)
 {
     GLASS_PART glass = GLASS_PART(0.0);
@@ -372,7 +373,7 @@ vec4 scatter(Bsdf bsdf, vec3 light)
 }
 
 #ifdef CATCHES
-// What the surface of a plate mirrors, and nothing else, in place of a surface within limits.
+// Makes what the surface of a plate mirrors, and nothing else, in place of a surface within limits.
 Bsdf make_glossy(KrsSurface surface, float roughness, float head_on, vec3 eye)
 {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
@@ -388,7 +389,8 @@ Bsdf make_glossy(KrsSurface surface, float roughness, float head_on, vec3 eye)
 }
 #endif
 
-// A dull white surface in place of another: the plate, and where light leaves from below a surface.
+// Makes a dull white surface in place of another: the plate, and where light leaves from below a
+// surface.
 Bsdf make_dull(Bsdf bsdf)
 {
     bsdf.color = vec3(1.0);

@@ -28,8 +28,9 @@ vec3 sample_glass(Bsdf bsdf, vec2 square_point, float choice)
     return normalize(light);
 }
 
-// A direction that light comes from, by the density of `scatter`; 0 where microfacets mirror below
-// the surface.  If that were a direction, glass would count it as well.  `choice`: of what glass does.
+// Returns a direction that light comes from, by the density of `scatter`; 0 where microfacets
+// mirror below the surface.  If that were a direction, glass would count it as well.  `choice`: of
+// what glass does.
 vec3 sample_direction(Bsdf bsdf, vec2 square_point, float choice)
 {
     vec4 below = bsdf.shares;

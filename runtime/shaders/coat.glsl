@@ -8,7 +8,7 @@ const float EVEN = 0.98, EVEN_IN_MIRRORS = 1.0;
 const float MIN_NORMAL_REACH = 0.5; // the reach without filtering (normal_reach in job.c)
 const float SEEN = 0.78;              // length of the mean visible normal of a thin round thing
 
-// How a surface reflects light.
+// The reflection of light by a surface.
 struct Coat {
     vec3  color, normal; // normal: direction of the mean of the normals
     float mean_length;   // length of this mean
@@ -29,7 +29,7 @@ vec4 saturate(vec4 numbers, float most)
 }
 
 #ifdef SUBSURFACE
-// The colour of a body, with what comes from below its surface; metals have none.
+// Returns the colour of a body, with what comes from below its surface; metals have none.
 vec3 color_below(KrsSurface surface)
 {
     vec2 parts = saturate(vec4(surface.subsurface_weight, surface.metallic, 0.0, 0.0), 1.0).xy;
@@ -37,16 +37,17 @@ vec3 color_below(KrsSurface surface)
 }
 #endif
 
-// The mean of the normals that the pixel shows; it is no unit vector.  `mean_length` is the length
-// of the mean of all normals around.  Of a thin thing only the side towards the eye is visible.
+// Returns the mean of the normals that the pixel shows; it is no unit vector.  `mean_length` is the
+// length of the mean of all normals around.  Of a thin thing only the side towards the eye is
+// visible.
 vec3 mean_normal(vec3 normal, float mean_length, vec3 toward_eye)
 {
     float rest = 1.0 - mean_length;
     return mean_length * normal + SEEN * rest * rest * toward_eye;
 }
 
-// Normals that vary within the pixel make the coat rougher: the shorter their mean, the wider
-// their lobe (Toksvig 2005).
+// Roughens the coat by normals that vary within the pixel: the shorter their mean, the wider their
+// lobe (Toksvig 2005).
 float roughen(float roughness, float mean_length)
 {
     float square = roughness * roughness;
@@ -91,8 +92,9 @@ Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
     return found;
 }
 
-// Reflectance times cosine.  Scattered light is in proportion to the cosine, and so to the mean of the
-// normals, which is shorter than each.  What a coat mirrors is the same amount at any roughness.
+// Returns reflectance times cosine.  Scattered light is in proportion to the cosine, and so to the
+// mean of the normals, which is shorter than each.  What a coat mirrors is the same amount at any
+// roughness.
 vec3 find_reflected(Coat coat, vec3 toward)
 {
 #ifdef LAYERS
@@ -118,7 +120,7 @@ vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visib
     return visible * color * find_reflected(coat, toward);
 }
 
-// The light of the sky, of which these parts reach the body and what mirrors.
+// Returns the light of the sky, of which these parts reach the body and what mirrors.
 vec3 ambient_of(Coat coat, vec3 body, float mirror)
 {
 #ifdef LAYERS
@@ -133,7 +135,7 @@ vec3 ambient_of(Coat coat, vec3 body, float mirror)
 #endif
 }
 
-// The light of the sky, with what occluders give back of it.
+// Returns the light of the sky, with what occluders give back of it.
 vec3 ambient(Coat coat, Openness openness)
 {
     vec3  body = with_bounces(openness.open, guess_color(coat.color, openness.albedo));

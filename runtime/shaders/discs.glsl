@@ -6,14 +6,14 @@
 
 #include "sines.glsl"
 
-// The radius of a light's disc; a directional light is at distance 1.
+// Returns the radius of a light's disc; a directional light is at distance 1.
 float light_radius(Light light)
 {
     bool positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     return max(positional ? light.softness : krs_tan(0.5 * min(light.softness, 3.0)), 0.0);
 }
 
-// The fraction of a disc above a line that is `depth` radii below its centre.
+// Returns the fraction of a disc above a line that is `depth` radii below its centre.
 float fraction_above(float depth)
 {
     float h = clamp(depth, -1.0, 1.0), segment_height = 1.0 - abs(h);
@@ -36,7 +36,8 @@ Disc find_disc(Light light, HitPoint hit)
     return Disc(toward / light_distance, light_radius(light) / light_distance);
 }
 
-// The fraction of the disc in front of the surface; `rise`: cosine between normal and direction.
+// Returns the fraction of the disc in front of the surface; `rise`: cosine between normal and
+// direction.
 float find_fraction_above(Disc disc, float rise)
 {
     float across = sqrt(max(1.0 - rise * rise, 0.0));

@@ -53,10 +53,11 @@ float bend_wide;       // bend of the wide taps
 float at_hit;          // the distance at the hit
 vec3  plane_normal;    // of the plane that is looked for beside the edge
 
-// The bend: how far the distances are from those to a plane, in parts of the reach.
+// Returns the bend: how far the distances are from those to a plane, in parts of the reach.
 float find_bend() { return length(level - 2.0 * middle) / length(sum); }
 
-// The point of the nearer taps for a hit on the line of an edge, relative to the hit, in reaches.
+// Returns the point of the nearer taps for a hit on the line of an edge, relative to the hit, in
+// reaches.
 vec3 find_place_across(bool turned)
 {
     vec3 mean = normalize(sum_wide), backwards = find_backwards(), right, up;

@@ -22,7 +22,7 @@ struct Cones {
 // Light that bounces often is found by other directions, which count more the fewer they are.
 const float MAX_AT_FIRST = 0.5, MAX_BY_CONES = 0.3;
 
-// The radiance of what is found in directions that surfaces choose.
+// Returns the radiance of what is found in directions that surfaces choose.
 float find_around(vec3 facing)
 {
 #ifdef SKY_MAP
@@ -39,7 +39,8 @@ struct Cone {
     float weight; // about how much light it may send; 0: it is not used
 };
 
-// From inside of a ball, or with a ball behind the surface, nothing is gained.
+// Finds the cone of a ball.  From inside of a ball, or with a ball behind the surface, nothing is
+// gained.
 Cone find_cone(Cones cones, uint number)
 {
     uint  row = ALBEDO_ROWS + EMISSIVE_ROWS * number;
@@ -56,8 +57,8 @@ Cone find_cone(Cones cones, uint number)
     return cone;
 }
 
-// `dull`: how widely the surface scatters light, from 0 to 1.  The more light comes from elsewhere, the
-// fewer directions are chosen by cones.
+// Finds the cones; `dull`: how widely the surface scatters light, from 0 to 1.  The more light
+// comes from elsewhere, the fewer directions are chosen by cones.
 Cones find_cones(vec3 place, vec3 facing, float dull)
 {
     Cones cones = Cones(place, facing, 0.0, 0.0);
@@ -70,8 +71,8 @@ Cones find_cones(vec3 place, vec3 facing, float dull)
     return cones;
 }
 
-// The density with which paths go on in a direction, in solid angle, where the surface alone has
-// `density`.
+// Returns the density with which paths go on in a direction, in solid angle, where the surface
+// alone has `density`.
 float mixed_density(Cones cones, vec3 direction, float density)
 {
     float sum = 0.0;
@@ -84,7 +85,7 @@ float mixed_density(Cones cones, vec3 direction, float density)
     return mix(density, sum / max(cones.all, 1e-30), cones.part);
 }
 
-// A direction by cones; `choice` is of [0, 1).
+// Returns a direction by cones; `choice` is of [0, 1).
 vec3 sample_cones(Cones cones, vec2 square_point)
 {
     float left = square_point.x * cones.all, part = 0.0;

@@ -26,7 +26,7 @@
 #include "plate_rays.glsl"
 #endif
 
-// What a path is when its ray ends.
+// The state of a path when its ray ends.
 struct Path {
     vec3  origin, direction, weight;
     float density;
@@ -35,15 +35,15 @@ struct Path {
     bool  knows_lights; // what lights send here is known already
 };
 
-// The part of a light that counts where rays find it as well as points of it are chosen, so that
-// both together count once (Veach 1997, the power heuristic).
+// Returns the part of a light that counts where rays find it as well as points of it are chosen, so
+// that both together count once (Veach 1997, the power heuristic).
 float share_of_rays(float by_rays, float by_lights)
 {
     return by_rays > 0.0 ? 1.0 / (1.0 + square(by_lights / by_rays)) : 1.0;
 }
 
-// The light of all sources that a path's ray meets before it ends.  Where the light of each is
-// separate, it is added to their own rows, as far as it is `shown`.
+// Returns the light of all sources that a path's ray meets before it ends.  Where the light of each
+// is separate, it is added to their own rows, as far as it is `shown`.
 vec3 find_sources(Path path, float end, uint index, vec3 shown)
 {
     vec3  sum = vec3(0.0);
@@ -65,7 +65,8 @@ vec3 find_sources(Path path, float end, uint index, vec3 shown)
     return sum;
 }
 
-// The light of the sky that a path's ray meets, which directions may have been chosen by, too.
+// Returns the light of the sky that a path's ray meets, which directions may have been chosen by,
+// too.
 vec3 find_sky(Path path)
 {
     if (!has_sky_map())
@@ -104,7 +105,8 @@ Path load(uvec2 pixel, uint index, out float base, out float slope)
     return path;
 }
 
-// The light of sources and of the sky that a ray brings, which ends at a surface or hits nothing.
+// Returns the light of sources and of the sky that a ray brings, which ends at a surface or hits
+// nothing.
 vec3 find_light_before(Path path, bool hits, bool lost, float end, uint index)
 {
     vec3  found = vec3(0.0);
@@ -141,7 +143,8 @@ float find_plate_of_path(Path path)
     return meets ? find_plate_ahead(path.origin, path.direction, INFINITE, begins) : INFINITE;
 }
 
-// Light of sources, and of the plate at `plate`, where a path ends there before it hits anything else.
+// Returns light of sources, and of the plate at `plate`, where a path ends there before it hits
+// anything else.
 vec3 find_light_with_plate(Path path, bool hits, bool lost, float end, float plate, uint index)
 {
     bool at_plate = plate < (hits || lost ? end : INFINITE);
@@ -204,7 +207,8 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
     return true;
 }
 
-// Indices in the list are reserved for all pixels of a quarter at once (background.comp).
+// Lists hits, whose indices in the list are reserved for all pixels of a quarter at once
+// (background.comp).
 void list_hits(uint first, uint hits)
 {
     uint at = hits != 0u ? atomicAdd(counts.hit_count, bitCount(hits)) : 0u;

@@ -12,7 +12,7 @@
 #include "sines.glsl"
 #endif
 
-// How a ray has ended.
+// The end of a ray.
 struct RayEnd {
     float t;
     float side;  // 1 outside of all solids; -1 when the camera is inside of one
@@ -127,14 +127,14 @@ void load_frame()
 #endif
 }
 
-// The workgroup whose items this one takes.  The stride spreads neighbours, which cost the same, over
-// a device that assigns workgroups in contiguous halves.
+// Returns the workgroup whose items this one takes.  The stride spreads neighbours, which cost the
+// same, over a device that assigns workgroups in contiguous halves.
 uint find_group()
 {
     return work.first + find_cell(gl_WorkGroupID.x * work.stride, work.groups).x;
 }
 
-// A row of the hit in a slot (hit_lists.glsl).
+// Loads a row of the hit in a slot (hit_lists.glsl).
 vec4 load_hit(uint row, uint slot) { return load_hit_row(HIT_ROWS * slot + row); }
 
 void store_hit(uint row, uint slot, vec4 numbers) { hits[HIT_ROWS * slot + row] = numbers; }
@@ -151,15 +151,15 @@ uint count_tiles()
     return tiles.x * tiles.y;
 }
 
-// The pixel of a slot (hit_lists.glsl), counted in the band.
+// Returns the pixel of a slot (hit_lists.glsl), counted in the band.
 uvec2 pixel_of(uint slot)
 {
     uvec2 tile = find_cell(slot / 64u, (work.extent.x + 7u) / 8u);
     return 8u * tile + uvec2(slot & 7u, slot >> 3u & 7u);
 }
 
-// The bits of the pixels of a quarter of a tile that have rays: all, but where samples end by noise
-// (noise.comp).
+// Returns the bits of the pixels of a quarter of a tile that have rays: all, but where samples end
+// by noise (noise.comp).
 uint find_sampled(uint quarter)
 {
     return control.sampled_at != 0u ? load_tile_word(control.sampled_at + quarter) : 0xffffu;
@@ -212,8 +212,8 @@ RayEnd find_end(uint index)
                   (bits & 8u) != 0u, bits >> 4u & 15u);
 }
 
-// The tiles that overlap the band, of `side` pixels a side, counted in the whole picture: the first
-// one, and how many in each direction.
+// Finds the tiles that overlap the band, of `side` pixels a side, counted in the whole picture: the
+// first one, and how many in each direction.
 void find_tiles(uint side, out uvec2 first, out uvec2 count)
 {
     first = work.corner / side;
@@ -223,7 +223,7 @@ void find_tiles(uint side, out uvec2 first, out uvec2 count)
 #include "rays.glsl"
 
 #if defined(PATH_RAYS) || defined(MIXED_RAYS)
-// The ray of the path that the point's pixel follows.
+// Finds the ray of the path that the point's pixel follows.
 void find_ray_of_path(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
                       out float slope)
 {
@@ -264,8 +264,8 @@ bool are_of_paths()
 #endif
 }
 
-// The ray through a point of the picture, which is given in pixels from the top left corner.  At t
-// a pixel is base + slope t wide.
+// Finds the ray through a point of the picture, which is given in pixels from the top left corner.
+// At t a pixel is base + slope t wide.
 void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
               out float slope)
 {

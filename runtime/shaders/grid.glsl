@@ -3,7 +3,7 @@
  * for tests/unit/grid.c.
  */
 
-// Column and row of a cell; `estimate` is number / columns with an error below 1.
+// Returns column and row of a cell; `estimate` is number / columns with an error below 1.
 uvec2 cell_near(uint number, uint columns, float estimate)
 {
     uint row = uint(estimate);
@@ -12,9 +12,9 @@ uvec2 cell_near(uint number, uint columns, float estimate)
     return uvec2(uint(column - off * int(columns)), row + uint(off));
 }
 
-// Column and row of a cell.  A device's quotient may be off by 2.5 units in the last place, and
-// floats round whole numbers from 2^24 on.  In grids of up to 2^20 rows these errors are below 1.
-// lavapipe divides integers lane by lane, which would take twenty times as long.
+// Returns column and row of a cell.  A device's quotient may be off by 2.5 units in the last place,
+// and floats round whole numbers from 2^24 on.  In grids of up to 2^20 rows these errors are below
+// 1.  lavapipe divides integers lane by lane, which would take twenty times as long.
 uvec2 find_cell(uint number, uint columns)
 {
     return cell_near(number, columns, float(number) / float(columns));

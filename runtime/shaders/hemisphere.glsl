@@ -8,8 +8,8 @@
 // that of 1 in 2,500 of them.
 const float MIN_RISE = 0.02;
 
-// The ray of a point of the disc, with a density in proportion to the cosine, as light from there
-// counts.
+// Returns the ray of a point of the disc, with a density in proportion to the cosine, as light from
+// there counts.
 vec3 find_hemisphere_ray(vec3 normal, vec2 disc)
 {
     vec3 right, up;

@@ -27,8 +27,8 @@ uint find_listed(uint number) { return texelFetch(pixel_list_texels, int(number)
 
 uint band_pixels() { return work.extent.x * work.extent.y; }
 
-// Indices of words behind the lists of pixels: of a slot (shared.glsl), and of a quarter.  Tiles
-// may reach beyond the band, so there are more slots than pixels.
+// These return indices of words behind the lists of pixels: of a slot (shared.glsl), and of a
+// quarter.  Tiles may reach beyond the band, so there are more slots than pixels.
 uint shared_at(uint list, uint slot)
 {
     return LIST_SHARED * band_pixels() + 64u * count_tiles() * list + slot;
@@ -39,7 +39,7 @@ uint quarter_at(uint list, uint number)
     return shared_at(SHARED_LISTS, 0u) + 4u * count_tiles() * list + number;
 }
 
-// The index of a pixel of the band, counted row by row.
+// Returns the index of a pixel of the band, counted row by row.
 uint index_of(uvec2 pixel) { return pixel.y * work.extent.x + pixel.x; }
 
 uint slot_of_pixel(uvec2 pixel)
@@ -48,27 +48,28 @@ uint slot_of_pixel(uvec2 pixel)
     return 64u * (pixel.y / 8u * across + pixel.x / 8u) + (pixel.y & 7u) * 8u + (pixel.x & 7u);
 }
 
-// The first slot of a quarter of a tile; the others are in four rows of four.
+// Returns the first slot of a quarter of a tile; the others are in four rows of four.
 uint slot_of_quarter(uint number)
 {
     return 64u * (number / 4u) + 4u * (number & 1u) + 32u * (number >> 1u & 1u);
 }
 
-// A bit for each pixel of a quarter that is in the band; `corner` is the quarter's first pixel.
+// Returns a bit for each pixel of a quarter that is in the band; `corner` is the quarter's first
+// pixel.
 uint find_existing(uvec2 corner)
 {
     uvec2 size = min(max(work.extent, corner) - corner, uvec2(4u));
     return ((1u << size.x) - 1u) * (0x1111u & (1u << 4u * size.y) - 1u);
 }
 
-// The slot of the lowest bit in a quarter whose first slot is `first`.
+// Returns the slot of the lowest bit in a quarter whose first slot is `first`.
 uint slot_of_bit(uint first, uint bit)
 {
     uint number = uint(findLSB(bit));
     return first + 8u * (number >> 2u) + (number & 3u);
 }
 
-// The slot at which a quarter's cone starts: in column and row 2 or 5 of the tile.
+// Returns the slot at which a quarter's cone starts: in column and row 2 or 5 of the tile.
 uint cone_of_quarter(uint number)
 {
     return 64u * (number / 4u) + 18u + 3u * (number & 1u) + 24u * (number >> 1u & 1u);
@@ -81,8 +82,8 @@ bool has_cone(uint number)
     return (find_listed(quarter_at(HITS_OF_QUARTERS, number)) >> 4u * row + column & 1u) != 0u;
 }
 
-// The bits of the sparse pixels of a quarter: every second column and row, from the edge of the
-// tile on.
+// Returns the bits of the sparse pixels of a quarter: every second column and row, from the edge of
+// the tile on.
 uint sparse_pixels_of_quarter(uint number)
 {
     return ((number & 1u) == 0u ? 0x0505u : 0x0a0au) << ((number & 2u) == 0u ? 0u : 4u);
@@ -100,7 +101,7 @@ HitPoint hit_point_of_slot(uint slot)
     return hit_point_on(slot, origin, direction, base, slope, ray.t, ray.side, ray.steps);
 }
 
-// The hit of item `number` of the list that is read.
+// Returns the hit of item `number` of the list that is read.
 HitPoint find_hit_point(uint number)
 {
     return hit_point_of_slot(find_listed(control.reading + number));

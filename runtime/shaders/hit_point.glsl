@@ -17,7 +17,7 @@ struct HitPoint {
     uint  steps;     // as in RayEnd
 };
 
-// That of a ray at t, where a pixel is base + slope t wide.
+// Returns the point of a ray at t, where a pixel is base + slope t wide.
 HitPoint hit_point_on(uint slot, vec3 origin, vec3 direction, float base, float slope, float t, float side, uint steps)
 {
     vec3  position = origin + t * direction;

@@ -18,8 +18,9 @@ struct Layers {
 };
 
 #ifdef ANISOTROPIC
-// What a surface mirrors that is rougher along its tangent is drawn out into a fan of directions.
-// Its middle is that of a surface whose normal leans to the eye, along the tangent (McAuley 2015).
+// Bends a normal.  What a surface mirrors that is rougher along its tangent is drawn out into a fan
+// of directions.  Its middle is that of a surface whose normal leans to the eye, along the tangent
+// (McAuley 2015).
 vec3 bend_normal(Axes axes, vec3 toward_eye, KrsSurface surface)
 {
     vec3  leaning = toward_eye - dot(toward_eye, axes.up) * axes.up;
@@ -29,7 +30,7 @@ vec3 bend_normal(Axes axes, vec3 toward_eye, KrsSurface surface)
 }
 #endif
 
-// `glass`: the part of the body that scatters nothing.
+// Finds the layers; `glass`: the part of the body that scatters nothing.
 Layers find_layers(KrsSurface surface, bool entering, vec3 normal, vec3 toward_eye, float glass)
 {
     Layers layers;
@@ -48,21 +49,22 @@ Layers find_layers(KrsSurface surface, bool entering, vec3 normal, vec3 toward_e
     return layers;
 }
 
-// Reflectance times cosine.
+// Returns reflectance times cosine.
 vec3 reflected_by_layers(Layers layers, vec3 toward_light)
 {
     return scatter(layers.bsdf, into(layers.axes, toward_light)).rgb;
 }
 
-// What rays that go on find of it: the parts of the body's mirror, and of the coat's, that they
-// are `traced` for.
+// Returns what rays that go on find of it: the parts of the body's mirror, and of the coat's, that
+// they are `traced` for.
 vec3 traced_by_layers(Layers layers, vec2 traced)
 {
     return layers.bsdf.under_sheen * layers.bsdf.coated * traced.y +
            layers.bsdf.under_coat * layers.bsdf.mirrored * traced.x;
 }
 
-// The light of the sky: `to_body` and `to_mirrors` are the parts that reach the body and what mirrors.
+// Returns the light of the sky: `to_body` and `to_mirrors` are the parts that reach the body and
+// what mirrors.
 vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, vec3 to_body, float to_mirrors,
                        vec2 traced)
 {

@@ -4,7 +4,8 @@
 
 const float FARTHEST = 1e30; // the sky is behind all fog
 
-// Radiance of the sky: the horizon's colour fades to the zenith's above and the ground's below.
+// Returns the radiance of the sky: the horizon's colour fades to the zenith's above and the
+// ground's below.
 vec3 sky_radiance(vec3 direction)
 {
     float rise = clamp(direction.y, -1.0, 1.0);
@@ -21,9 +22,9 @@ vec3 mix_sky(vec2 parts)
            parts.y * (frame.ground.rgb - frame.horizon.rgb);
 }
 
-// These parts of the mean over the half sky around a normal that rises so much, weighted by the
-// cosine.  What changes its sign with the normal is linear in its rise, and exact; so are the ends.
-// The rest is a fit, off by 0.0023 at most (math.md 9).
+// Returns these parts of the mean over the half sky around a normal that rises so much, weighted by
+// the cosine.  What changes its sign with the normal is linear in its rise, and exact; so are the
+// ends.  The rest is a fit, off by 0.0023 at most (math.md 9).
 vec2 sky_parts_around(float rise)
 {
     float square = rise * rise;
@@ -32,12 +33,12 @@ vec2 sky_parts_around(float rise)
     return vec2(0.45, 0.490625) - (1.0 - square) * sides + vec2(0.45, -0.490625) * rise;
 }
 
-// Mean radiance of the half sky around a normal, which may be shorter than 1.
+// Returns the mean radiance of the half sky around a normal, which may be shorter than 1.
 vec3 sky_light(vec3 normal) { return mix_sky(sky_parts_around(clamp(normal.y, -1.0, 1.0))); }
 
-// What a surface mirrors of the sky around a direction: the mean over the lobe of its roughness (GGX).
-// From a mirror on the edges of the sky are ever softer; the widest lobe is the half sky around the
-// normal.  This is a fit: in root mean square it is off by 0.025 at most.
+// Returns what a surface mirrors of the sky around a direction: the mean over the lobe of its
+// roughness (GGX).  From a mirror on the edges of the sky are ever softer; the widest lobe is the
+// half sky around the normal.  This is a fit: in root mean square it is off by 0.025 at most.
 vec3 sky_mirrored(vec3 direction, vec3 normal, float roughness)
 {
     float soft = 0.2 * roughness, rise = clamp(direction.y, -1.0, 1.0);
@@ -48,7 +49,8 @@ vec3 sky_mirrored(vec3 direction, vec3 normal, float roughness)
     return mix_sky(mix(parts, around, smoothstep(0.1, 0.9, roughness)));
 }
 
-// The radiance that a directional light with a size adds to the sky: a disc and a glow around it.
+// Returns the radiance that a directional light with a size adds to the sky: a disc and a glow
+// around it.
 vec3 sun_radiance(vec3 direction, vec3 toward_sun, vec3 color, float diameter)
 {
     float angle = length(direction - toward_sun); // nearly the angle, where it is small
@@ -57,8 +59,8 @@ vec3 sun_radiance(vec3 direction, vec3 toward_sun, vec3 color, float diameter)
     return diameter > 0.0 ? color * (2.0 * disc + glow) : vec3(0.0);
 }
 
-// The part of light that fog lets through from t along a ray.  The fog is denser the lower it is:
-// its density is integrated along the ray.
+// Returns the part of light that fog lets through from t along a ray.  The fog is denser the lower
+// it is: its density is integrated along the ray.
 float let_through(float origin_height, float rise, float t)
 {
     float steepness = frame.fog_level.x * rise, change = steepness * t;
@@ -68,13 +70,14 @@ float let_through(float origin_height, float rise, float t)
     return frame.fog.w > 0.0 ? exp(-min(frame.fog.w * base * along, 80.0)) : 1.0;
 }
 
-// Light that comes through fog, with what the fog itself scatters to the eye.
+// Returns light that comes through fog, with what the fog itself scatters to the eye.
 vec3 through_fog(vec3 radiance, float left, bool adds_fog)
 {
     return radiance * left + (adds_fog ? frame.fog.rgb * (1.0 - left) : vec3(0.0));
 }
 
-// What a surface sends back to an eye: a body below a mirror of microfacets, and metal.
+// The light that a surface sends back to an eye: by a body below a mirror of microfacets, and
+// metal.
 struct Mirror {
     vec3  metal;         // its reflectance head-on
     vec3  metal_bounces; // its share, times what bounces more than once adds
@@ -85,9 +88,10 @@ struct Mirror {
 
 const float BODY_HEAD_ON = 0.04; // with an index of refraction of 1.5
 
-// The part of light from around that microfacets send back: of those that mirror all, and of those that
-// mirror by Schlick's factor alone.  The first is a fit, off by a tenth at most and 0.03 in root mean
-// square (albedos.h tells of them), the second that of the split-sum integral (Karis 2014).
+// Returns the part of light from around that microfacets send back: of those that mirror all, and
+// of those that mirror by Schlick's factor alone.  The first is a fit, off by a tenth at most and
+// 0.03 in root mean square (albedos.h tells of them), the second that of the split-sum integral
+// (Karis 2014).
 vec2 find_sent_back(float cosine, float roughness)
 {
     float root = sqrt(cosine);
@@ -98,7 +102,8 @@ vec2 find_sent_back(float cosine, float roughness)
     return vec2(all, clamp(edge, 0.0, all));
 }
 
-// What they do not send back at once bounces again (Turquin 2019), so that no light is lost.
+// Finds the mirror of a surface.  What microfacets do not send back at once bounces again (Turquin
+// 2019), so that no light is lost.
 Mirror find_mirror(vec3 normal, vec3 toward_eye, vec3 color, float roughness, float metallic)
 {
     vec2  sent = find_sent_back(clamp(dot(normal, toward_eye), 0.0, 1.0), roughness);
@@ -113,7 +118,7 @@ Mirror find_mirror(vec3 normal, vec3 toward_eye, vec3 color, float roughness, fl
     return mirror;
 }
 
-// Reflectance times cosine: Lambert below a GGX coat (Smith's masking, Schlick's Fresnel).
+// Returns reflectance times cosine: Lambert below a GGX coat (Smith's masking, Schlick's Fresnel).
 vec3 reflected(vec3 normal, vec3 toward_eye, vec3 toward_light, vec3 color, float roughness,
                Mirror mirror)
 {

@@ -28,7 +28,8 @@ struct LightPoint {
 };
 #endif
 
-// The part of its light that a light sends into a direction: 1, unless it shines to one side.
+// Returns the part of its light that a light sends into a direction: 1, unless it shines to one
+// side.
 float find_share(Light light, vec3 direction);
 
 bool casts_shadows(Light light) { return (light.kind & LIGHT_CASTS_SHADOWS) != 0u; }
@@ -37,7 +38,7 @@ bool is_positional(Light light) { return (light.kind & LIGHT_POSITIONAL) != 0u; 
 
 bool has_size(Light light) { return light.softness > 0.0 && casts_shadows(light); }
 
-// Irradiance from a light at a place that faces it.
+// Returns the irradiance from a light at a place that faces it.
 vec3 find_irradiance(Light light, vec3 place)
 {
     vec3 toward = light.vector - place;
@@ -64,7 +65,7 @@ float weight_of_rectangle(Light light, vec3 way)
 
 float area_of_rectangle(Light light) { return 4.0 * length(cross(light.right, light.up)); }
 
-// Evenly over its area.
+// Samples a rectangle evenly over its area.
 LightPoint sample_rectangle(Light light, vec3 place, float chance, vec2 square_point)
 {
     LightPoint point;
@@ -100,7 +101,7 @@ vec3 radiance_of_rectangle(Light light, vec3 origin, vec3 direction, float end, 
 // ---- discs in the sky, and balls, which are discs from everywhere ----
 
 #ifdef LIGHT_SAMPLES
-// Where 1 - cos is small it is not found by a difference.
+// Returns 1 - cos, which is not found by a difference where it is small.
 float gap_of_sine(float sine_squared)
 {
     return sine_squared / (1.0 + sqrt(max(1.0 - sine_squared, 0.0)));
@@ -115,15 +116,15 @@ float find_gap(Light light, float distance_squared)
     return gap_of_sine(square(krs_sin(radius)));
 }
 
-// The mean radiance of a disc: its irradiance over the solid angle, weighted by the cosine from the
-// middle.
+// Returns the mean radiance of a disc: its irradiance over the solid angle, weighted by the cosine
+// from the middle.
 vec3 disc_radiance(Light light, vec3 place, float gap)
 {
     float sine_squared = gap * (2.0 - gap);
     return find_irradiance(light, place) / (PI * max(sine_squared, 1e-20));
 }
 
-// Evenly over its solid angle.
+// Samples a disc evenly over its solid angle.
 LightPoint sample_disc(Light light, vec3 place, float chance, vec2 square_point)
 {
     LightPoint point;

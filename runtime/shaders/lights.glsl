@@ -13,7 +13,7 @@ float find_importance(Light light, vec3 place)
     return luminance(find_irradiance(light, place)) * find_weight(light, place - light.vector);
 }
 
-// That of the sky comes first.
+// Sums the importance of lights; that of the sky comes first.
 float sum_importance(vec3 place)
 {
     float sum = frame.sky_power;
@@ -23,8 +23,8 @@ float sum_importance(vec3 place)
 }
 
 #ifdef SKY_MAP
-// A direction of a sky that is a picture, by how bright it is there.  Fog hides it as it hides all of
-// the sky.
+// Returns a direction of a sky that is a picture, by how bright it is there.  Fog hides it as it
+// hides all of the sky.
 LightPoint sample_sky(vec3 place, float chance, vec2 square_point)
 {
     LightPoint point;

@@ -2,8 +2,8 @@
  * limits.glsl: depths that the caller has given, at which rays of pixels end.
  */
 
-// The depth of the pixel of this index.  Depths are of the whole pixel, and lie behind the lights and
-// listed rays, four in a texel.
+// Returns the depth of the pixel of this index.  Depths are of the whole pixel, and lie behind the
+// lights and listed rays, four in a texel.
 float find_limit(uint index)
 {
     uvec4 four = load_input(control.limits + index / 4u);
@@ -11,7 +11,7 @@ float find_limit(uint index)
     return uintBitsToFloat((index & 2u) == 0u ? low : high);
 }
 
-// The depth of a point, for each unit along its ray: as in store_aovs (aovs.glsl).
+// Returns the depth of a point, for each unit along its ray: as in store_aovs (aovs.glsl).
 float find_depth_rate(vec3 direction)
 {
     bool along = control.projection == PERSPECTIVE || control.projection == ORTHOGRAPHIC;

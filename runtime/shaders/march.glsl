@@ -59,7 +59,7 @@ float tolerance_at(float t)
     return tolerance_in_pixels * width_at(t, pixel_base + pixel_slope * t) + ROUNDING * (rounding + t);
 }
 
-// The ray, or the beam's axis, through a point of the picture.
+// Aims the ray, or the beam's axis, through a point of the picture.
 void aim(vec2 image_point)
 {
     find_ray(image_point, origin, direction, pixel_base, pixel_slope);
@@ -106,8 +106,8 @@ void begin_march(uint index, float start, bool is_ray)
 }
 
 #if defined(ALONG) || defined(STEPS)
-// The length back to the last position, and some roundings more.  Else a point just before a
-// surface without thickness could count as behind it at this step.
+// Returns the length back to the last position, and some roundings more.  Else a point just before
+// a surface without thickness could count as behind it at this step.
 float distance_behind()
 {
     float margin = 2.0 * ROUNDING * (rounding + march.t + march.step);

@@ -2,9 +2,9 @@
  * march_step.glsl: a step of a ray or beam by its next distance.  It finds out whether a surface
  * was crossed and where, and how long the step after it is.  The march is described in trace.comp.
  */
-// Where the surface is crossed, measured from t: the root of the chord.  The clearance is positive
-// at t, and not at t + step.  The result is at least the clearance at t, within which there is no
-// surface.
+// Returns where the surface is crossed, measured from t: the root of the chord.  The clearance is
+// positive at t, and not at t + step.  The result is at least the clearance at t, within which
+// there is no surface.
 float find_crossing(float clearance)
 {
     float along = march.clearance > clearance
@@ -19,9 +19,9 @@ const uint BALLS = AUTOMATIC;
 const uint BALLS = TRACE;
 #endif
 
-// The next step from a position with an empty ball of this radius, by the last slope of the radius
-// and the mean slope.  The balls at its ends should still meet.  Else the surface should be crossed,
-// with no longer unverified interval than is permitted; with STEPS none is left there.
+// Returns the next step from a position with an empty ball of this radius, by the last slope of the
+// radius and the mean slope.  The balls at its ends should still meet.  Else the surface should be
+// crossed, with no longer unverified interval than is permitted; with STEPS none is left there.
 float find_step(float clearance, float last_slope, float slope, float permitted, float tolerance)
 {
     bool  crosses = BALLS == TRACE && OVERSHOOT * clearance <= -last_slope * (clearance + permitted);

@@ -10,9 +10,9 @@ const uint CODES_OF_RAYS = 65536u;
 
 float code_of_ray(float side, uint medium) { return side * float(1u + medium); }
 
-// How a ray of direct light goes on through glass is the fraction of its code.  STRAIGHT: it shows what
-// is behind the glass as if that were in front.  SCATTERED: a surface has sent it there, whose light of
-// lights is known.  Others have not met glass.
+// The fraction of the code of a ray of direct light, which says how it goes on through glass.
+// STRAIGHT: it shows what is behind the glass as if that were in front.  SCATTERED: a surface has
+// sent it there, whose light of lights is known.  Others have not met glass.
 const float STRAIGHT = 0.5, SCATTERED = 0.25;
 
 float code_through(float code, float how) { return code + sign(code) * how; }

@@ -15,7 +15,7 @@
 const vec2 SMOOTH_METAL = vec2(0.15, 0.3), SMOOTH_BODY = vec2(0.06, 0.12);
 const float MIN_WEIGHT = 0.004; // rays that count less are not followed
 
-// The part of what a surface mirrors that a ray finds, and of what its clear coat mirrors.
+// Returns the part of what a surface mirrors that a ray finds, and of what its clear coat mirrors.
 vec2 find_traced(KrsSurface surface)
 {
     vec2  limits = mix(SMOOTH_BODY, SMOOTH_METAL, clamp(surface.metallic, 0.0, 1.0));
@@ -31,7 +31,7 @@ struct Onward {
     float code; // of where it begins (media.glsl)
 };
 
-// `mirrored`: what it mirrors, as far as a ray finds that.
+// Finds how a ray goes on; `mirrored`: what it mirrors, as far as a ray finds that.
 Onward find_onward(HitPoint hit, KrsSurface surface, Boundary boundary, vec3 normal, vec3 mirrored)
 {
     Onward onward;
@@ -55,10 +55,10 @@ Onward find_onward(HitPoint hit, KrsSurface surface, Boundary boundary, vec3 nor
     return onward;
 }
 
-// How much wider a ray gets with each unit of its way beyond the surface: it is a cone about the
+// The width that a ray gains with each unit of its way beyond the surface: it is a cone about the
 // pixel, and where the surface bends normals turn within the pixel.  The evenness tells how much
-// over the reach of differences (normals.comp).  Mirrors turn rays twice as far as normals, glass by
-// what it refracts.
+// over the reach of differences (normals.comp).  Mirrors turn rays twice as far as normals, glass
+// by what it refracts.
 const float MAX_TURNED = 0.5; // more comes from an edge, or from detail
 float find_widening(HitPoint hit, vec4 facing, bool refracts, float eta)
 {
@@ -69,8 +69,8 @@ float find_widening(HitPoint hit, vec4 facing, bool refracts, float eta)
     return (refracts ? abs(1.0 - 1.0 / eta) : 2.0) * min(turned, MAX_TURNED);
 }
 
-// How much wider a ray gets with each unit of its way beyond a rough mirror, relative to the width of
-// the mirror's lobe.  So what it shows is as blurred as the mirror would make it, without noise.
+// The width that a ray gains with each unit of its way beyond a rough mirror, relative to the width
+// of the mirror's lobe.  So what it shows is as blurred as the mirror would make it, without noise.
 const float LOBE = 2.0;
 float find_lobe(KrsSurface surface)
 {

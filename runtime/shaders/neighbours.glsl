@@ -14,7 +14,7 @@ bool is_in_band(ivec2 pixel)
     return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, ivec2(work.extent)));
 }
 
-// The word of a pixel in a list of shared.glsl; 0 outside of the band.
+// Returns the word of a pixel in a list of shared.glsl; 0 outside of the band.
 uint find_word(uint list, ivec2 pixel)
 {
     ivec2 within = clamp(pixel, ivec2(0), ivec2(work.extent) - 1);
@@ -31,8 +31,8 @@ Neighbour find_neighbour(uint list, ivec2 pixel)
                      origin + uintBitsToFloat(word & 0xffffff00u) * axis);
 }
 
-// The offset after `offset`, of those from -reach to reach in both directions.  It is not found by
-// its number, since lavapipe divides integers lane by lane.
+// Returns the offset after `offset`, of those from -reach to reach in both directions.  It is not
+// found by its number, since lavapipe divides integers lane by lane.
 ivec2 next_offset(ivec2 offset, int reach)
 {
     bool ends = offset.x == reach;

@@ -35,7 +35,7 @@ void store_earlier(uint index, vec4 numbers)
 
 uvec4 load_noise(uint index) { return load_result(ROW_NOISE * band_pixels() + index); }
 
-// The sums of which the error is estimated.  Light on a plate counts as on a white surface.
+// Returns the sums of which the error is estimated.  Light on a plate counts as on a white surface.
 vec3 find_sum(uint index)
 {
     vec3 caught = control.caught != 0u ? load_color(control.caught, index).rgb : vec3(0.0);
@@ -66,7 +66,7 @@ void end_samples(uint index, float error)
         uvec4(floatBitsToUint(error), control.value, 0u, 0u);
 }
 
-// The bits of the pixels of a quarter that go on, among `exist`.
+// Returns the bits of the pixels of a quarter that go on, among `exist`.
 uint find_unended(uvec2 corner, uint exist)
 {
     uint sampled = 0u;

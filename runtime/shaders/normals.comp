@@ -23,7 +23,7 @@ float t;               // how far the taps reach
 uint  taps, tap_limit; // evaluated so far, and at most
 vec3  sum;             // of what taps say; along the normal in the end
 
-// The unit vector from the hit back along its ray.
+// Returns the unit vector from the hit back along its ray.
 vec3 find_backwards()
 {
 #if defined(LISTED_RAYS) || defined(PATH_RAYS) || defined(LENS)

@@ -28,8 +28,8 @@ const float ANY_DISTANCE = 1e12;
 // Added to the mean squares of offsets, in reaches: slopes of few noisy taps count less.
 const float MIN_SPREAD = 0.1;
 
-// The pixel of a sparse pixel's number, which is its column and row among the sparse ones of the
-// band.
+// Returns the pixel of a sparse pixel's number, which is its column and row among the sparse ones
+// of the band.
 ivec2 pixel_of_sparse(ivec2 number)
 {
     ivec2 within = ivec2(0x7520 >> 4 * (number.x & 3) & 7, 0x7520 >> 4 * (number.y & 3) & 7);
@@ -44,7 +44,7 @@ ivec2 sparse_at(ivec2 pixel)
 
 bool is_sparse(ivec2 pixel) { return pixel_of_sparse(sparse_at(pixel)) == pixel; }
 
-// The reach of the wider mean, in pixels, by the inverse of the distance of the occluders.
+// Returns the reach of the wider mean, in pixels, by the inverse of the distance of the occluders.
 float find_wide_reach(float nearness)
 {
     return REACH_OF_HITS * inversesqrt(float(control.rays)) / max(nearness, 1e-6);
@@ -59,13 +59,13 @@ struct Sums {
     vec3  square;         // of x x, x y and y y
 };
 
-// What is read: a list of shared.glsl, and where albedos are.
+// The source that is read: a list of shared.glsl, and where albedos are.
 struct Source {
     uint words, albedos;
 };
 
-// These are all of 5x5 pixels, or 3x3 sparse ones at this spacing, up to `radius` in the picture and
-// `farthest` in space, both in pixels.
+// Sums the openness of 5x5 pixels, or of 3x3 sparse ones at this spacing, up to `radius` in the
+// picture and `farthest` in space, both in pixels.
 Sums sum_openness(Source source, ivec2 pixel, HitPoint hit, vec3 normal, int spacing, float radius,
                   float farthest)
 {
@@ -102,8 +102,9 @@ Sums sum_openness(Source source, ivec2 pixel, HitPoint hit, vec3 normal, int spa
     return sums;
 }
 
-// The openness at the pixel itself.  At the foot of a wall all taps are on one side, and sparse
-// pixels are nowhere even.  So it is that of the plane which fits the taps best, not their mean.
+// Returns the openness at the pixel itself.  At the foot of a wall all taps are on one side, and
+// sparse pixels are nowhere even.  So it is that of the plane which fits the taps best, not their
+// mean.
 float find_openness(Sums sums)
 {
     float per_weight = 1.0 / max(sums.weight, 1e-6);
@@ -120,7 +121,8 @@ float find_openness(Sums sums)
 
 void begin_group() {}
 
-// Pixels without a sparse pixel on their own surface are listed as the remaining ones.
+// Does a pixel.  Those without a sparse pixel on their own surface are listed as the remaining
+// ones.
 void do_item(uint number)
 {
     uint  slot = find_listed(control.reading + number);

@@ -19,15 +19,15 @@ Openness unpack_openness(float number)
     return Openness(floor(number) / OPEN_STEPS, 2.0 * fract(number));
 }
 
-// The light that reaches the hit, relative to that of the open sky.  As much reaches the occluders, and
-// they send the part `albedo` of it back, again and again.
+// Returns the light that reaches the hit, relative to that of the open sky.  As much reaches the
+// occluders, and they send the part `albedo` of it back, again and again.
 vec3 with_bounces(float open, vec3 albedo)
 {
     return open / max(1.0 - albedo * (1.0 - open), 0.05);
 }
 
-// A guess at the colour of occluders, of which only the mean brightness is known: that of the surface,
-// darkened or whitened.
+// Returns a guess at the colour of occluders, of which only the mean brightness is known: that of
+// the surface, darkened or whitened.
 vec3 guess_color(vec3 own, float albedo)
 {
     float lum = luminance(own);

@@ -17,7 +17,7 @@ vec3 finite_or_black(vec3 radiance)
     return mix(vec3(0.0), max(radiance, 0.0), finite);
 }
 
-// The reflectance of a boundary between two media.
+// Returns the reflectance of a boundary between two media.
 float fresnel(float cosine, float eta)
 {
     float beyond = 1.0 - (1.0 - cosine * cosine) / (eta * eta);

@@ -20,13 +20,13 @@ bool take_part(inout vec2 point, float low, float high)
     return true;
 }
 
-// The bits of a number, scrambled from the highest to the lowest.
+// Returns the bits of a number, scrambled from the highest to the lowest.
 uint scramble_reversed(uint bits, uint seed)
 {
     return bitfieldReverse(scramble_bits(bitfieldReverse(bits), seed));
 }
 
-// The point for ray `ray` of a pixel and one of its choices, which are numbered.
+// Returns the point for ray `ray` of a pixel and one of its choices, which are numbered.
 vec2 sample_choice(uvec2 pixel, uint ray, uint choice, uint seed)
 {
     uint own = hash_bits(pixel.x + hash_bits(pixel.y + hash_bits(choice + hash_bits(seed))));

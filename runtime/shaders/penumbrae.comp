@@ -16,8 +16,8 @@
 // The widest penumbra that counts, in pixels: no mean reaches farther.
 const float WIDEST_PENUMBRA = 1024.0;
 
-// So many quarters to each side are asked, where the penumbra is at least so many pixels wide; more would
-// be beyond the halo of a band.
+// The quarters that are asked to each side, where the penumbra is at least so many pixels wide;
+// more would be beyond the halo of a band.
 const int   SPREAD = 1;
 const float MIN_WIDTH = 4.15; // no width that a code says, as rounding would decide
 

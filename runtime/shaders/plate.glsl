@@ -2,8 +2,8 @@
  * plate.glsl: the plate of another renderer, as far as its depths tell of its surface.
  */
 
-// The plane through what a pixel shows: its unit normal, towards the eye, and the product of that with
-// the points of the plane (film/plate.c).
+// Returns the plane through what a pixel shows: its unit normal, towards the eye, and the product
+// of that with the points of the plane (film/plate.c).
 vec4 find_plate_plane(uint index)
 {
     return uintBitsToFloat(load_input(control.plate_planes + index));

@@ -19,12 +19,12 @@ bool is_mirrored(uvec2 pixel)
            sample_choice(work.corner + pixel, control.ray, CHOICE_OF_LOBE, control.seed).x < MIRRORED_LOBE;
 }
 
-// The row of light on the plate, behind which is that without the scene.
+// Returns the row of light on the plate, behind which is that without the scene.
 uint row_of_plate(bool mirrored) { return control.caught + (mirrored ? CAUGHT_ROWS : 0u); }
 
 // Rays begin to meet the plate so many pixels from where they leave it.
 const float LEFT_OF_PLATE = 1.5;
-// In perspective the picture of a ray ends before the eye, at this part of the way there.
+// The part of the way at which, in perspective, the picture of a ray ends before the eye.
 const float NEAR_EYE = 1e-3;
 
 uvec4 load_plate(ivec2 pixel)
@@ -32,7 +32,7 @@ uvec4 load_plate(ivec2 pixel)
     return load_input(control.plate_map + uint(pixel.y) * uint(frame.size.x) + uint(pixel.x));
 }
 
-// A point in the picture: in pixels from the middle of the first one, and how near it is.
+// Returns a point in the picture: in pixels from the middle of the first one, and how near it is.
 vec3 place_on_plate(vec3 point)
 {
     vec3  way = point - frame.eye;
@@ -45,8 +45,8 @@ vec3 place_on_plate(vec3 point)
                 perspective ? 1.0 / depth : -depth);
 }
 
-// The plate at a place between the middles of four pixels.  Where they are not joined, it is that of the
-// nearest one.
+// Returns the plate at a place between the middles of four pixels.  Where they are not joined, it
+// is that of the nearest one.
 vec4 find_plate_at(vec2 place)
 {
     ivec2 last = ivec2(frame.size) - 1;
@@ -77,8 +77,8 @@ ivec2 nearest_pixel(vec2 place)
     return clamp(ivec2(floor(place + 0.5)), ivec2(0), ivec2(frame.size) - 1);
 }
 
-// How many steps, and a part of one, leave the block of a place; and how near the nearest pixel is of the
-// block and of those around it.
+// The steps, and a part of one, that leave the block of a place; and how near the nearest pixel is
+// of the block and of those around it.
 const float BEYOND_BLOCK = 1e-3;
 float count_steps_in_block(vec2 place, vec2 step_across, out float nearest)
 {
@@ -93,7 +93,8 @@ float count_steps_in_block(vec2 place, vec2 step_across, out float nearest)
     return max(min(count.x, count.y), 0.0) + BEYOND_BLOCK;
 }
 
-// The part of a ray whose points are before the eye; in perspective their depths are positive.
+// Returns the part of a ray whose points are before the eye; in perspective their depths are
+// positive.
 vec2 clip_to_eye(vec3 origin, vec3 direction, float end)
 {
     vec3  way = origin - frame.eye;
@@ -108,7 +109,7 @@ vec2 clip_to_eye(vec3 origin, vec3 direction, float end)
                       : vec2(range.x, min(range.y, before / rate));
 }
 
-// The place on the ray of a part of its picture.
+// Returns the place on the ray of a part of its picture.
 float place_on_ray(vec2 range, vec3 from, vec3 to, float part)
 {
     if (control.projection == PERSPECTIVE) // depths are 1 / nearness
@@ -152,7 +153,7 @@ float find_plate_ahead(vec3 origin, vec3 direction, float end, bool left)
     return INFINITE;
 }
 
-// The light that the plate shows there.
+// Returns the light that the plate shows there.
 vec3 find_plate_color(vec3 origin, vec3 direction, float t)
 {
     return find_plate_at(place_on_plate(origin + t * direction).xy).rgb;

@@ -13,7 +13,7 @@ layout(push_constant) uniform PointWorkBlock { PointWork work; };
 layout(std430, set = 1, binding = POINTS_BINDING) readonly buffer Points { Point points[]; };
 layout(std430, set = 1, binding = ANSWERS_BINDING) writeonly buffer Answers { Answer answers[]; };
 
-// The distance, then one step along each axis and back: their differences are the gradient.
+// Returns the distance, then one step along each axis and back: their differences are the gradient.
 vec4 find_gradient(vec3 p)
 {
     float step = work.min_step + 1e-3 * max(max(abs(p.x), abs(p.y)), abs(p.z));
@@ -34,11 +34,11 @@ vec4 find_gradient(vec3 p)
     return found;
 }
 
-// A row of an answer.
+// Returns a row of an answer.
 vec4 row_of(float number) { return vec4(number, 0.0, 0.0, 0.0); }
 vec4 row_of(vec3 numbers) { return vec4(numbers, 0.0); }
 
-// What is not a number is the lower limit.
+// Limits numbers; what is not a number becomes the lower limit.
 vec4 limit(vec4 numbers, float low, float high)
 {
     return mix(vec4(low), min(numbers, high), greaterThan(numbers, vec4(low)));

@@ -2,7 +2,7 @@
  * quarters.glsl: reads what is known of a light in the quarters of tiles around (penumbrae.comp).
  */
 
-// The penumbrae of the quarter in a column and row of the band; none outside of it.
+// Returns the penumbrae of the quarter in a column and row of the band; none outside of it.
 Penumbrae find_quarter(uint list, ivec2 quarter)
 {
     ivec2 quarters = 2 * ((ivec2(work.extent) + 7) / 8);

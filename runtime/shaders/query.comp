@@ -23,7 +23,7 @@ const float LEARNING = 0.3; // of the mean slope
 // the seam between two.
 const float SEAM = 4.0;     // roundings
 
-// Where a ray begins nearer than this to a surface, rounding may have decided on which side.
+// The roundings from a surface within which they may have decided on which side a ray begins.
 const float SIDE_ROUNDINGS = 64.0; // roundings
 
 layout(std430, set = 1, binding = QUERY_RAYS_BINDING) readonly buffer QueryRays {
@@ -68,7 +68,8 @@ bool item_needs_step()
     return (state == STATE_MARCHING || state == STATE_REFINING) && steps < frame.max_steps;
 }
 
-// Where branches save work, components that are far away for their size are left out.
+// Returns the distance of an item.  Where branches save work, components that are far away for
+// their size are left out.
 float item_distance(vec3 position)
 {
 #ifdef ALONG

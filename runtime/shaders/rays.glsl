@@ -53,8 +53,8 @@ vec2 polygon_of_square(vec2 square, float corners)
                                 vec2(krs_sin(next), krs_cos(next)), along);
 }
 
-// The point of the lens that the ray through a point of the picture begins at, in parts of its
-// radius.  The first ray of each pixel goes through its middle.
+// Returns the point of the lens that the ray through a point of the picture begins at, in parts of
+// its radius.  The first ray of each pixel goes through its middle.
 vec2 find_lens_point(vec2 image_point)
 {
     vec2  pixel = floor(image_point - work.offset + 0.5);
@@ -64,7 +64,7 @@ vec2 find_lens_point(vec2 image_point)
     return control.first_ray != 0u ? vec2(0.0) : point;
 }
 
-// The ray from the lens, which meets the one through its middle, `straight`, where things are
+// Finds the ray from the lens, which meets the one through its middle, `straight`, where things are
 // sharp.
 void find_lens_ray(vec2 image_point, vec3 straight, inout vec3 origin, out vec3 ahead)
 {
@@ -76,7 +76,7 @@ void find_lens_ray(vec2 image_point, vec3 straight, inout vec3 origin, out vec3 
 #endif
 
 #if !defined(LISTED_RAYS) && !defined(PATH_RAYS)
-// The ray of a camera through a point of the picture.
+// Finds the ray of a camera through a point of the picture.
 void find_ray_of_picture(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
                          out float slope)
 {
@@ -120,9 +120,9 @@ void find_ray_of_picture(vec2 image_point, out vec3 origin, out vec3 direction, 
 }
 #endif
 
-// The interval of t in which a ray is inside of a box; empty when its end is the smaller number.
-// The box may be as large as 1e18, and no component of the direction is taken as smaller than
-// 1e-18.  So nothing here is infinite times zero.
+// Returns the interval of t in which a ray is inside of a box; empty when its end is the smaller
+// number.  The box may be as large as 1e18, and no component of the direction is taken as smaller
+// than 1e-18.  So nothing here is infinite times zero.
 vec2 clip_to(vec3 low, vec3 high, vec3 origin, vec3 direction, float farthest)
 {
     vec3 safe = mix(direction, vec3(1e-18), lessThan(abs(direction), vec3(1e-18)));
@@ -133,7 +133,7 @@ vec2 clip_to(vec3 low, vec3 high, vec3 origin, vec3 direction, float farthest)
                 min(min(leave.x, leave.y), min(leave.z, farthest)));
 }
 
-// The same for the box around the scene.
+// Returns the same for the box around the scene.
 vec2 clip_ray(vec3 origin, vec3 direction, float farthest)
 {
     return clip_to(frame.low.xyz, frame.high.xyz, origin, direction, farthest);
@@ -141,7 +141,7 @@ vec2 clip_ray(vec3 origin, vec3 direction, float farthest)
 
 float largest(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
-// Two directions at right angles to a third (Duff et al. 2017).
+// Finds two directions at right angles to a third (Duff et al. 2017).
 void find_frame(vec3 axis, out vec3 right, out vec3 up)
 {
     float side = axis.z < 0.0 ? -1.0 : 1.0;

@@ -26,7 +26,7 @@ vec4 load_color(uint row, uint index)
     return uintBitsToFloat(load_result(row * band_pixels() + index));
 }
 
-// The colour of a pixel, or its light of a light.
+// Returns the colour of a pixel, or its light of a light.
 vec4 find_color(uint index) { return load_color(control.color_row, index); }
 
 // Adds light to a row of a pixel; alpha stays as it is.
@@ -37,15 +37,15 @@ void add_light_to(uint row, uint index, vec3 color)
 
 void add_light(uint index, vec3 color) { add_light_to(control.color_row, index, color); }
 
-// The factor by which light must be multiplied so that none of its components exceeds the limit of
-// a ray; 1 where none does.
+// Returns the factor by which light must be multiplied so that none of its components exceeds the
+// limit of a ray; 1 where none does.
 float clamp_factor(vec3 radiance)
 {
     float most = max(max(radiance.r, radiance.g), radiance.b);
     return most > control.max_radiance ? control.max_radiance / most : 1.0;
 }
 
-// The same light, within that limit; counts where it was beyond.
+// Returns the same light, within that limit; counts where it was beyond.
 vec3 clamped(vec3 radiance)
 {
     float factor = clamp_factor(radiance);

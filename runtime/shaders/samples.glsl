@@ -18,7 +18,7 @@
 
 const uint USE_OF_LENS = 0x6c656e73u; // no light has this number
 
-// The bits of a number of 16 bits, with a 0 before each.
+// Returns the bits of a number of 16 bits, with a 0 before each.
 uint spread_bits(uint bits)
 {
     bits = (bits | bits << 8u) & 0x00ff00ffu;
@@ -38,7 +38,7 @@ uint scramble_bits(uint bits, uint seed)
     return bits ^ bits * 0x53a22864u;
 }
 
-// A hash that looks random (PCG, O'Neill 2014).
+// Returns a hash that looks random (PCG, O'Neill 2014).
 uint hash_bits(uint bits)
 {
     bits = bits * 747796405u + 2891336453u;
@@ -46,7 +46,7 @@ uint hash_bits(uint bits)
     return bits >> 22u ^ bits;
 }
 
-// The bits of the point of a pixel.  Points for different values of `use` are independent.
+// Returns the bits of the point of a pixel.  Points for different values of `use` are independent.
 uvec2 sample_bits(uvec2 pixel, uint use, uint seed)
 {
     uint number = spread_bits(pixel.x) | spread_bits(pixel.y) << 1u;
@@ -61,14 +61,14 @@ uvec2 sample_bits(uvec2 pixel, uint use, uint seed)
     return uvec2(x, y);
 }
 
-// The point for ray `ray` of a pixel.
+// Returns the point for ray `ray` of a pixel.
 vec2 sample_square(uvec2 pixel, uint ray, uint use, uint seed)
 {
     uvec2 bits = sample_bits(pixel, use, seed);
     return fract(vec2(bits >> 8u) / 16777216.0 + vec2(0.6287067, 0.5385973) * float(ray));
 }
 
-// The same on the lens, by the two other steps of R4: fractions of 2^32.
+// Returns the same on the lens, by the two other steps of R4: fractions of 2^32.
 vec2 sample_lens(uvec2 pixel, uint ray, uint seed)
 {
     uvec2 bits = sample_bits(pixel, USE_OF_LENS, seed) + uvec2(3679390609u, 3152041523u) * ray;

@@ -38,13 +38,14 @@
 #endif
 
 const uint CHOICES = 3u;      // points of the unit square for each surface of a path
-// From the second surface on a path may end.  At first what counts is how much of the light the surface sends
-// back: where that is half of it, the path is sure to go on.  From surface LATE on what counts is the path's weight.
+// The surfaces on a path from which it may end.  At first what counts is how much of the light the
+// surface sends back: where that is half of it, the path is sure to go on.  From surface LATE on
+// what counts is the path's weight.
 const uint  FIRST_ROULETTE = 1u, LATE = 3u;
 const float SURE = 0.5, MAX_CHANCE = 0.95;
 // The part of a light's irradiance that goes to the eye, from which on a path is sure to ask for that light.
 const float SURE_OF_LIGHT = 1.0 / 64.0;
-// How much the width of a ray grows where rough surfaces scatter it, relative to a camera's.
+// The growth of the width of a ray where rough surfaces scatter it, relative to a camera's.
 const float MAX_SPREAD = 3.0;
 
 // Rays that rise less go along a plane for too many steps, so they are lifted.  They bring a hundred
@@ -55,15 +56,15 @@ bool goes_along(float rise, HitPoint hit, vec3 facing)
     return rise < MIN_RISE && -dot(hit.direction, facing) > LOW;
 }
 
-// The number of the choice at surface `control.value` of a path.
+// Returns the number of the choice at surface `control.value` of a path.
 vec2 choose(uvec2 pixel, uint choice)
 {
     return sample_choice(work.corner + pixel, control.ray, CHOICES * control.value + choice,
                          control.seed);
 }
 
-// The normal on the side of the ray.  Where a material tilts it too far, the surface's own is
-// taken.
+// Returns the normal on the side of the ray.  Where a material tilts it too far, the surface's own
+// is taken.
 vec3 find_normal(HitPoint hit, KrsSurface surface, vec3 facing)
 {
     vec3  normal = hit.side * surface.normal;
@@ -107,7 +108,7 @@ void begin_group()
     rows = control.value == 0u ? control.rows : 0u;
 }
 
-// What glass leaves of the light of a point; 1: there is none in between.
+// Returns what glass leaves of the light of a point; 1: there is none in between.
 vec3 find_tint_to(LightPoint point, HitPoint hit, vec3 facing)
 {
     vec3 tint = vec3(1.0);
@@ -121,7 +122,7 @@ vec3 find_tint_to(LightPoint point, HitPoint hit, vec3 facing)
     return tint;
 }
 
-// How the path has come here (media.glsl).
+// The way by which the path has come here (media.glsl).
 float come_by;
 
 // Tells how a path of direct light goes on from glass, or from a surface.
@@ -228,7 +229,7 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     return point.toward;
 }
 
-// The direction in which the path goes on, in the frame of the surface; 0: it ends.
+// Returns the direction in which the path goes on, in the frame of the surface; 0: it ends.
 vec3 choose_direction(Bsdf bsdf, Axes axes, Cones cones, vec2 square_point, float choice)
 {
     vec2 at = square_point;
@@ -275,7 +276,7 @@ float continue_path(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes,
     return goes_on ? code : 0.0;
 }
 
-// The colour of a body, with what comes from below its surface; metals have none.
+// Returns the colour of a body, with what comes from below its surface; metals have none.
 vec3 albedo_of(KrsSurface surface)
 {
 #ifdef SUBSURFACE
@@ -286,7 +287,7 @@ vec3 albedo_of(KrsSurface surface)
 #endif
 }
 
-// The surface that a path has hit.  What it reflects depends on the medium before it.
+// Returns the surface that a path has hit.  What it reflects depends on the medium before it.
 Boundary meet_boundary(inout HitPoint hit, uint index, vec3 facing, out KrsSurface surface)
 {
     prepare_boundary(hit, load_path(PATH_TOWARD, index).w, facing);

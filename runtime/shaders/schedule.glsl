@@ -35,8 +35,8 @@ layout(local_size_x = REFILL) in;
 // The number of its items that each workgroup has begun so far.
 layout(std430, set = 1, binding = TAKEN_BINDING) buffer Taken { uint taken[]; };
 
-// The union of the bits of all lanes.  lavapipe compiles a vote to a loop over the lanes, but this
-// to six instructions.
+// Returns the union of the bits of all lanes. lavapipe compiles a vote to a loop over the lanes,
+// but this to six instructions.
 uint or_lanes(uint bits)
 {
     bits |= subgroupShuffleXor(bits, 1u);

@@ -29,7 +29,7 @@ float item_distance(vec3 position)
     // without thickness could count as behind it at this step.
     float some = 2.0 * ROUNDING * (largest(position) + t);
     vec2  steps = krs_steps(position, direction, last_step > 0.0 ? last_step + some : 0.0);
-    // From inside of one solid nothing is known of balls around others.
+    // Balls around other solids are not known from inside of one.
     float least = min(steps.x, steps.y);
     max_ahead = hit.side < 0.0 ? -least : steps.x;
     radius_here = hit.side < 0.0 ? -least : min(steps.y, end);

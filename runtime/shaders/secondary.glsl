@@ -16,7 +16,7 @@
 
 uint  unresolved;  // rays of this lane that ran out of steps
 
-// A point of the unit square, for the light or the hemisphere of the dispatch.
+// Returns a point of the unit square, for the light or the hemisphere of the dispatch.
 vec2 sample_now()
 {
     uint use = control.phase == RAYS_OVER_HEMISPHERE ? 0u : 1u + control.light;
@@ -105,7 +105,7 @@ void begin_item(uint number, bool saved)
     begin_steps();
 }
 
-// The width of the blocker's penumbra at the hit, in pixels.
+// Returns the width of the blocker's penumbra at the hit, in pixels.
 float find_penumbra()
 {
     float width = 2.0 * radius * t;

@@ -8,7 +8,7 @@
 #include "media.glsl"
 
 const uint MAX_STEPS = 1024u;
-// How many pixels above the surface rays start, where it is even and where it is not.
+// The pixels above the surface at which rays start, where it is even and where it is not.
 const float LIFT_OF_EVEN = 0.125, LIFT = 0.5, LIFT_OF_OCCLUSION = 1.0;
 // The evenness below which a surface is uneven, and above which it is even.
 const float UNEVEN = 0.9, EVEN = 0.99;
@@ -33,7 +33,7 @@ const float LEAVING_IN_PIXELS = 0.125;
 // The margin around a cone, in pixels: if the cone is empty, the light is visible from pixels as
 // near as that, too.
 const float CONE_MARGIN = 3.0;
-// On surfaces at a grazing angle pixels are farther apart, by at most this factor.
+// The factor by which pixels on surfaces at a grazing angle are farther apart, at most.
 const float MAX_STRETCHED = 4.0;
 // Relaxation.  SAFETY: the step, relative to the longest after which the balls would still meet.
 // LEARNING: how fast the mean slope follows the last one.  STEEPEST: the largest slope that is

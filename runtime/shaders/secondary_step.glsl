@@ -3,11 +3,12 @@
  */
 vec3 item_position() { return start + t * direction; }
 
-// The clearance that the axis of a cone needs.  Near its start that is less, since the surface
-// there recedes only by the cosine.
+// Returns the clearance that the axis of a cone needs.  Near its start that is less, since the
+// surface there recedes only by the cosine.
 float clearance_needed(float at) { return spread * at + min(margin, 0.5 * facing * at); }
 
-// A step longer than the empty ball: the longest that is safe if its radius goes on as it did.
+// Returns a step longer than the empty ball: the longest that is safe if its radius goes on as it
+// did.
 float relax(float around)
 {
     float needed = clearance_needed(t);
@@ -35,7 +36,8 @@ bool is_blocked(float distance)
     return distance < (is_cone ? clearance_needed(t) : near * hit.rounding);
 }
 
-// The least step of a ray for occlusion that is as far from all there is, and was so far before.
+// Returns the least step of a ray for occlusion that is as far from all there is, and was so far
+// before.
 float hurry(float distance)
 {
 #ifdef PATH_RAYS

@@ -97,7 +97,7 @@ Openness find_openness(vec4 lighting)
 }
 
 #ifdef CATCHES
-// The irradiance over pi by a light at the plate, if nothing is in its way.
+// Returns the irradiance over pi by a light at the plate, if nothing is in its way.
 vec3 light_on_plate(Light light, HitPoint hit, vec3 normal, out float above)
 {
     Disc  disc = find_disc(light, hit);

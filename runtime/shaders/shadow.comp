@@ -32,9 +32,9 @@ const float MIN_ALONG = 0.15, WIDE_ENOUGH = 6.0, MIN_CHANGE = 1.5;
 // Less weight than that says nothing: it may be due to rounding.
 const float MIN_WEIGHT = 0.05;
 
-// The radius of the mean in pixels, by the four quarters around.  It is 0 where all of their pixels
-// see the light, or none does.  Fewer pixels would often agree by chance at the ends of a penumbra,
-// and make it narrower.
+// Returns the radius of the mean in pixels, by the four quarters around.  It is 0 where all of
+// their pixels see the light, or none does.  Fewer pixels would often agree by chance at the ends
+// of a penumbra, and make it narrower.
 float find_radius(ivec2 pixel)
 {
     vec2  tile_point = 0.25 * (vec2(pixel) + 0.5) - 0.5, fraction = fract(tile_point);
@@ -72,8 +72,8 @@ vec2 find_seen(uint list, Neighbour there)
     return knows ? vec2(seen, 1.0) : vec2(0.0);
 }
 
-// The direction in the picture, a unit vector, in which a shadow changes most over 5x5 pixels; 0
-// where it does not change.
+// Returns the direction in the picture, a unit vector, in which a shadow changes most over 5x5
+// pixels; 0 where it does not change.
 vec2 find_change(uint list, ivec2 pixel, int stride)
 {
     vec2 known = vec2(0.0), product = vec2(0.0), place = vec2(0.0);
@@ -90,13 +90,14 @@ vec2 find_change(uint list, ivec2 pixel, int stride)
     return size > MIN_CHANGE ? change / size : vec2(0.0);
 }
 
-// The mean visibility over 5x5 pixels that are `stride` apart, weighted by how near their hits are.
-// Along the edge of a narrow penumbra distances count less.  It is -1 where no pixel knows it.
+// Returns the mean visibility over 5x5 pixels that are `stride` apart, weighted by how near their
+// hits are.  Along the edge of a narrow penumbra distances count less.  It is -1 where no pixel
+// knows it.
 float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, float radius)
 {
     vec2  sums = vec2(0.0);
     float within = 1.0 / max(radius * hit.width, 1e-30), edge = 1.0 / (2.0 * float(stride) + 1.0);
-    // How little distances along the light count; 1: not at all.
+    // The factor by which distances along the light count; 1: not at all.
     float stretched = 1.0 - min(2.0 * disc.spread, 1.0);
     vec2  change = radius > 0.0 ? find_change(list, pixel, stride) : vec2(0.0);
     float along_edge = mix(MIN_ALONG, 1.0, min(radius / WIDE_ENOUGH, 1.0));

@@ -82,8 +82,8 @@ uint code_of_openness(float openness) { return CLOSED + uint(OPEN_CODES * openne
 
 float openness_of_code(uint code) { return float(code - CLOSED) / OPEN_CODES; }
 
-// What is known of a light around a pixel.  `lit` and `hidden` are numbers of pixels that see it
-// and that do not.  `width` is the sum of the penumbrae's widths of the latter, in pixels.
+// The counts of a light around a pixel.  `lit` and `hidden` are numbers of pixels that see it and
+// that do not.  `width` is the sum of the penumbrae's widths of the latter, in pixels.
 struct Penumbrae {
     float lit, hidden, width;
 };

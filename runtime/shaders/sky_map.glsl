@@ -32,7 +32,8 @@ vec2 place_on_sky(vec3 direction)
     return vec2(across - floor(across), 0.5 - latitude / PI);
 }
 
-// The mixture of the four texels around a place, of a picture that begins at a row of the table.
+// Returns the mixture of the four texels around a place, of a picture that begins at a row of the
+// table.
 vec3 mix_on_sky(uint first, uvec2 size, vec2 place)
 {
     vec2  at = place * vec2(size) - 0.5, low = floor(at), part = at - low;
@@ -49,15 +50,15 @@ vec3 radiance_on_sky(vec2 place) { return mix_on_sky(SKY_ITSELF, sky_size(), pla
 
 vec3 sky_map_radiance(vec3 direction) { return radiance_on_sky(place_on_sky(direction)); }
 
-// The mean over the half sky around a normal, weighted by the cosine.
+// Returns the mean over the half sky around a normal, weighted by the cosine.
 vec3 sky_map_around(vec3 normal)
 {
     uint width = SKY_AROUND_WIDTH;
     return mix_on_sky(0u, uvec2(width, width / 2u), place_on_sky(normal));
 }
 
-// The means for surfaces that are so rough: 0 is the sky itself, 1 and 2 are for roughness 0.1 and
-// 0.2, and so on in steps of 0.2.
+// Returns the means for surfaces that are so rough: 0 is the sky itself, 1 and 2 are for roughness
+// 0.1 and 0.2, and so on in steps of 0.2.
 vec3 sky_map_level(uint level, vec2 place)
 {
     uint width = level == 1u ? SKY_SMOOTHER_WIDTH : level == 2u ? SKY_SMOOTH_WIDTH : SKY_ROUGH_WIDTH;
@@ -70,7 +71,7 @@ vec3 sky_map_level(uint level, vec2 place)
     return mix_on_sky(first, size, place);
 }
 
-// What a surface mirrors of the sky around a direction.
+// Returns what a surface mirrors of the sky around a direction.
 vec3 sky_map_mirrored(vec3 direction, float roughness)
 {
     float level = roughness < 0.2 ? 10.0 * roughness : 1.0 + 5.0 * roughness;
@@ -90,8 +91,8 @@ float crowding_on_sky(float down)
     return middle * krs_sin(0.5 * size) / (0.5 * size * max(krs_sin(PI * down), 1e-7));
 }
 
-// The probability density with which a direction is chosen, in solid angle: in proportion to its
-// luminance.
+// Returns the probability density with which a direction is chosen, in solid angle: in proportion
+// to its luminance.
 float sky_map_density(vec3 radiance, vec2 place)
 {
     float all = 4.0 * frame.sky_power;
@@ -108,15 +109,16 @@ bool is_in_second(float first, float second, inout float number)
     return beyond;
 }
 
-// A number of [0, 1] with a density that goes from a to b.
+// Returns a number of [0, 1] with a density that goes from a to b.
 float choose_by_line(float a, float b, float number)
 {
     float root = sqrt(mix(a * a, b * b, number));
     return a + b > 0.0 ? clamp(number * (a + b) / (a + root), 0.0, 1.0) : number;
 }
 
-// The cell that a point of the unit square chooses; the point becomes the one within the cell.  Cells
-// have the middles of texels as corners, so there is a row of them more than of texels.
+// Returns the cell that a point of the unit square chooses; the point becomes the one within the
+// cell.  Cells have the middles of texels as corners, so there is a row of them more than of
+// texels.
 uvec2 choose_cell(inout vec2 square_point)
 {
     uvec2 size = sky_size() + uvec2(0u, 1u), cell = uvec2(0u);
@@ -140,7 +142,8 @@ float load_luminance(uint column, uint line)
     return luminance(load_sky(SKY_ITSELF + line * sky_size().x + column).rgb);
 }
 
-// The place in a cell that a point of the unit square chooses, as bilinear as the radiance there.
+// Returns the place in a cell that a point of the unit square chooses, as bilinear as the radiance
+// there.
 vec2 choose_in_cell(uvec2 cell, vec2 square_point)
 {
     uvec2 size = sky_size();

@@ -6,7 +6,7 @@
 #include "sky_map.glsl"
 #endif
 
-// The mean around a normal, which may be shorter than 1.
+// Returns the mean around a normal, which may be shorter than 1.
 vec3 find_sky_around(vec3 normal)
 {
 #ifdef SKY_MAP
@@ -16,7 +16,7 @@ vec3 find_sky_around(vec3 normal)
 #endif
 }
 
-// What a mirror of some roughness shows.
+// Returns what a mirror of some roughness shows.
 vec3 find_sky_mirrored(vec3 normal, vec3 toward_eye, float roughness)
 {
     vec3 bounced = reflect(-toward_eye, normal);

@@ -64,7 +64,7 @@ typedef struct Stencil {
     uint           taps;
 } Stencil;
 
-/* The stencil of a kind of normals; none for the default and for derivatives. */
+/* Returns the stencil of a kind of normals; none for the default and for derivatives. */
 static inline Stencil find_stencil(KrsNormals normals)
 {
     switch (normals) {

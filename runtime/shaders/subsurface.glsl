@@ -73,7 +73,7 @@ Inside find_inside(vec3 color, vec3 radius)
     return inside;
 }
 
-// What is left of light that diffuses from the middle of a ball to its wall.
+// Returns what is left of light that diffuses from the middle of a ball to its wall.
 vec3 find_diffused(Inside inside, float radius)
 {
     vec3 x = inside.decay * radius;
@@ -109,7 +109,7 @@ vec3 weigh_wall(Inside inside, vec3 weight, float length)
 
 // ---- the walk ----
 
-// The gradient of the distance, by differences at the corners of a tetrahedron.
+// Returns the gradient of the distance, by differences at the corners of a tetrahedron.
 vec3 find_gradient_below(vec3 position, float reach)
 {
     vec3 sum = vec3(0.0);
@@ -133,7 +133,7 @@ void leave(inout Walk walk, HitPoint hit, vec3 facing)
     walk.normal = gradient * inversesqrt(max(square, 1e-12));
 }
 
-// A direction into the solid, as of light that enters a dull surface.
+// Returns a direction into the solid, as of light that enters a dull surface.
 vec3 choose_direction_in(vec3 facing)
 {
     vec3 right, up;

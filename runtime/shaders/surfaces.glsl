@@ -28,7 +28,7 @@ layout(set = 1, binding = SURFACE_TEXELS_BINDING) uniform usamplerBuffer surface
 
 uint krs_slot; // of the hit whose surface is asked for
 
-// Each takes the next number of the surface; where there are no more it is as nothing else is said.
+// Takes the next number of the surface; where there are no more it is as nothing else is said.
 void take(inout uint at, out uint number, uint otherwise)
 {
     number = otherwise;

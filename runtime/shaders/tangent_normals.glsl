@@ -18,7 +18,8 @@ const uint  POINT_TAPS = MOVES + 2u;
 const float ARRIVED = 0.005;     // how far from the surface a point may end, in reaches
 const float OUTSIDE = 0.25;      // how far outside of a point its last tap is, in reaches
 const float MIN_NEARER = 0.5;  // least slope of the distance up to there
-// Where no point is confirmed, the mean of all normals counts, in parts of reaches from the surface.
+// The distance, in parts of reaches from the surface, within which the mean of all normals counts
+// if no point is confirmed.
 const float NEAR = 0.1, MIN_WEIGHT = 1e-3;
 
 vec3  place;  // of the next tap
@@ -34,8 +35,8 @@ void begin_normal()
     tap_limit = 1u;
 }
 
-// The hit, and then the corners of an octahedron that lies across all axes: along an axis of a
-// polynomial Newton's steps may lead to the curve on which it vanishes.
+// Returns the hit, and then the corners of an octahedron that lies across all axes: along an axis
+// of a polynomial Newton's steps may lead to the curve on which it vanishes.
 vec3 find_point(uint i)
 {
     vec3 corner = i < 3u   ? vec3(0.36, 0.48, -0.8)
@@ -111,7 +112,7 @@ void take_tap()
         take_tangent(tangent.xyz, tangent.w);
 }
 
-// Derivatives see no unevenness.
+// Returns that a surface is even: derivatives see no unevenness.
 float find_flatness() { return 1.0; }
 
 bool item_needs_more_taps() { return false; }

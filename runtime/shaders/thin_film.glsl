@@ -18,15 +18,15 @@ const uint MAX_TERMS = 8u;
 // The reflectance of a metal is at most this, so that an index of refraction has it.
 const float MAX_HEAD_ON = 0.9998;
 
-// The index of refraction that has this reflectance in a vacuum, head on.
+// Returns the index of refraction that has this reflectance in a vacuum, head on.
 vec3 ior_of(vec3 head_on)
 {
     vec3 root = sqrt(clamp(head_on, 0.0, MAX_HEAD_ON));
     return (1.0 + root) / (1.0 - root);
 }
 
-// The reflectance of one polarization, by the ratios of amplitudes at both boundaries, the cosine of
-// the phase between two paths, and what is left of waves of a band that are so far apart.
+// Returns the reflectance of one polarization, by the ratios of amplitudes at both boundaries, the
+// cosine of the phase between two paths, and what is left of waves of a band that are so far apart.
 vec3 sum_paths(float outer, vec3 inner, vec3 cosine, vec3 left)
 {
     vec3 both = outer * inner, sum = vec3(1.0), term = vec3(1.0);
@@ -44,8 +44,8 @@ vec3 sum_paths(float outer, vec3 inner, vec3 cosine, vec3 left)
     return 1.0 - through * sum;
 }
 
-// The reflectance of a film, so thick in micrometres, on a base; both have indices of refraction
-// relative to what is outside.  `cosine` is that outside.
+// Returns the reflectance of a film, so thick in micrometres, on a base; both have indices of
+// refraction relative to what is outside.  `cosine` is that outside.
 vec3 find_filmed(float cosine, float thickness, float film, vec3 base)
 {
     float sine_squared = 1.0 - cosine * cosine;
@@ -64,8 +64,8 @@ vec3 find_filmed(float cosine, float thickness, float film, vec3 base)
                         sum_paths(along, deep_along, phase, left)), 0.0, 1.0);
 }
 
-// The same of glass that has so much of a film; `eta` is that beyond relative to here.  A film sends
-// back the same from both sides, at angles that refraction makes of each other.
+// Returns the same of glass that has so much of a film; `eta` is that beyond relative to here.  A
+// film sends back the same from both sides, at angles that refraction makes of each other.
 vec3 find_film_on_glass(float cosine, float eta, float weight, float thickness, float film)
 {
     float mirrors = fresnel(cosine, eta);

@@ -4,14 +4,14 @@
  */
 uvec2 first_8, count_8, first_32, count_32; // the tiles of beams
 
-// What the items of a tile have in common: 64 rays, or four beams of 4x4 pixels.  A beam of 8x8 or
-// of 32x32 pixels is the only item of its tile.
+// The properties that the items of a tile have in common: 64 rays, or four beams of 4x4 pixels.  A
+// beam of 8x8 or of 32x32 pixels is the only item of its tile.
 struct TileStart {
     uvec2 tile;   // its column and row in the picture, of tiles of 8x8 or of 32x32 pixels
     vec4  starts; // for each quarter: where the larger beam around it ended; nothing is before
 };
 
-// The tile of an item.  Items are numbered tile by tile, and quarter by quarter in each.
+// Returns the tile of an item.  Items are numbered tile by tile, and quarter by quarter in each.
 uint tile_of_item(uint number)
 {
     return number >> (control.phase == TRACE_RAYS ? 6u : control.phase == TRACE_BEAMS_4 ? 2u : 0u);
@@ -24,14 +24,14 @@ uint quarter_of(uint number)
                                             : 0u;
 }
 
-// The tile of a beam, counted in the band.
+// Returns the tile of a beam, counted in the band.
 uvec2 cell_of_beam(uint number)
 {
     return find_cell(number, control.across) +
            uvec2(control.window & 0xffffu, control.window >> 16u);
 }
 
-// Indices in `ends` of the beams of tiles, which are counted in the band.
+// These return indices in `ends` of the beams of tiles, which are counted in the band.
 uint end_of_8(uvec2 cell) { return work.extent.x * work.extent.y + cell.y * count_8.x + cell.x; }
 
 uint end_of_32(uvec2 cell)

@@ -43,7 +43,7 @@ vec3 find_start_of_way(HitPoint hit, vec3 facing)
     return hit.position + find_height(hit, 0.0, 0.0) * facing;
 }
 
-// The tint of a way that is `end` long, if it casts a shadow; `width`: that of the pixel.
+// Returns the tint of a way that is `end` long, if it casts a shadow; `width`: that of the pixel.
 vec3 find_tint_of_way(vec3 start, vec3 toward, float end, float width, bool casts)
 {
     float t = 0.0, entered = 0.0, least = MIN_STEP * width;

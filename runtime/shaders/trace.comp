@@ -114,9 +114,9 @@ void exchange_item(uint number)
     item_start = (quarter & 1u) == 0u ? starts.x : starts.y;
 }
 
-// The width of the beam of a tile, `side` pixels a side: base + slope t.  A ray of the tile is at
-// most as far from the ray through the middle, at the same t.  The difference of two unit vectors
-// a/|a| and b/|b| is at most 2 |a - b| / (|a| + |b|).
+// Returns the width of the beam of a tile, `side` pixels a side: base + slope t.  A ray of the tile
+// is at most as far from the ray through the middle, at the same t.  The difference of two unit
+// vectors a/|a| and b/|b| is at most 2 |a - b| / (|a| + |b|).
 vec2 find_width(float side)
 {
     float half_diagonal = 0.7071068 * side;
@@ -287,8 +287,8 @@ bool item_needs_step()
            march.steps < most;
 }
 
-// The distance to march by.  Where branches save work, it skips components that are far away for
-// their size.
+// Returns the distance to march by.  Where branches save work, it skips components that are far
+// away for their size.
 float item_distance(vec3 position)
 {
 #ifdef PROBE

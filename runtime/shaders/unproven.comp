@@ -25,7 +25,8 @@ bool is_proven(HitPoint here, vec3 normal, HitPoint cone, vec3 facing)
            dot(difference, difference) * turned * turned < PROVEN_NEAR * PROVEN_NEAR;
 }
 
-// The bits of the hits of a quarter for which its cone proves this; their visibility is stored.
+// Returns the bits of the hits of a quarter for which its cone proves this; their visibility is
+// stored.
 uint find_proven(uint quarter, uint hits)
 {
     uint first = slot_of_quarter(quarter), cone = cone_of_quarter(quarter), proven = 0u;

@@ -14,7 +14,7 @@
 #define BAND_PIXELS_CPU (UINT64_C(1) << 20)
 /* The buffers of a band take at most this fraction of the device's memory: 1 / PART_OF_MEMORY. */
 #define PART_OF_MEMORY 4
-/* When the device lacks memory bands are halved, down to this many pixels. */
+/* The pixels of the smallest band: bands are halved down to this when the device lacks memory. */
 #define BAND_PIXELS_MIN (UINT64_C(1) << 12)
 
 static void band_destroy(Gpu *gpu, Band *band)
@@ -26,8 +26,8 @@ static void band_destroy(Gpu *gpu, Band *band)
     band->pixels = 0;
 }
 
-/* The most beams of a band of this many pixels, whatever its shape and position.  There is a beam
-   for every tile of 8x8 pixels, for each of its quarters, and for every tile of 32x32. */
+/* Returns the most beams of a band of this many pixels, whatever its shape and position.  There is
+   a beam for every tile of 8x8 pixels, for each of its quarters, and for every tile of 32x32. */
 static VkDeviceSize max_beams(uint64_t pixels)
 {
     return 2 * (pixels / TILE + 2 * KRS_MAX_SIDE / TILE);
@@ -100,10 +100,10 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, uint32_t path_
     return true;
 }
 
-/* Whole tiles are traced, so the last one may reach beyond the picture. */
+/* Rounds up to whole tiles, which are traced, so the last one may reach beyond the picture. */
 static uint32_t round_to_tiles(uint32_t pixels) { return (pixels + TILE - 1) / TILE * TILE; }
 
-/* The rows of pixels in a band of at most `pixels` pixels: whole tiles, at least one. */
+/* Returns the rows of pixels in a band of at most `pixels` pixels: whole tiles, at least one. */
 static uint32_t rows_within(uint32_t width, uint64_t pixels)
 {
     uint64_t rows = pixels / width / TILE * TILE;
@@ -115,8 +115,8 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
 
 static uint64_t larger(uint64_t a, uint64_t b) { return a > b ? a : b; }
 
-/* The most pixels that a band may have on this device.  All of its buffers must fit into the
-   device's memory, and none may be longer than shaders can read. */
+/* Returns the most pixels that a band may have on this device.  All of its buffers must fit into
+   the device's memory, and none may be longer than shaders can read. */
 static uint64_t max_pixels(const Gpu *gpu, uint32_t path_rows, uint32_t lights,
                            uint32_t surface_rows)
 {

@@ -31,14 +31,14 @@ bool dispatch_chains(const Job *job)
 
 /* ---- Slices ---- */
 
-/* The items of the next slice, after `items` of them took `ms`. */
+/* Returns the items of the next slice, after `items` of them took `ms`. */
 static double next_slice(double items, double ms, double target_ms)
 {
     double factor = ms > 0 ? target_ms / ms : 4;
     return fmax(items * fmin(fmax(factor, 0.1), 4), 1);
 }
 
-/* The workgroups that have so many items. */
+/* Returns the workgroups that have so many items. */
 static uint32_t groups_of_slice(double items, double in_group)
 {
     return (uint32_t)fmin(fmax(items / in_group, 1), MAX_GROUPS);
@@ -173,7 +173,7 @@ static bool run_in_slices(Job *job, const Dispatch *dispatch)
 
 /* ---- Chains ---- */
 
-/* The cost of a workgroup, in items: later passes of rays have more steps. */
+/* Returns the cost of a workgroup, in items: later passes of rays have more steps. */
 static double weight_of(const Job *job, const Dispatch *dispatch)
 {
     double steps = job->options.methods.steps_at_once;
@@ -288,7 +288,7 @@ static bool add_to_chain(Job *job, const Dispatch *dispatch)
     return true;
 }
 
-/* The dispatch that clears in a chain what neighbours share, before another one. */
+/* Returns the dispatch that clears in a chain what neighbours share, before another one. */
 static Dispatch clearing_before(const Job *job, const Dispatch *dispatch)
 {
     Dispatch         clearing = *dispatch;

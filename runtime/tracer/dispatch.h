@@ -29,12 +29,12 @@ bool dispatch_finish(Job *job);
 /* Reports progress within a pass; false: the caller ends it, which is noted. */
 bool dispatch_report(Job *job, double within_pass);
 
-/* The budget of a shader whose items take different numbers of steps (schedule.glsl).  It follows
-   from the current schedule and the option `steps_at_once`. */
+/* Returns the budget of a shader whose items take different numbers of steps (schedule.glsl).  It
+   follows from the current schedule and the option `steps_at_once`. */
 LaneBudget lane_budget(const Job *job);
-/* The budget of a shader whose items all cost the same (pixels.glsl). */
+/* Returns the budget of a shader whose items all cost the same (pixels.glsl). */
 LaneBudget pixel_budget(const Job *job);
-/* The number of items, where the host knows the counters. */
+/* Returns the number of items, where the host knows the counters. */
 uint32_t items_now(const Job *job, Items items);
 
 #endif

@@ -14,7 +14,7 @@ static_assert((int)MAX_EMISSIVE == (int)KRS_MAX_EMISSIVE, "the same number of ba
 /* Balls are not divided that are smaller than this, in parts of that distance. */
 #define MIN_RADIUS 0.08
 
-/* A distance in the scene, as the camera sees it. */
+/* Returns a distance in the scene, as the camera sees it. */
 static double find_scale(const KrsCamera *camera)
 {
     double square = 0;

@@ -33,7 +33,7 @@ typedef enum RayKind {
     RAY_KINDS
 } RayKind;
 
-/* How many numbers a texel has. */
+/* The numbers of a texel. */
 typedef enum TexelKind {
     NO_TEXELS,
     ONE_NUMBER,
@@ -43,7 +43,7 @@ typedef enum TexelKind {
     TEXEL_KINDS
 } TexelKind;
 
-/* What lanes of the host ask (lane_fields.h); zero: nothing is kept. */
+/* The fields that lanes of the host ask (lane_fields.h); zero: nothing is kept. */
 typedef struct LaneFields {
     uint64_t             stamp;  /* of the values that they are of (krs_state_stamp) */
     bool                 planes; /* which rays meet at once, are left out of the distance */

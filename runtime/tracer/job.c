@@ -39,8 +39,9 @@ uint32_t tiles_of_band(const WorkBlock *work)
     return ((work->extent[0] + TILE - 1) / TILE) * ((work->extent[1] + TILE - 1) / TILE);
 }
 
-/* The radius of the taps for a normal, in pixels.  Beyond half a pixel they also filter detail that
-   is finer than a pixel, which several samples do by themselves.  bench/minify found the number. */
+/* Returns the radius of the taps for a normal, in pixels.  Beyond half a pixel they also filter
+   detail that is finer than a pixel, which several samples do by themselves. bench/minify found the
+   number. */
 static float normal_reach(const KrsRenderOptions *options)
 {
     bool one_sided = options->methods.normals == KRS_NORMALS_FORWARD ||
@@ -165,7 +166,7 @@ static RayKind kind_of_rays(const Job *job)
                                                          : RAYS_OF_CAMERAS;
 }
 
-/* Where one light is asked for, the sky is black. */
+/* Chooses the light that alone is asked for: then the sky is black. */
 static bool choose_light(Job *job)
 {
     const uint32_t light = job->options.light;

@@ -19,7 +19,7 @@ typedef struct Items {
 #define ITEMS_COUNTED(each, name) ((Items){(each), WORD_OF(name), false})
 #define ITEMS_KNOWN(count)        ((Items){(count), 0, false})
 
-/* How items are assigned to lanes (schedule.glsl): the lanes of a workgroup, the items of a lane,
+/* The assignment of items to lanes (schedule.glsl): the lanes of a workgroup, the items of a lane,
    and its most steps in a dispatch. */
 typedef struct LaneBudget {
     uint32_t lanes, items_per_lane, steps;
@@ -72,16 +72,16 @@ bool job_refuse(Job *job, const char *words);
 /* Reads a state: lights, parameters, and the camera or the rays of a list.  `camera` may be NULL
    for that of the options, which must be complete (settings.h). */
 bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera);
-/* The shader without a scene for the rays of this frame. */
+/* Returns the shader without a scene for the rays of this frame. */
 const Shader *job_pixel_shader(const Job *job, PixelShader shader);
 /* Tells whether rays to lights and for occlusion intersect planes without a march. */
 bool job_light_meets_planes(const Job *job);
-/* The box around all components but planes, relative to the rebase origin. */
+/* Finds the box around all components but planes, relative to the rebase origin. */
 void job_find_rest(const Job *job, double low[3], double high[3]);
 /* Tells whether beams march the empty space that the rays of a tile share. */
 bool job_has_beams(const Job *job);
 
-/* The number of 8x8 tiles of a band. */
+/* Returns the number of 8x8 tiles of a band. */
 uint32_t tiles_of_band(const WorkBlock *work);
 
 #endif

@@ -77,7 +77,8 @@ typedef struct Slice {
     uint32_t    max_steps[MAX_PARTS];
 } Slice;
 
-/* The even and the odd bits of a number: column and row in the order in which quarters of quarters follow each other. */
+/* Returns the even and the odd bits of a number: column and row in the order in which quarters of
+   quarters follow each other. */
 static uint32_t column_of(uint32_t number)
 {
     uint32_t column = 0;
@@ -98,7 +99,7 @@ static Corner corner_of(const Slice *slice, uint32_t tile, uint32_t block)
          SIDE * (slice->tile[1] + tile / slice->across) + BLOCK_SIDE * column_of(block >> 1)}};
 }
 
-/* The pixel of a ray, counted in the band; false: it is outside of that. */
+/* Finds the pixel of a ray, counted in the band; false: it is outside of that. */
 static bool find_pixel(const WorkBlock *work, Corner corner, uint32_t ray, uint32_t pixel[2])
 {
     const uint32_t at[2] = {corner.at[0] + ray % BLOCK_SIDE, corner.at[1] + ray / BLOCK_SIDE};
@@ -204,7 +205,7 @@ static bool is_marched(const Slice *slice, Corner corner, uint32_t ray, uint32_t
             slice->paths[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]] == 1);
 }
 
-/* The same for rays of paths, which begin at hits. */
+/* Does the same for rays of paths, which begin at hits. */
 static void begin_block_of_paths(const Slice *slice, Corner corner, RayBlock *block)
 {
     for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
@@ -357,7 +358,7 @@ static void add_counts(Job *job, const Slice *slice)
     }
 }
 
-/* Rays meet planes without a march. */
+/* Places the box of what is marched: rays meet planes without a march. */
 static void place_box(Slice *slice)
 {
     const Job *job = slice->job;
@@ -412,7 +413,7 @@ bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const Lan
     return good;
 }
 
-/* Milliseconds of this thread. */
+/* Returns the milliseconds of this thread. */
 static double thread_ms(void)
 {
     struct timespec now;

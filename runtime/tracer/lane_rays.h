@@ -7,7 +7,7 @@
 #include "rays/rays.h"
 #include "runtime/tracer/job.h"
 
-/* Why lanes cannot march the rays of a picture, in words of its author; NULL: they can. */
+/* Returns why lanes cannot march the rays of a picture, in words of its author; NULL: they can. */
 const char *lane_rays_refuse(const Job *job);
 /* Tells whether lanes find normals as well, by the octahedron; else shaders do. */
 bool lane_rays_find_normals(const Job *job);
@@ -26,7 +26,8 @@ bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const Lan
 bool lane_rays_march_secondary(Job *job, RayField *field, KrsPhase phase, uint32_t count,
                                const WorkBlock *work);
 
-/* What a trial tells of all primary rays of a picture: milliseconds of one processor, and distances. */
+/* The results of a trial for all primary rays of a picture: milliseconds of one processor, and
+   distances. */
 typedef struct LaneTrial {
     double ms, evaluations;
 } LaneTrial;
@@ -37,9 +38,10 @@ bool lane_rays_try(Job *job, RayField *field, double budget_ms, LaneTrial *trial
 /* Returns a byte for each pixel of the band, 1 for those that are listed, which gpu_release frees; NULL with the failure
    noted. */
 uint8_t *lane_rays_mark(Job *job, const WorkBlock *work, const LanePaths *paths);
-/* The rows of the path of a pixel (PATH_... of blocks.h), which is counted in the band. */
+/* Returns the rows of the path of a pixel (PATH_... of blocks.h), which is counted in the band. */
 const float (*lane_rays_path(const Job *job, const WorkBlock *work, const uint32_t pixel[2]))[4];
-/* The pixel of a slot, and the slot of a pixel, which is counted in the band: as in hit_lists.glsl. */
+/* These find the pixel of a slot, and the slot of a pixel, which is counted in the band: as in
+   hit_lists.glsl. */
 void     lane_rays_pixel(const WorkBlock *work, uint32_t slot, uint32_t pixel[2]);
 uint32_t lane_rays_slot(const WorkBlock *work, const uint32_t pixel[2]);
 

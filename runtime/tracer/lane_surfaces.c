@@ -101,7 +101,7 @@ static float find_hit(const Slice *slice, const uint32_t pixel[2], float t, floa
     return fmaxf(frame->pixel_base + frame->pixel_slope / stretch * t, 1e-30f);
 }
 
-/* The same for the ray of a path. */
+/* Returns the same for the ray of a path. */
 static float find_hit_of_path(const Slice *slice, const uint32_t pixel[2], float t,
                               float position[3], float direction[3])
 {
@@ -113,7 +113,7 @@ static float find_hit_of_path(const Slice *slice, const uint32_t pixel[2], float
     return fmaxf(path[PATH_ORIGIN][3] + path[PATH_DIRECTION][3] * t, 1e-30f);
 }
 
-/* The end of the ray of a pixel (frame.glsl). */
+/* Returns the end of the ray of a pixel (frame.glsl). */
 static const uint32_t *end_of(const Slice *slice, const uint32_t pixel[2])
 {
     const uint32_t(*ends)[2] = slice->job->rendering->band.ends.bytes;
@@ -151,7 +151,7 @@ static size_t add_hit(const Slice *slice, const uint32_t pixel[2], SurfacePoint 
     return 1;
 }
 
-/* The even bits of a number. */
+/* Returns the even bits of a number. */
 static uint32_t even_bits(uint32_t number)
 {
     uint32_t bits = 0;
@@ -272,7 +272,7 @@ static uint32_t *occluder_of(const Slice *slice, const uint32_t pixel[2])
            (size_t)LIST_WIDE * extent[0] * extent[1] + (size_t)pixel[1] * extent[0] + pixel[0];
 }
 
-/* What the ray of a listed pixel has met; its color is found where its surface would be seen. */
+/* Adds what the ray of a listed pixel has met; its color is found where its surface would be seen. */
 static void add_occluder(const Slice *slice, uint32_t slot, SurfacePoint *to, float *color)
 {
     static const float  FOOTPRINT = 0.05f; /* as in occluders.comp */

@@ -9,9 +9,9 @@
 #include "runtime/tracer/job.h"
 #include "runtime/tracer/lane_rays.h"
 
-/* How many rows a surface has. */
+/* Returns the number of rows of a surface. */
 uint32_t lane_surfaces_rows(const KrsRendering *rendering);
-/* The surfaces of a state, which belong to the rendering; NULL with the failure noted. */
+/* Returns the surfaces of a state, which belong to the rendering; NULL with the failure noted. */
 SurfaceField *lane_surfaces_field(Job *job);
 /* Stores the surface of each hit of the band, or of those of paths. */
 bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *work,

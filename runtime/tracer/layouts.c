@@ -162,8 +162,8 @@ const Buffer *layouts_idle_table(const KrsRenderer *renderer, uint32_t binding)
     return &renderer->idle[texels_of_scene[binding]];
 }
 
-/* The size of a buffer of zeros for the parameters of any scene: 64 KB, the limit of most devices,
-   or this device's own limit if lower. */
+/* Returns the size of a buffer of zeros for the parameters of any scene: 64 KB, the limit of most
+   devices, or this device's own limit if lower. */
 static VkDeviceSize idle_bytes(const Gpu *gpu)
 {
     const uint32_t most = 1 << 16, limit = gpu->properties.limits.maxUniformBufferRange;

@@ -19,8 +19,8 @@ enum {
     TABLE_BINDINGS = SCENE_BINDINGS - ROWS_BINDING /* texels, or storage buffers without them */
 };
 
-/* How many bindings of the frame's set (blocks.h) are texels, and how many are storage buffers: all
-   others but the uniform buffer of the frame. */
+/* The bindings of the frame's set (blocks.h) that are texels, and those that are storage buffers:
+   all others but the uniform buffer of the frame. */
 enum {
     TEXEL_BINDINGS  = 1 + FRAME_BINDINGS - END_TEXELS_BINDING,
     BUFFER_BINDINGS = FRAME_BINDINGS - TEXEL_BINDINGS - 1
@@ -28,7 +28,7 @@ enum {
 
 /* The renderer's device must be open.  On failure layouts_destroy frees what was made. */
 bool layouts_create(KrsRenderer *renderer);
-/* Call it after the shaders are destroyed.  It does nothing for a renderer without a device. */
+/* Destroys the layouts after the shaders.  It does nothing for a renderer without a device. */
 void layouts_destroy(KrsRenderer *renderer);
 
 /* Makes a buffer readable at a binding of texels, on devices that read texels.  `name` is that of
@@ -37,10 +37,10 @@ bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char 
 /* Points a binding of a frame's set at a buffer.  It does nothing for texels on devices that read none. */
 void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
 
-/* The same for a scene's set. */
+/* Does the same for a scene's set. */
 bool layouts_view_table(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
 void layouts_bind_scene(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
-/* What a scene without tables binds in their place. */
+/* Returns what a scene without tables binds in their place. */
 const Buffer *layouts_idle_table(const KrsRenderer *renderer, uint32_t binding);
 
 #endif

@@ -21,7 +21,7 @@ bool march_clear(Job *job)
     return gpu_finish(gpu, &job->stats->phase_ms[KRS_PHASE_BEAMS]);
 }
 
-/* The pixels that need rays: those of the listed tiles, or all pixels of the band. */
+/* Returns the pixels that need rays: those of the listed tiles, or all pixels of the band. */
 static Items pixels_of_rays(const Job *job, const March *march, const WorkBlock *work)
 {
     const ControlBlock *control = job->rendering->control.bytes;
@@ -53,9 +53,9 @@ static uint32_t choose_tiles(const Job *job, const WorkBlock *work, uint32_t sid
     return count[0] * count[1];
 }
 
-/* The budget of beams: at most `most` for a lane, and steps enough to end them all, as beams are
-   not saved.  However lanes share the beams, a lane's last one ends within the steps of one more
-   than `items_per_lane`. */
+/* Returns the budget of beams: at most `most` for a lane, and steps enough to end them all, as
+   beams are not saved.  However lanes share the beams, a lane's last one ends within the steps of
+   one more than `items_per_lane`. */
 static LaneBudget beam_budget(const Job *job, uint32_t most)
 {
     LaneBudget budget     = lane_budget(job);
@@ -69,8 +69,7 @@ static LaneBudget beam_budget(const Job *job, uint32_t most)
     return budget;
 }
 
-/* Where a distance costs fewer operations than this, beams of 4x4 pixels cost more than they
-   gain. */
+/* The operations of a distance below which beams of 4x4 pixels cost more than they gain. */
 #define FLOPS_WORTH_QUARTERS 150
 
 /* Marches the beams of tiles that overlap the band and the window; tiles are counted in the whole
@@ -107,9 +106,9 @@ static bool run_beams(Job *job, const March *march, const WorkBlock *work)
     return true;
 }
 
-/* The steps of the next pass.  Each pass over the queue has twice as many as the one before, so
-   that even the longest rays need few passes.  The first has `steps_at_once`: its rays all began
-   together. */
+/* Returns the steps of the next pass.  Each pass over the queue has twice as many as the one
+   before, so that even the longest rays need few passes.  The first has `steps_at_once`: its rays
+   all began together. */
 static uint32_t next_steps(const Job *job, const ControlBlock *control, uint32_t steps)
 {
     if (control->source != ITEMS_QUEUED)
@@ -158,8 +157,8 @@ static bool trace_in_chain(Job *job, const March *march, const WorkBlock *work, 
     return true;
 }
 
-/* The budget of rays.  Where they are not saved, a lane's last one may take all steps of a ray beyond
-   those of the dispatch. */
+/* Returns the budget of rays.  Where they are not saved, a lane's last one may take all steps of a
+   ray beyond those of the dispatch. */
 static LaneBudget ray_budget(const Job *job)
 {
     LaneBudget     budget = lane_budget(job);

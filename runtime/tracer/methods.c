@@ -6,18 +6,18 @@
 #include "rays/surfaces.h"
 #include "runtime/tracer/research/research.h"
 
-/* Where a distance costs fewer operations than this, refilling lanes costs more than it gains: in
-   frames, and in a small first picture, for which its shaders compile longer. */
+/* The operations of a distance below which refilling lanes costs more than it gains: in frames, and
+   in a small first picture, for which its shaders compile longer. */
 #define FLOPS_WORTH_REFILL          20
 #define FLOPS_WORTH_REFILL_OF_SMALL 150
-/* For a march group the threshold is higher, as few rays of its tiles meet it. */
+/* The threshold for a march group, which is higher, as few rays of its tiles meet it. */
 #define FLOPS_WORTH_REFILL_OF_GROUP 350
-/* From so many on, shaders of march groups take longer to compile than they save in a hundred small
-   pictures with mirrors. */
+/* The operations from which shaders of march groups take longer to compile than they save in a
+   hundred small pictures with mirrors. */
 #define FLOPS_WORTH_MIXED_RAYS 1200
 /* Scenes whose mirrors lanes of the host follow cost no more than this. */
 #define MAX_FLOPS_OF_MIRRORS 5000
-/* So many march groups take longer to compile than they save in a single small picture. */
+/* The march groups that take longer to compile than they save in a single small picture. */
 #define GROUPS_FOR_LARGE_PICTURES 3
 
 static bool finds_roots(KrsTrace trace)
@@ -54,7 +54,8 @@ uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted)
     return wanted < most ? wanted : most > 0 ? most : 1;
 }
 
-/* Where lanes take new items anyway, saving makes shaders larger and saves nothing. */
+/* Tells whether saving rays is worth it.  Where lanes take new items anyway, it makes shaders
+   larger and saves nothing. */
 bool rendering_saves_rays(const KrsRendering *rendering, KrsSchedule schedule)
 {
     return schedule != KRS_SCHEDULE_REFILL || rendering->program->loops > 0;
@@ -72,14 +73,16 @@ KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, Krs
     return asked;
 }
 
-/* Zones cut holes into planes, which are then marched like all else. */
+/* Tells whether planes are met at once.  Zones cut holes into planes, which are then marched like
+   all else. */
 bool rendering_knows_planes(const KrsRendering *rendering)
 {
     return rendering->program->planes && rendering->zone_slots == 0;
 }
 
-/* In media of previews, and from surfaces in their mirrors, rays may begin inside of a plane.  Those of paths begin
-   some roundings above their surface. */
+/* Tells whether rays of light meet planes at once.  In media of previews, and from surfaces in
+   their mirrors, rays may begin inside of a plane.  Those of paths begin some roundings above their
+   surface. */
 bool rendering_light_meets_planes(const KrsRendering *rendering, KrsIntegrator integrator)
 {
     const KrsProgram *program = rendering->program;
@@ -87,8 +90,9 @@ bool rendering_light_meets_planes(const KrsRendering *rendering, KrsIntegrator i
            (integrator != KRS_INTEGRATOR_PREVIEW || (!program->mirrors && !program->media));
 }
 
-/* What is mirrored by something round goes everywhere, and few parts of a scene are far from it: its tapes stay as long as
-   the scene is, and shaders are faster. */
+/* Tells whether lanes follow mirrors.  What is mirrored by something round goes everywhere, and
+   few parts of a scene are far from it: its tapes stay as long as the scene is, and shaders are
+   faster. */
 static bool follows_mirrors(const KrsRendering *rendering)
 {
     const KrsProgram *program = rendering->program;

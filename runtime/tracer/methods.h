@@ -8,12 +8,12 @@
 
 /* Replaces defaults by what `make bench` found fastest for such a scene on such a device. */
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule);
-/* The steps of a lane in a dispatch: `wanted`, or the most that its loops permit. */
+/* Returns the steps of a lane in a dispatch: `wanted`, or the most that its loops permit. */
 uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted);
 /* Tells whether a primary ray is saved when the steps of its dispatch are used up.  Else it is marched to
    its end; the steps of the dispatch and those of a ray are few enough for that. */
 bool rendering_saves_rays(const KrsRendering *rendering, KrsSchedule schedule);
-/* The schedule for the rays of a march group that is marched by itself. */
+/* Returns the schedule for the rays of a march group that is marched by itself. */
 KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, KrsSchedule asked,
                                               uint32_t march_group);
 /* Tells whether rays intersect planes without a march, by shaders for MARCH_WITHOUT_PLANES. */
@@ -36,8 +36,8 @@ bool rendering_mixes_rays(const KrsRendering *rendering);
 /* Tells whether many noises of a surface are one loop: less for the driver to translate, but
    iterations cost. */
 bool rendering_gathers_noises(const KrsRendering *rendering);
-/* The kind of normals to compute.  The default is by derivatives in algebraic scenes, else by the
-   octahedron.  Scenes with sheets have no choice: by derivatives. */
+/* Returns the kind of normals to compute.  The default is by derivatives in algebraic scenes, else
+   by the octahedron.  Scenes with sheets have no choice: by derivatives. */
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals);
 /* Tells whether primary rays by this method go from root to root.  If so, secondary rays do, too. */
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);

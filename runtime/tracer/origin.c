@@ -24,7 +24,7 @@ static const double PART_OF_PIXEL = 0.25;
    MUCH_GAIN times as large as camera-relative ones. */
 static const double MAX_BLUR = 2, MUCH_GAIN = 6;
 
-/* What is seen from the eye, or a bound on it. */
+/* The part that is seen from the eye, or a bound on it. */
 typedef struct Sight {
     double eye;     /* its largest coordinate */
     double nearest; /* the distance of the nearest surface */
@@ -79,7 +79,7 @@ static bool blurs_normals(const Viewer *viewer, const Sight *sight)
                                     KRS_MIN_BLUR);
 }
 
-/* The nearest point that is seen; the eye, where nothing is. */
+/* Returns the nearest point that is seen; the eye, where nothing is. */
 static const double *nearest_point(const Sight *sight, const double eye[3])
 {
     const KrsHit *nearest = NULL;

@@ -6,8 +6,8 @@
 
 #include "runtime/tracer/handles.h"
 
-/* What sees a frame: a camera, for which rays of a list may stand (view_of_rays), and the size of its
-   picture. */
+/* The viewer of a frame: a camera, for which rays of a list may stand (view_of_rays), and the size
+   of its picture. */
 typedef struct Viewer {
     const KrsCamera *camera;
     const KrsRays   *rays; /* NULL: they are those of the camera */

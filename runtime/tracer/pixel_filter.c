@@ -13,7 +13,7 @@ typedef double Integral(double x, double reach);
 
 static double integral_box(double x, double reach) { return x + reach; }
 
-/* A normal distribution, less its value at the ends, so that it ends without a step. */
+/* Returns a normal distribution, less its value at the ends, so that it ends without a step. */
 static double integral_gaussian(double x, double reach)
 {
     const double deviation = 0.5, end = exp(-0.5 * reach * reach / (deviation * deviation));
@@ -21,7 +21,7 @@ static double integral_gaussian(double x, double reach)
     return deviation * sqrt(PI / 2) * (erf(x / unit) + erf(reach / unit)) - end * (x + reach);
 }
 
-/* The window of four terms with the smallest side lobes (Harris 1978). */
+/* Returns the window of four terms with the smallest side lobes (Harris 1978). */
 static double integral_blackman_harris(double x, double reach)
 {
     const double turn = PI * (1 + x / reach);

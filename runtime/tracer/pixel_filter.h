@@ -11,8 +11,8 @@
 
 /* Tells how far rays go from the middle of their pixel at most, in pixels. */
 double pixel_filter_reach(KrsPixelFilter filter);
-/* The place along an axis, in a pixel from 0 to 1, before which the share `part` of the filter's
-   weight lies; 1/2 is the middle. */
+/* Returns the place along an axis, in a pixel from 0 to 1, before which the share `part` of the
+   filter's weight lies; 1/2 is the middle. */
 double pixel_filter_place(KrsPixelFilter filter, double part);
 
 #endif

@@ -66,7 +66,7 @@ uint32_t plan_path_rows(const Plan *plan)
 
 /* ---- lists ---- */
 
-/* The counter of a list: the index of its word, as in Items; 0: it has none. */
+/* Returns the counter of a list: the index of its word, as in Items; 0: it has none. */
 static uint32_t counter_of(ListId list)
 {
     switch (list) {
@@ -102,7 +102,7 @@ static Items items_of(const WorkBlock *work, ListId list)
 
 /* ---- running a plan ---- */
 
-/* The budget of a pass of rays from the `count` pixels of a list. */
+/* Returns the budget of a pass of rays from the `count` pixels of a list. */
 static LaneBudget budget_of_rays(const Job *job, uint32_t count)
 {
     LaneBudget budget = lane_budget(job);
@@ -115,8 +115,8 @@ static LaneBudget budget_of_rays(const Job *job, uint32_t count)
     return budget;
 }
 
-/* The budget of a pass of `count` items that cost the same.  Where items are short a lane takes more
-   of them, as it loads the frame and the lights once. */
+/* Returns the budget of a pass of `count` items that cost the same.  Where items are short a lane
+   takes more of them, as it loads the frame and the lights once. */
 static LaneBudget budget_of_items(const Job *job, const Pass *pass, uint32_t count)
 {
     LaneBudget     budget = pixel_budget(job);
@@ -168,7 +168,7 @@ static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
     return true;
 }
 
-/* The numbers of a list. */
+/* Returns the numbers of a list. */
 static const uint32_t *words_of(const Job *job, const WorkBlock *work, ListId list)
 {
     const Band *band = &job->rendering->band;
@@ -191,7 +191,7 @@ static bool run_surfaces(Job *job, const Plan *plan, const Pass *pass, const Wor
     return lane_surfaces_find(job, plan->surfaces, work, pass->constants.of_paths ? &paths : NULL);
 }
 
-/* Shaders begin the rays, and do what comes of them. */
+/* Runs rays by lanes; shaders begin them, and do what comes of them. */
 static bool run_lane_rays(Job *job, const Plan *plan, const Pass *pass, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
@@ -238,7 +238,7 @@ static bool run_passes(Job *job, const Plan *plan, const Pass *passes, size_t co
     return false;
 }
 
-/* The number of passes from `first` on that may share a submission. */
+/* Returns the number of passes from `first` on that may share a submission. */
 static size_t count_fused(const Plan *plan, size_t first)
 {
     size_t count = 1;
@@ -248,10 +248,10 @@ static size_t count_fused(const Plan *plan, size_t first)
     return count;
 }
 
-/* The position of ray `index` within its pixel.  Ray 0 goes through the centre.  The others follow
-   the R2 sequence: multiples of the powers of the plastic number, modulo 1.  It fills the pixel
-   evenly, however many rays there are.  The seed moves all of them but ray 0.  The filter spreads
-   them by its weight. */
+/* Finds the position of ray `index` within its pixel.  Ray 0 goes through the centre.  The others
+   follow the R2 sequence: multiples of the powers of the plastic number, modulo 1.  It fills the
+   pixel evenly, however many rays there are.  The seed moves all of them but ray 0.  The filter
+   spreads them by its weight. */
 static void place_ray(uint32_t index, uint64_t seed, KrsPixelFilter filter, float offset[2])
 {
     static const double increment[2] = {0.75487766624669276, 0.56984029099805327};
@@ -266,7 +266,7 @@ static void place_ray(uint32_t index, uint64_t seed, KrsPixelFilter filter, floa
     }
 }
 
-/* Rays of a list are those of their own pixels: there is nothing to place. */
+/* Returns the filter.  Rays of a list are those of their own pixels: there is nothing to place. */
 static KrsPixelFilter filter_of(const Job *job)
 {
     return job->rays ? KRS_PIXEL_FILTER_BOX : job->options.pixel_filter;

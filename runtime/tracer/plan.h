@@ -74,7 +74,8 @@ void plan_add_march(Plan *plan, const March *march, float weight);
 /* Adds a pass of the march that was added last. */
 void plan_add_march_again(Plan *plan, float weight);
 void plan_free(Plan *plan);
-/* Rows of each pixel for its path, and for rays of its hit that lanes of the host march. */
+/* Return the rows of each pixel for its path, and for rays of its hit that lanes of the host
+   march. */
 uint32_t plan_path_rows(const Plan *plan);
 /* Runs all passes for ray `index` of every pixel of the band, and adds its light to the results.
    `progress_done` and `progress_share` of the job are those of this run, and are changed. */

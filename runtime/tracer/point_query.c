@@ -95,7 +95,7 @@ KrsStatus point_query_sample(KrsRendering *rendering, KrsState *state, const flo
     return KRS_OK;
 }
 
-/* What single precision can square. */
+/* Tells whether single precision can square the points. */
 static bool are_in_reach(const float (*points)[3], size_t count)
 {
     for (size_t i = 0; points && i < count; i++)

@@ -41,8 +41,8 @@ static bool worth_second_device(const PrewarmQueue *queue)
     return compiled > 1 && gpu_is_cpu(gpu) && !gpu->messenger && sysconf(_SC_NPROCESSORS_ONLN) > 1;
 }
 
-/* The second device's thread.  If anything fails, or nothing is kept on disk, the first device
-   compiles what this one should have. */
+/* Returns the second device's thread.  If anything fails, or nothing is kept on disk, the first
+   device compiles what this one should have. */
 static void *prewarm_on_second_device(void *user)
 {
     PrewarmQueue *queue  = user;
@@ -166,7 +166,7 @@ static bool load_and_prewarm(KrsRenderer *renderer, VkDescriptorSet scene_set,
     return ready;
 }
 
-/* The same, and compiles them before. */
+/* Makes them likewise, and compiles them before. */
 static bool make(KrsRenderer *renderer, VkDescriptorSet scene_set, const ShaderRequest *asked,
                  size_t count, double *spirv_ms, double *pipeline_ms)
 {
@@ -194,7 +194,7 @@ bool shaders_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const Shader
                   size_t count, double *spirv_ms, double *pipeline_ms)
 {
     bool ready = count == 0 || make(renderer, scene_set, asked, count, spirv_ms, pipeline_ms);
-    /* What was begun ahead, and failed, is made now: nothing is made ahead any more. */
+    /* Shaders that were begun ahead, and failed, are made now: nothing is made ahead any more. */
     for (size_t i = 0; i < count && ready; i++)
         ready = asked[i].shader->pipeline ||
                 make(renderer, scene_set, &asked[i], 1, spirv_ms, pipeline_ms);

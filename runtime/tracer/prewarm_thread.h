@@ -14,7 +14,7 @@ bool shader_prewarm(KrsRenderer *renderer, VkDescriptorSet scene_set, Shader *sh
    does nothing where that would not help: on graphics cards, and on one core. */
 enum { MAX_PREWARMED = PIXEL_SHADERS };
 void prewarm_start(KrsRenderer *renderer, const ShaderRequest *requests, size_t count);
-/* No further shader is begun. */
+/* Begins no further shader. */
 void prewarm_stop(KrsRenderer *renderer);
 /* Tells, after prewarm_stop and before prewarm_end, whether a shader is made, or at hand. */
 bool prewarm_begun(const KrsRenderer *renderer, const Shader *shader);

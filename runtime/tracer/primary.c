@@ -19,7 +19,7 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/research/research.h"
 
-/* The distance from the eye to the box of a group. */
+/* Returns the distance from the eye to the box of a group. */
 static double distance_to(const Job *job, const KrsMarchGroup *march_group)
 {
     double sum = 0;
@@ -173,7 +173,7 @@ static bool add_research(Job *job, Plan *plan)
     return shader != NULL;
 }
 
-/* Where the caller has depths, hits behind them are none. */
+/* Adds the caller's depths, behind which there are no hits. */
 static bool add_limit(Job *job, Plan *plan)
 {
     KrsRendering *r = job->rendering;
@@ -198,7 +198,7 @@ bool primary_find_plate(Job *job, const Shader **shader)
     return *shader != NULL;
 }
 
-/* No shader marches the rays of a scene that is too large. */
+/* Refuses lanes: no shader marches the rays of a scene that is too large. */
 static void refuse_lanes(Job *job, const char *reason)
 {
     const KrsDiagnostic *why = krs_scene_too_large(job->rendering->scene);
@@ -253,8 +253,8 @@ void primary_add_normals(Plan *plan, float weight, const Primary *primary)
                  .in          = LIST_ALL,
                  .out         = NO_LIST,
                  .short_items = true};
-    /* At the surface of one group the distances of the others do not matter, so each group's own
-       shader finds the normals there. */
+    /* Each group's own shader finds the normals there: at the surface of one group the distances of
+       the others do not matter. */
     plan->by_march_group = primary->group_count > 0;
     if (primary->group_count == 0 && primary->normals)
         plan_add(plan, pass);

@@ -22,10 +22,10 @@ typedef struct Primary {
 /* Adds the passes that march, and fills in *primary unless it is NULL: then no normals are wanted.
    False with the failure noted. */
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary);
-/* The march of rays that surfaces have sent on, which may begin anywhere, by this shader. */
+/* Returns the march of rays that surfaces have sent on, which may begin anywhere, by this shader. */
 March primary_march_of_paths(const Job *job, Shader *shader);
-/* The shader that stores normals of a plate, or NULL in *shader where none catches shadows.  False
-   with the failure noted. */
+/* Finds the shader that stores normals of a plate, or NULL in *shader where none catches shadows.
+   False with the failure noted. */
 bool primary_find_plate(Job *job, const Shader **shader);
 /* Adds the passes that find normals.  The pass that lists the hits must be added before. */
 void primary_add_normals(Plan *plan, float weight, const Primary *primary);

@@ -22,7 +22,7 @@
 
 enum { MAX_STEPS = 8192, MAX_LANE_STEPS = 16384 };
 
-/* What single precision can square. */
+/* Tells whether single precision can square the vectors. */
 static bool is_in_reach(const double (*vectors)[3], size_t count)
 {
     if (!vectors)
@@ -62,10 +62,10 @@ static void describe(const AnswerBlock *answer, KrsHit *hit)
 /* Points may be so many times as far from the base as from the middle between them: normals are differences
    over a thousandth of the coordinates, which may be a hundredth of what is seen then. */
 static const double MAX_REACH = 10;
-/* How large the surroundings of a single point are, in parts of the scene. */
+/* The size of the surroundings of a single point, in parts of the scene. */
 static const double PART_OF_SCENE = 0.1;
 
-/* Who asks, and the base that points on the device are relative to. */
+/* The asking program, and the base that points on the device are relative to. */
 typedef struct Asker {
     KrsRendering *rendering;
     KrsState     *state;
@@ -257,8 +257,9 @@ static void take_ray_hit(const KrsRay *ray, const RayHitBlock *ray_hit, const An
     describe(&answers[ray_hit->point], hit);
 }
 
-/* Single precision cannot tell on which side of a surface a ray begins that is as near to it as
-   rounding: on the wrong one it would go through the solid, or past its end.  The host can. */
+/* Tells whether a ray took the wrong side.  Single precision cannot tell on which side of a surface
+   a ray begins that is as near to it as rounding: on the wrong one it would go through the solid,
+   or past its end.  The host can. */
 static bool took_wrong_side(KrsState *state, const RayHitBlock *ray_hit, const double (*origin)[3])
 {
     bool   inside = ray_hit->steps & QUERY_BEGINS_INSIDE;
@@ -304,7 +305,8 @@ static bool answer_rays(Asker *asker, const Question *ask, uint32_t count, KrsHi
     return true;
 }
 
-/* Some rays of a batch tell what is hit, also where single precision would miss it. */
+/* Looks at some rays of a batch, which tell what is hit, also where single precision would miss
+   it. */
 static bool look(Asker *asker, const Question *ask, uint32_t count)
 {
     enum { MAX_LOOKS = 16 };
@@ -320,7 +322,7 @@ static bool look(Asker *asker, const Question *ask, uint32_t count)
     return !wants_base(asker, hits, looks, base) || move_base(asker, base);
 }
 
-/* All that is hit is known when the rays have been marched. */
+/* Casts a batch of rays; all that is hit is known when they have been marched. */
 static bool raycast_batch(Asker *asker, const Question *ask, uint32_t count, KrsHit *hits)
 {
     double base[3];

@@ -28,8 +28,8 @@ KrsStatus point_query_sample(KrsRendering *rendering, KrsState *state, const flo
 /* Tells how large what is asked about is: the longest side of the box around all but planes; 1 where that has
    no end. */
 double point_query_size(const KrsRendering *rendering);
-/* What is at the first `count` of them, with normals by differences over a thousandth of the coordinates and
-   this step; 0: the distance alone. */
+/* Finds what is at the first `count` of them, with normals by differences over a thousandth of the
+   coordinates and this step; 0: the distance alone. */
 bool point_query_run(KrsRendering *rendering, uint32_t count, double step);
 #define POINT_QUERY_STEP 1e-4
 

@@ -43,7 +43,7 @@ static const char *const map_defines[RAYS_OF_PATHS][SHADER_READS] = {
 /* The same for paths that may meet the plate of another renderer. */
 static const char *const plate_defines[SHADER_READS] = ALL_READS(PATH_RAYS CATCHES);
 
-/* A shader without a scene, for rays of a kind. */
+/* Returns a shader without a scene, for rays of a kind. */
 static ShaderRequest request_shader(KrsRenderer *renderer, Shader *shader, const char *file,
                                     RayKind kind)
 {
@@ -237,7 +237,7 @@ static const Shader *make_request(KrsRenderer *renderer, ShaderRequest *request,
     return made ? request->shader : NULL;
 }
 
-/* The same for a shader without a scene. */
+/* Returns the same for a shader without a scene. */
 static const Shader *make_ready(KrsRenderer *renderer, Shader *shader, const char *file,
                                 RayKind kind, double *spirv_ms, double *pipeline_ms)
 {
@@ -245,7 +245,8 @@ static const Shader *make_ready(KrsRenderer *renderer, Shader *shader, const cha
     return make_request(renderer, &request, spirv_ms, pipeline_ms);
 }
 
-/* The same for one that begins or ends rays of hits: of a camera's rays, or of those of paths as well. */
+/* Returns the same for one that begins or ends rays of hits: of a camera's rays, or of those of
+   paths as well. */
 static const Shader *make_for_lanes(KrsRendering *rendering, Shader *shader, const char *file,
                                     bool paths)
 {

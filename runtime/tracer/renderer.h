@@ -21,20 +21,22 @@ bool renderer_create_pixels(KrsRendering *rendering);
 /* Makes those of escape.comp likewise. */
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);
-/* The shader of escape.comp for rays of paths, which renderer_create_escapes has made; where paths may
-   meet a plate it is made here.  NULL with the failure noted. */
+/* Returns the shader of escape.comp for rays of paths, which renderer_create_escapes has made;
+   where paths may meet a plate it is made here.  NULL with the failure noted. */
 const Shader *renderer_escape_of_paths(KrsRendering *rendering);
-/* The shader for pixels without a hit. */
+/* Returns the shader for pixels without a hit. */
 PixelShader renderer_background(const KrsRendering *rendering);
-/* The shaders before and behind rays of hits that lanes of the host march. */
+/* These return the shaders before and behind rays of hits that lanes of the host march. */
 const Shader *renderer_aim(KrsRendering *rendering);
 const Shader *renderer_arrive(KrsRendering *rendering);
-/* The shader that ends rays at given depths, for rays of a kind; NULL with the failure noted. */
+/* Returns the shader that ends rays at given depths, for rays of a kind; NULL with the failure
+   noted. */
 const Shader *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);
-/* The shader of normals of a plate; NULL with the failure noted. */
+/* Returns the shader of normals of a plate; NULL with the failure noted. */
 const Shader *renderer_plate(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms);
-/* The shader that ends samples of pixels whose error is small; NULL with the failure noted. */
+/* Returns the shader that ends samples of pixels whose error is small; NULL with the failure
+   noted. */
 const Shader *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms);
 /* Clears the status and the message of the last failure. */
 void renderer_clear(KrsRenderer *renderer);

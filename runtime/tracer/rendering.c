@@ -125,8 +125,8 @@ static const double distances_of_item[KRS_PHASE_COUNT] = {
 };
 #define FLOPS_WITHOUT_SCENE 1000
 
-/* The items of the first slice: 50 ms on a slow device of its kind, until times are known.  Waiting
-   for a processor costs little, so its first slice may be short. */
+/* Returns the items of the first slice: 50 ms on a slow device of its kind, until times are known.
+   Waiting for a processor costs little, so its first slice may be short. */
 static double guess_slice(const KrsRendering *rendering, int phase, bool has_scene)
 {
     static const double slow[] = {

@@ -22,27 +22,27 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
                           uint32_t light, const double rebase_origin[3], size_t rays);
 /* Copies balls around what emits light; call it after rendering_set_lights. */
 void rendering_set_emissive(KrsRendering *rendering, const EmissiveBlock *balls, size_t count);
-/* The listed rays, which lie behind `lights` lights. */
+/* Returns the listed rays, which lie behind `lights` lights. */
 ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights);
-/* A stride that visits all numbers in [0, count), far apart each time.  Neighbouring workgroups
-   cost the same, so a stride spreads the cost over a device that assigns contiguous ranges to its
-   cores. */
+/* Returns a stride that visits all numbers in [0, count), far apart each time.  Neighbouring
+   workgroups cost the same, so a stride spreads the cost over a device that assigns contiguous
+   ranges to its cores. */
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count);
 /* Points a binding of set 1 at a buffer. */
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer);
 /* Points the bindings of the frame and of the control block at those of the rendering. */
 void rendering_bind_frame(KrsRendering *rendering, VkDescriptorSet set);
-/* Do what gpu_begin and gpu_finish do, and copy the control block to the shaders, and the counters
-   back. */
+/* These do what gpu_begin and gpu_finish do, and copy the control block to the shaders, and the
+   counters back. */
 bool rendering_begin(KrsRendering *rendering);
 bool rendering_finish(KrsRendering *rendering, double *ms);
-/* The control block that shaders use. */
+/* Returns the control block that shaders use. */
 const Buffer *rendering_control(const KrsRendering *rendering);
 /* Records that a shader runs with these push constants on `groups` workgroups. */
 void rendering_dispatch(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
                         const void *work, uint32_t work_bytes, uint32_t groups);
-/* The same, on as many workgroups as the control block has in `groups` by then. */
+/* Does the same, on as many workgroups as the control block has in `groups` by then. */
 void rendering_dispatch_counted(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
                                 const void *work, uint32_t work_bytes);
 /* The most workgroups of a dispatch on any device. */

@@ -19,7 +19,7 @@ static VkDeviceSize max_texels(const Gpu *gpu, uint32_t texel_bytes)
                        : limits->maxStorageBufferRange / texel_bytes;
 }
 
-/* One of the two buffers, which holds so many texels. */
+/* Makes one of the two buffers, which holds so many texels. */
 static bool table_create(KrsRendering *rendering, uint32_t binding, Buffer *buffer, size_t texels,
                          uint32_t texel_bytes)
 {

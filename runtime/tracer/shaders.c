@@ -31,7 +31,8 @@ static bool is_of(const ShaderEntry *entry, const char *file, const ShaderVarian
            strcmp(entry->variant.defines, variant->defines) == 0;
 }
 
-/* False, and the failure is noted: drivers would take minutes for a shader that contains this scene. */
+/* Tells whether a shader may contain this scene; false, and the failure is noted: drivers would
+   take minutes for it. */
 static bool may_contain(const KrsRendering *rendering, const ShaderVariant *variant)
 {
     const KrsDiagnostic *why = krs_scene_too_large(rendering->scene);
@@ -405,7 +406,7 @@ size_t krs_rendering_shaders(const KrsRendering *rendering, KrsShaderStats *shad
     return listing.count;
 }
 
-/* A shader that the scene before had already, as if it had been found. */
+/* Returns a shader that the scene before had already, as if it had been found. */
 static Shader found_shader(const Shader *shader)
 {
     return (Shader){.pipeline    = shader->pipeline,

@@ -10,26 +10,27 @@
 #include "runtime/tracer/handles.h"
 #include "runtime/tracer/research/research.h"
 
-/* The shader of primary rays.  Method and schedule are chosen, not the defaults.  `march_group` is
-   the number of a group from 1, 0 for all components, or MARCH_WITHOUT_PLANES or MARCH_PACKED. */
+/* Returns the shader of primary rays.  Method and schedule are chosen, not the defaults.
+   `march_group` is the number of a group from 1, 0 for all components, or MARCH_WITHOUT_PLANES or
+   MARCH_PACKED. */
 Shader *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t march_group);
-/* The shader of beams.  They are wider than a ray, so they need distances that hold in all
+/* Returns the shader of beams.  They are wider than a ray, so they need distances that hold in all
    directions, whatever the method of the rays. */
 Shader *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t march_group);
-/* The shader of normals, for a march group or for all components (0). */
+/* Returns the shader of normals, for a march group or for all components (0). */
 Shader *rendering_normals_shader(KrsRendering *rendering, KrsNormals normals, uint32_t march_group);
-/* The shader of rays to lights and for occlusion; `by_roots`: they go from root to root; `planes`: they
-   intersect planes, and are clipped to the box around all else. */
+/* Returns the shader of rays to lights and for occlusion; `by_roots`: they go from root to root;
+   `planes`: they intersect planes, and are clipped to the box around all else. */
 Shader *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots,
                             bool planes);
-/* The shader of the albedo of what rays for occlusion have met. */
+/* Returns the shader of the albedo of what rays for occlusion have met. */
 Shader *rendering_occluders(KrsRendering *rendering);
-/* The shader that evens hits out. */
+/* Returns the shader that evens hits out. */
 Shader *rendering_research(KrsRendering *rendering, const ResearchPass *pass);
 Shader *rendering_shade(KrsRendering *rendering);
-/* The same without a scene: the host finds surfaces (lane_surfaces.h). */
+/* Returns the same without a scene: the host finds surfaces (lane_surfaces.h). */
 Shader *rendering_shade_found(KrsRendering *rendering);
 Shader *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 Shader *rendering_point_query(KrsRendering *rendering);

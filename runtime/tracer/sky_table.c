@@ -29,7 +29,7 @@ static float *texel_of(const Directions *of, uint32_t x, uint32_t y)
     return of->rows[(size_t)y * of->width + x];
 }
 
-/* The solid angle of a texel of a row. */
+/* Returns the solid angle of a texel of a row. */
 static double texel_angle(const Directions *of, uint32_t y)
 {
     return 2 * PI / of->width * (cos(PI * y / of->height) - cos(PI * (y + 1) / of->height));
@@ -53,7 +53,7 @@ static double mean_of_cell(const Directions *sky, uint32_t column, uint32_t line
                    luminance(texel_of(sky, left, below)) + luminance(texel_of(sky, column, below)));
 }
 
-/* The solid angle of a cell. */
+/* Returns the solid angle of a cell. */
 static double cell_angle(const Directions *of, uint32_t line)
 {
     const double from = fmax(line - 0.5, 0), to = fmin(line + 0.5, of->height);
@@ -92,8 +92,8 @@ static size_t sums_before(uint32_t width, uint32_t height, uint32_t side)
     return rows;
 }
 
-/* Four weights become a row of sums and their sum, which replaces them: it is not needed yet where it
-   is stored. */
+/* Sums four weights to a row of sums and their sum, which replaces them: it is not needed yet where
+   it is stored. */
 static void add_up(uint32_t width, uint32_t height, double *weights, float (*sums)[4])
 {
     const uint32_t across = cells_in(width, 2), down = cells_in(height, 2);
@@ -121,7 +121,7 @@ static void make_sums(uint32_t width, uint32_t height, double *weights, float (*
 
 /* ---- Means of the sky ---- */
 
-/* What is bilinear between the middles of texels, at a place in texels. */
+/* Interpolates bilinearly between the middles of texels, at a place in texels. */
 static void read_between(const Directions *from, double x, double y, double color[3])
 {
     const double   left = floor(x - 0.5), top = floor(y - 0.5);
@@ -138,7 +138,7 @@ static void read_between(const Directions *from, double x, double y, double colo
     }
 }
 
-/* The same sky with other texels, each a mean over some points in it. */
+/* Copies a sky to other texels, each a mean over some points in it. */
 static void resample(const Directions *from, const Directions *to)
 {
     const uint32_t across = cells_in(from->width, to->width);
@@ -171,8 +171,8 @@ static double lobe(double cosine, double roughness)
 
 #define MIN_OF_LOBE 1e-5 /* of its peak: less is left out */
 
-/* The weights of the texels of all rows, by their distance in columns, as seen from the middle of a
-   texel of row `at`. */
+/* Finds the weights of the texels of all rows, by their distance in columns, as seen from the
+   middle of a texel of row `at`. */
 static void find_lobe(const Directions *of, uint32_t at, double roughness, double *weights)
 {
     const double latitude = PI * (at + 0.5) / of->height;
@@ -191,7 +191,7 @@ static void find_lobe(const Directions *of, uint32_t at, double roughness, doubl
         weights[i] /= sum;
 }
 
-/* One texel of `to`, by the weights of its row. */
+/* Blurs one texel of `to`, by the weights of its row. */
 static void blur_texel(const Directions *from, uint32_t at, const double *weights, float color[4])
 {
     const uint32_t w      = from->width;
@@ -207,7 +207,7 @@ static void blur_texel(const Directions *from, uint32_t at, const double *weight
         color[k] = k < 3 ? (float)sum[k] : 0;
 }
 
-/* Both have the same size. */
+/* Blurs directions; both have the same size. */
 static void blur(const Directions *from, const Directions *to, double roughness, double *weights)
 {
     for (uint32_t y = 0; y < to->height; y++) {

@@ -17,7 +17,7 @@ double sky_table_fill(const KrsSkyMap *map, float (*rows)[4]);
 bool sky_table_upload(KrsRendering *rendering, const KrsSkyMap *map);
 /* Binds the table, or an idle one, in the scene's set. */
 void sky_table_bind(KrsRendering *rendering);
-/* What sky_table_fill has returned for the map of the last upload; 0 without one. */
+/* Returns what sky_table_fill has returned for the map of the last upload; 0 without one. */
 double sky_table_irradiance(const KrsRendering *rendering);
 
 #endif

@@ -3,7 +3,8 @@
  */
 #include "runtime/tracer/slots.h"
 
-/* All slots but those of values that the host computes and shaders can compute by themselves. */
+/* Returns all slots but those of values that the host computes and shaders can compute by
+   themselves. */
 static uint32_t slots_without_values(const KrsProgram *program)
 {
     return program->parameter_slots + KRS_MAX_ZONES + 1;

@@ -104,7 +104,8 @@ static void want_sky(ShaderVariant *to, const KrsRendering *rendering)
     want(to, KRS_FUNCTION_ARCS);
 }
 
-/* Where the plate of another renderer catches shadows, discs of lights need a tangent. */
+/* Sets what a plate needs: where that of another renderer catches shadows, discs of lights need a
+   tangent. */
 static void want_plate(ShaderVariant *to, const KrsRendering *rendering)
 {
     if (!rendering->catches)
@@ -114,7 +115,7 @@ static void want_plate(ShaderVariant *to, const KrsRendering *rendering)
         want(to, KRS_FUNCTION_SINES);
 }
 
-/* What is known of materials before one is looked at.  Phases of waves need cosines. */
+/* Sets what is known of materials before one is looked at.  Phases of waves need cosines. */
 static void want_materials(ShaderVariant *to, const KrsRendering *rendering)
 {
     if (rendering->program->anisotropic)
@@ -136,7 +137,7 @@ ShaderReads variants_reads(const Gpu *gpu)
     return !gpu->texels ? READ_BUFFERS : gpu_is_cpu(gpu) ? READ_FRAME_TEXELS : READ_TEXELS;
 }
 
-/* Not on lavapipe, which compiles a sum over the lanes to a loop. */
+/* Tells whether sums over lanes are worth it: lavapipe compiles one to a loop. */
 static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
 
 static ShaderVariant begin_variant(const KrsRendering *rendering, KrsTrace trace,
@@ -182,8 +183,8 @@ static bool want_steps(ShaderVariant *to, const KrsRendering *rendering, KrsTrac
     return true;
 }
 
-/* Rays of paths may be within glass.  Shaders for all march groups are for these, too, where the
-   picture has any. */
+/* Sets what paths need: their rays may be within glass.  Shaders for all march groups are for
+   these, too, where the picture has any. */
 static void want_paths(ShaderVariant *to, const KrsRendering *rendering, bool whole)
 {
     const bool mixed = whole && rendering->rays != RAYS_OF_PATHS && rendering_mixes_rays(rendering);
@@ -193,7 +194,7 @@ static void want_paths(ShaderVariant *to, const KrsRendering *rendering, bool wh
         want_media(to, rendering);
 }
 
-/* Distances leave out planes, which rays intersect instead. */
+/* Leaves planes out of distances: rays intersect them instead. */
 static void want_planes(ShaderVariant *to)
 {
     to->scene.variant.planes = true;

@@ -32,7 +32,7 @@ static bool camera_basis(const KrsCamera *camera, Basis *basis)
     if (!normalize3(basis->forward))
         return false;
 
-    /* When the camera looks along `up`, or `up` is 0, another axis defines what is right. */
+    /* Another axis defines what is right when the camera looks along `up`, or `up` is 0. */
     cross3(basis->forward, camera->up, basis->right);
     if (!(dot3(basis->right, basis->right) > 1e-18 * dot3(camera->up, camera->up)) ||
         !normalize3(basis->right)) {
@@ -46,7 +46,7 @@ static bool camera_basis(const KrsCamera *camera, Basis *basis)
     return true;
 }
 
-/* Half the extent of the picture to the right and upwards: at distance 1 for a perspective
+/* Computes half the extent of the picture to the right and upwards: at distance 1 for a perspective
    picture. */
 static void half_extent(const KrsCamera *camera, uint32_t width, uint32_t height, double extent[2])
 {
@@ -85,7 +85,7 @@ static void scaled(const double from[3], double by, float to[4])
     to_floats(product, to);
 }
 
-/* The diagonal of the scene's box over the axes along which it is bounded; 0 when none is. */
+/* Returns the diagonal of the scene's box over the axes along which it is bounded; 0 when none is. */
 static double finite_size(const double low[3], const double high[3])
 {
     double sum = 0;

@@ -13,21 +13,22 @@
 bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
                   uint32_t height, FrameBlock *block);
 
-/* The distance of a camera's two eyes. */
+/* Returns the distance of a camera's two eyes. */
 double view_eyes(const KrsCamera *camera);
 /* Moves a camera to one of its two eyes.  Both see what is in focus at the same place of the
    picture.  The eye of a panorama looks a different way with each column, so it is left to
    view_prepare, by `eyes`: then this is half of their distance to the right. */
 void view_choose_eye(KrsCamera *camera, KrsEye eye, uint32_t width, uint32_t height);
 
-/* The ray through a place of the picture, from -1 to 1 to the right and upwards, without regard to a lens:
-   `direction` has any length.  False for a panorama, and where the camera cannot be used. */
+/* Finds the ray through a place of the picture, from -1 to 1 to the right and upwards, without
+   regard to a lens: `direction` has any length.  False for a panorama, and where the camera cannot
+   be used. */
 bool view_ray(const KrsCamera *camera, uint32_t width, uint32_t height, const double place[2],
               double origin[3], double direction[3]);
 
-/* The width of a pixel in the middle of the picture, at a distance from the eye. */
+/* Returns the width of a pixel in the middle of the picture, at a distance from the eye. */
 double view_pixel(const KrsCamera *camera, uint32_t height, double distance);
-/* The same of a ray of a list, for which the camera stands; NULL: there is no list. */
+/* Returns the same of a ray of a list, for which the camera stands; NULL: there is no list. */
 double view_width(const KrsCamera *camera, const KrsRays *rays, uint32_t height, double distance);
 
 /* Sets the box that rays are clipped to.  It is a little larger than [low, high], since surfaces
@@ -35,12 +36,12 @@ double view_width(const KrsCamera *camera, const KrsRays *rays, uint32_t height,
 void view_place_box(const KrsView *view, const double low[3], const double high[3],
                     FrameBlock *block);
 
-/* The pixels whose rays may meet the box of the block, if these go up to `reach` pixels from the
-   middle of theirs; for a panorama or a lens all pixels. */
+/* Returns the pixels whose rays may meet the box of the block, if these go up to `reach` pixels
+   from the middle of theirs; for a panorama or a lens all pixels. */
 KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera, double reach);
 
-/* A camera in place of `count` rays: in the middle of the box around their origins, with that box's
-   diagonal as its height.  False when a ray or its width cannot be used. */
+/* Makes a camera in place of `count` rays: in the middle of the box around their origins, with that
+   box's diagonal as its height.  False when a ray or its width cannot be used. */
 bool view_of_rays(const KrsRays *rays, size_t count, KrsCamera *camera);
 
 /* Sets the matrices of a picture for a camera that view_prepare has accepted; NULL: they are the

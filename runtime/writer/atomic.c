@@ -339,7 +339,7 @@ static void copy_mode(OutputFile *file)
     mode_t             mode   = file->exists ? before->st_mode & 0777 : file->mode;
     bool               known  = file->exists && fstat(file->fd, &now) == 0;
     if (known && now.st_uid != before->st_uid && fchown(file->fd, before->st_uid, (gid_t)-1) != 0)
-        /* Only root may do that; else the file belongs to the writer. */
+        /* Root alone may change the owner; else the file belongs to the writer. */
         errno = 0;
     if (known && now.st_gid != before->st_gid && fchown(file->fd, (uid_t)-1, before->st_gid) != 0)
         mode = (mode & ~(mode_t)0070) | (mode & 0007) << 3;
@@ -347,7 +347,7 @@ static void copy_mode(OutputFile *file)
         warn(file, "its permissions could not be set");
 }
 
-/* Some file systems cannot flush a folder (EINVAL) and keep the order by themselves. */
+/* Flushes the folder.  Some file systems cannot (EINVAL) and keep the order by themselves. */
 static void flush_folder(OutputFile *file)
 {
     int folder = open(file->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -418,7 +418,7 @@ KrsStatus output_check(const char *path, OutputError *error)
     return error->status;
 }
 
-/* mkdir, through no link where that is forbidden. */
+/* Makes a folder, through no link where that is forbidden. */
 static bool make_folder(const char *path)
 {
     if (!atomic_load(&links_are_forbidden))

@@ -39,7 +39,8 @@ typedef struct OutputFile OutputFile;
 OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled,
                         OutputError *error);
 
-/* The path of the temporary file, for a caller that must remove it when the process is killed. */
+/* Returns the path of the temporary file, for a caller that must remove it when the process is
+   killed. */
 const char *output_temporary(const OutputFile *file);
 
 /* Writes bytes at an offset; offsets may come in any order.  After the first failure nothing more
@@ -60,9 +61,10 @@ void      output_abandon(OutputFile *file);
 KrsStatus output_text(const char *path, const char *text, size_t length,
                       const volatile sig_atomic_t *cancelled, OutputError *error);
 
-/* From now on outputs of this process go through no symbolic link, neither in a folder's place nor in the file's, and
-   replace nothing but regular files; standard output is none of them.  For scenes of strangers, who may have put
-   links beside them.  It holds for the whole process, so that no writer can forget it. */
+/* Forbids links from now on: outputs of this process go through no symbolic link, neither in a
+   folder's place nor in the file's, and replace nothing but regular files; standard output is none
+   of them.  It is for scenes of strangers, who may have put links beside them.  It holds for the
+   whole process, so that no writer can forget it. */
 void output_forbid_links(void);
 
 /* Makes a folder if it is missing, but not the folders above it, by the same rules. */

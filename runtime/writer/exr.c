@@ -22,7 +22,7 @@
 #include "runtime/writer/exr_zip.h"
 
 enum {
-    /* Only one thread writes at any time, and each needs memory for a chunk. */
+    /* The threads at most: only one writes at any time, and each needs memory for a chunk. */
     MAX_WORKERS = 8
 };
 
@@ -64,7 +64,8 @@ static int64_t write_callback(exr_const_context_t context, void *user, const voi
     return -1;
 }
 
-/* The library also reports errors by results.  Without this handler it would print them as well. */
+/* Ignores messages: the library also reports errors by results, and would print them as well
+   without this handler. */
 static void ignore_message(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context, (void)code, (void)message;
@@ -189,7 +190,7 @@ static void pack_chunk(Worker *worker)
     }
 }
 
-/* Called by the library before it writes what a worker has encoded. */
+/* Waits for its place in the order, before the library writes what a worker has encoded. */
 static exr_result_t wait_for_turn(exr_encode_pipeline_t *pipeline)
 {
     const Worker *worker = pipeline->encoding_user_data;
@@ -264,7 +265,7 @@ static void *work(void *user)
     return NULL;
 }
 
-/* The number of threads: as many as processors that this process may use, at most one for a
+/* Returns the number of threads: as many as processors that this process may use, at most one for a
    chunk. */
 static uint32_t count_workers(const Chunks *chunks)
 {

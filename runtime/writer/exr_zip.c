@@ -27,7 +27,7 @@ static bool reserve(ExrZip *zip, size_t bytes)
     return zip->bytes > 0;
 }
 
-/* The bytes at even places, and behind them those at odd places, each but the first as its
+/* Writes the bytes at even places, and behind them those at odd places, each but the first as its
    difference from the one before, plus 128 (as in ImfZip.cpp of OpenEXR, which is the reference). */
 static void find_differences(const unsigned char *packed, size_t bytes, unsigned char *differences)
 {

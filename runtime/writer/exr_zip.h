@@ -7,7 +7,7 @@
 #include <OpenEXR/openexr.h>
 #include <stdbool.h>
 
-/* What a thread needs for it, kept from chunk to chunk; zero to begin with. */
+/* The memory of a thread for it, kept from chunk to chunk; zero to begin with. */
 typedef struct ExrZip {
     struct libdeflate_compressor *compressor;
     unsigned char                *differences, *compressed;

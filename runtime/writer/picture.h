@@ -10,7 +10,7 @@
 
 #include "runtime/writer/atomic.h"
 
-/* How the samples of a channel are stored in the file.  In memory a half is a float, and is rounded
+/* The type of the samples of a channel in the file.  In memory a half is a float, and is rounded
    when it is written. */
 typedef enum SampleType { SAMPLE_HALF, SAMPLE_FLOAT, SAMPLE_UINT } SampleType;
 

@@ -7,7 +7,7 @@
 #include "krs/vulkan.h"
 #include "runtime/writer/picture.h"
 
-/* So many channels at most: four for each array. */
+/* The channels at most: four for each array. */
 enum {
 #define KRS_AOV(id, bit, aov, about, arrays) arrays
 #define KRS_ARRAY(aov, member, ...)          AOV_ARRAY_##member,

@@ -54,7 +54,7 @@ static bool fail_memory(OutputError *error)
     return false;
 }
 
-/* iTXt, because names may be UTF-8. */
+/* Writes texts as iTXt, because names may be UTF-8. */
 static void write_texts(PngWriter *writer, const Picture *picture)
 {
     for (size_t i = 0; i < picture->text_count; i++) {
@@ -108,7 +108,7 @@ static bool write_file(PngWriter *writer, const Picture *picture, const uint8_t 
     return true;
 }
 
-/* The same.  A mask is no light: it has no curve.  Most of its rows are as those above them. */
+/* Does the same.  A mask is no light: it has no curve.  Most of its rows are as those above them. */
 static bool write_mask(PngWriter *writer, const Picture *picture, const uint8_t *gray)
 {
     const double most = PNG_UINT_31_MAX;

@@ -22,7 +22,7 @@ char *path_folder(const char *path)
     return folder;
 }
 
-/* "real/folder/name" of a file that does not exist, in a folder that does. */
+/* Returns "real/folder/name" of a file that does not exist, in a folder that does. */
 static char *real_path_of_missing(const char *path)
 {
     char *folder = path_folder(path), *real = folder ? realpath(folder, NULL) : NULL, *place = NULL;
@@ -35,7 +35,7 @@ static char *real_path_of_missing(const char *path)
     return place;
 }
 
-/* The path that a symbolic link refers to; NULL when `path` is no link. */
+/* Returns the path that a symbolic link refers to; NULL when `path` is no link. */
 static char *follow_link(const char *path)
 {
     char    to[PATH_MAX], *folder, *place = NULL;

@@ -4,9 +4,10 @@
 #ifndef KRS_REAL_PATH_H
 #define KRS_REAL_PATH_H
 
-/* The folder of a path, "." without one, for free(); NULL: without memory. */
+/* Returns the folder of a path, "." without one, for free(); NULL: without memory. */
 char *path_folder(const char *path);
-/* The real path of a file, which need not exist, with all links followed, for free(); NULL with errno set. */
+/* Returns the real path of a file, which need not exist, with all links followed, for free(); NULL
+   with errno set. */
 char *real_path(const char *path);
 
 #endif

@@ -14,7 +14,7 @@
    cannot be.  *path is malloc'ed. */
 int temporary_create(const char *folder, char **path);
 
-/* The permissions that a new file gets in that folder; 0600 when they cannot be found out. */
+/* Returns the permissions that a new file gets in that folder; 0600 when they cannot be found out. */
 mode_t temporary_mode(const char *folder);
 
 /* Removes this user's temporary files in that folder whose writers have ended. */

@@ -218,7 +218,7 @@ static void write_image(const KrsScene *scene)
     leave("}");
 }
 
-/* What a program that draws the scene chooses its shaders by. */
+/* Writes what a program that draws the scene chooses its shaders by. */
 static void write_shaders(const KrsScene *scene)
 {
     const KrsProgram *program = krs_scene_program(scene);

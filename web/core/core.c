@@ -10,7 +10,7 @@
 
 const char *core_answer(void) { return answer_text(); }
 
-/* What the page supplied last. */
+/* The bytes that the page supplied last. */
 static char *supplied;
 
 const char *supply_text(void *user, const char *path, size_t *length)

@@ -7,10 +7,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* The bytes of a file, or of a font (KrsLoadCallback, KrsFontCallback); NULL: there is none. */
+/* These return the bytes of a file, or of a font (KrsLoadCallback, KrsFontCallback); NULL: there is
+   none. */
 char *page_load(const char *path, size_t *length);
 char *page_font(const char *name, size_t *length, int *face);
-/* Told which part of a mesh is done; false: it is not wanted any more. */
+/* Takes which part of a mesh is done; false: it is not wanted any more. */
 bool page_progress(double done);
 
 /* core.c: page_load, with text that is freed when the next is asked for. */

@@ -16,7 +16,7 @@ uniform highp sampler2D path_origins, path_directions, path_weights;
 uniform uint ray_number, light_count, projection, from_middles;
 // Tables of albedos, and behind them the lights, as in the runtime.
 uniform highp usampler2D input_rows;
-// What is known of a pixel's ray: t, side, state, steps.
+// The ray of a pixel: t, side, state, steps.
 uniform highp sampler2D ends;
 // Its normal, and how even the surface is.
 uniform highp sampler2D facings;
@@ -54,7 +54,7 @@ vec4 load_path(uint row, uint index)
                                    : texelFetch(path_weights, pixel, 0);
 }
 
-// Whether the pixel has such a ray.
+// Tells whether the pixel has such a ray.
 bool has_ray() { return !are_of_paths() || largest(load_path(PATH_WEIGHT, 0u).xyz) > 0.0; }
 
 void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base, out float slope)
@@ -77,14 +77,14 @@ void load_frame()
     control.lights = light_count;
 }
 
-// The pixel of this fragment, and the point of the picture that its ray goes through.
+// Returns the pixel of this fragment, and the point of the picture that its ray goes through.
 uvec2 own_pixel() { return uvec2(gl_FragCoord.xy); }
 vec2 own_point() { return vec2(own_pixel()) + work.offset; }
 
 #ifdef HITS
 #include "hit_point.glsl"
 
-// Whether the ray of this pixel hits something, and where.
+// Tells whether the ray of this pixel hits something, and where.
 bool find_own_hit(out HitPoint hit)
 {
     vec4  ray = texelFetch(ends, ivec2(gl_FragCoord.xy), 0);

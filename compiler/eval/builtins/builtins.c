@@ -108,7 +108,7 @@ static Value builtin_invert(Elaboration *e, Call *call)
     return value_map(map_inversion(e->builder, center, radius));
 }
 
-/* A real number, or a list of four; false: reported. */
+/* Finds a real number, or a list of four; false: reported. */
 static bool quaternion_argument(Elaboration *e, const Call *call, uint32_t index, double entry[4])
 {
     const Argument *argument = &call->arguments[index];
@@ -150,7 +150,7 @@ static Value builtin_matrix(Elaboration *e, Call *call)
     return value_error();
 }
 
-/* Left minus right of `left == right`; a surface needs no more. */
+/* Returns the left minus the right of `left == right`; a surface needs no more. */
 static Value builtin_algebraic(Elaboration *e, Call *call)
 {
     const Argument *equation = &call->arguments[0];
@@ -236,7 +236,8 @@ size_t builtin_names(const char **names, size_t capacity)
     return count;
 }
 
-/* level, instance, u, v, normal, front, orbit_trap and orbit_step: in materials only. */
+/* Evaluates level, instance, u, v, normal, front, orbit_trap and orbit_step, which are in materials
+   only. */
 static Value material_name(Elaboration *e, const char *name, Span span)
 {
     if (!e->in_material) {
@@ -265,7 +266,7 @@ static Value material_name(Elaboration *e, const char *name, Span span)
     return value_of_node(e, graph_op1(e->graph, OP_id_unit, instance));
 }
 
-/* The radius of .round(r), in `core:` of a shape declaration only. */
+/* Returns the radius of .round(r), in `core:` of a shape declaration only. */
 static Value rounding_name(Elaboration *e, Span span)
 {
     if (e->rounding != NODE_NONE)

@@ -24,7 +24,7 @@ BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin
     builtin_meta;
 
 /* ---- cells.c ---- */
-/* The period of a lattice and its counts, 0 for endless; false: reported. */
+/* Finds the period of a lattice and its counts, 0 for endless; false: reported. */
 bool want_lattice(Elaboration *e, const Call *call, Node *period, uint32_t cells[3]);
 /* Tells whether functions have this method: `.repeat` and `.repeat_polar` of one that makes the shape of a
    cell. */
@@ -37,7 +37,8 @@ Value method_distance(Elaboration *e, const Shape *shape, Call *call);
 Value method_bounds(Elaboration *e, const Shape *shape, Call *call);
 
 /* ---- grown.c ---- */
-/* A figure that is grown: an outline of its own, where outlines are wanted and that of the figure is known. */
+/* Returns a figure that is grown: an outline of its own, where outlines are wanted and that of the
+   figure is known. */
 const Shape *grown_outline(Elaboration *e, const Shape *figure, const Shape *grown);
 
 /* ---- corners.c ---- */

@@ -57,7 +57,7 @@ typedef struct Cells {
     Values          shapes;
 } Cells;
 
-/* The shape of a cell, in its middle; false: reported. */
+/* Finds the shape of a cell, in its middle; false: reported. */
 static bool shape_of_cell(Elaboration *e, const Cells *cells, Value cell, Value *shape)
 {
     *shape = call_with(e, cells->function, cell, cells->call->syntax);
@@ -107,7 +107,7 @@ static Value join_cells(Elaboration *e, const Cells *cells)
     return builtin_union(e, &join);
 }
 
-/* All cells together. */
+/* Returns the union of all cells. */
 static Value union_of_cells(Elaboration *e, Cells *cells)
 {
     double total = 1;
@@ -124,7 +124,7 @@ static Value union_of_cells(Elaboration *e, Cells *cells)
 
 /* ---- a function in each sector ---- */
 
-/* One copy, rotated to its sector; false: reported. */
+/* Adds one copy, rotated to its sector; false: reported. */
 static bool add_sector(Elaboration *e, Cells *cells, Node axis, uint32_t index, uint32_t count)
 {
     Value shape;
@@ -155,7 +155,7 @@ static Value union_of_sectors(Elaboration *e, Cells *cells)
 
 /* ---- one function for all cells, where they have no end ---- */
 
-/* A parameter that no author sets: the numbers of a cell, in their range. */
+/* Returns a parameter that no author sets: the numbers of a cell, in their range. */
 static Node cell_leaf(Elaboration *e, const uint32_t counts[3])
 {
     GraphParameter range = {{0}, {0}};
@@ -185,7 +185,7 @@ static bool check_slopes(Elaboration *e, const Cells *cells, size_t first, Node 
     return true;
 }
 
-/* What the author cannot do there is done with a count. */
+/* Explains that a count does what the author tried. */
 static void explain_count(Elaboration *e, size_t first)
 {
     for (size_t i = first; i < e->diags->count; i++)

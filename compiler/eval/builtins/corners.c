@@ -41,7 +41,7 @@ static bool add_border(Elaboration *e, const Border *border, Corners *corners)
     return true;
 }
 
-/* The piece that begins where a straight one ends; NULL: there is none. */
+/* Returns the piece that begins where a straight one ends; NULL: there is none. */
 static const Piece *piece_behind(const Outline *outline, const Piece *piece)
 {
     for (uint32_t i = 0; i < outline->count && piece->curve.straight; i++)
@@ -50,7 +50,7 @@ static const Piece *piece_behind(const Outline *outline, const Piece *piece)
     return NULL;
 }
 
-/* An outline that is one line around. */
+/* Adds the pieces of an outline that is one line around. */
 static bool add_pieces(Elaboration *e, const Outline *outline, Corners *corners)
 {
     const Piece *piece = outline->pieces;
@@ -122,7 +122,7 @@ static void move_corners(Elaboration *e, const Shape *shape, Corners *corners)
                              : graph_op2(e->graph, OP_mul, corners->at[i], shape->values[0]);
 }
 
-/* False: it is no convex polygon, or may be none. */
+/* Finds the corners of a convex polygon; false: the shape is none, or may be none. */
 static bool find_corners(Elaboration *e, const Shape *shape, Corners *corners)
 {
     switch (shape->kind) {

@@ -36,7 +36,7 @@ static const Choices falloff_names = {
     .count   = FALLOFF_COUNT,
 };
 
-/* The parameters `blend= kind= steps=`, of which `first` is the first.  False: reported. */
+/* Finds the parameters `blend= kind= steps=`, of which `first` is the first.  False: reported. */
 static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Blend *blend,
                             bool *fillet)
 {
@@ -65,7 +65,8 @@ static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Bl
     return true;
 }
 
-/* The shapes of a call: a shape, or the elements of a list.  False: reported, at `origin`. */
+/* Collects the shapes of a call: a shape, or the elements of a list.  False: reported, at
+   `origin`. */
 static bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *origin,
                            Values *shapes)
 {
@@ -85,7 +86,7 @@ static bool collect_shapes(Elaboration *e, const Call *call, Value value, const 
     return true;
 }
 
-/* These shapes, if they are all solids or all figures; NULL: reported. */
+/* Returns the shapes of a call, if all are solids or all figures; NULL: reported. */
 static const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values)
 {
     const Shape **shapes = arena_new_array(e->values, const Shape *, values->count + 1);
@@ -233,7 +234,7 @@ Value builtin_morph(Elaboration *e, Call *call)
     return value_shape(make_morph(e->builder, a, b, t, call->syntax->span));
 }
 
-/* A number above 0; NODE_NONE: reported. */
+/* Returns a number above 0; NODE_NONE: reported. */
 static Node want_positive(Elaboration *e, const Call *call, uint32_t index, double otherwise,
                           const char *what)
 {

@@ -35,7 +35,7 @@ typedef struct Extremes {
     } open;
 } Extremes;
 
-/* What the value in the middle says, with a slope of the cell. */
+/* Returns the range that the value in the middle gives with a slope of the cell. */
 static Range range_by_slope(const Extremes *x, Box box, double slope)
 {
     double middle[3], reach = slope * 0.5 * box_diagonal(box);
@@ -78,7 +78,7 @@ static void cut_cell(Extremes *x, const Cell *cell)
     open_cell(x, high, cell->cuts + 1);
 }
 
-/* All open cells that may matter are cut; false: none is. */
+/* Cuts all open cells that may matter; false: there are none. */
 static bool cut_all(Extremes *x)
 {
     size_t count = x->open.count, before = x->count;
@@ -125,7 +125,7 @@ static Range extremes_of(Elaboration *e, Node node, Box box, double slope)
     return x.sure;
 }
 
-/* The corner of a box that an argument is; of a figure's plane it has two numbers. */
+/* Finds the corner of a box that an argument is; of a figure's plane it has two numbers. */
 static bool want_corner(Elaboration *e, const Argument *argument, double corner[3], bool high)
 {
     uint32_t size = value_size(e, argument->value);

@@ -8,7 +8,8 @@
 #include "compiler/base/elementary.h"
 #include "compiler/graph/fractal.h"
 
-/* The iterations as a whole number of frame time, and the most there can be; false: reported. */
+/* Finds the iterations as a whole number of frame time, and the most there can be; false:
+   reported. */
 static bool want_iterations(Elaboration *e, const Call *call, uint32_t index, double otherwise,
                             Node *iterations, double *most)
 {
@@ -37,7 +38,7 @@ static bool want_iterations(Elaboration *e, const Call *call, uint32_t index, do
 /* Returns as many iterations as give details of about a thousandth of the whole. */
 static double usual_iterations(uint32_t power) { return ceil(10 / real_log2(power)); }
 
-/* A list of four numbers of frame time; NODE_NONE: reported. */
+/* Returns a list of four numbers of frame time; NODE_NONE: reported. */
 static Node want_quaternion(Elaboration *e, const Call *call, uint32_t index)
 {
     static const double otherwise[4] = {-0.2, 0.6, 0.2, 0.1};

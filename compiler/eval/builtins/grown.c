@@ -4,9 +4,9 @@
 #include "compiler/family/family.h"
 #include "compiler/lower/boundary.h"
 
-/* How far parabolas may be from arcs, in sizes of the figure. */
+/* The distance of parabolas from arcs that is permitted, in sizes of the figure. */
 static const double TOLERANCE = 1e-6;
-/* How far a part of an arc may turn. */
+/* The angle by which a part of an arc may turn. */
 static const double MAX_TURN = 0.8;
 
 static void point_of_arc(const Curve *arc, double angle, double away, double point[2])
@@ -37,7 +37,7 @@ static void add_arc(Arena *arena, Curves *curves, const Curve *arc, double off)
     }
 }
 
-/* An outline that is drawn, wherever it was moved. */
+/* Tells whether it is an outline that is drawn, wherever it was moved. */
 static bool is_drawn(const Shape *figure)
 {
     while (figure->kind == SHAPE_TRANSFORM)

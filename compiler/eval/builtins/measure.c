@@ -8,7 +8,7 @@
 #include "compiler/lower/context.h"
 #include "compiler/shape/slope.h"
 
-/* The point of an argument, of two numbers for a figure and three for a solid; NODE_NONE:
+/* Returns the point of an argument, of two numbers for a figure and three for a solid; NODE_NONE:
    reported. */
 static Node want_place(Elaboration *e, const Shape *shape, const Call *call)
 {

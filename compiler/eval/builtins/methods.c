@@ -18,7 +18,7 @@ static const double ORIGIN[3] = {0, 0, 0};
 
 static bool lies_in_plane(const Shape *shape) { return shape->figure || shape->nothing; }
 
-/* A vector of three.  Figures take two as well: `otherwise` is the third. */
+/* Returns a vector of three.  Figures take two as well: `otherwise` is the third. */
 static Node want_extent(Elaboration *e, const Shape *shape, const Call *call, double otherwise)
 {
     Value value = call->arguments[0].value;
@@ -34,7 +34,7 @@ static Node want_extent(Elaboration *e, const Shape *shape, const Call *call, do
     return want_vector(e, &whole, 0, ORIGIN);
 }
 
-/* The shape after a map; NULL, whose reason has been reported, is VALUE_ERROR. */
+/* Returns the shape after a map; NULL, whose reason has been reported, is VALUE_ERROR. */
 static Value moved(Elaboration *e, const Shape *shape, const Map *map, const Call *call)
 {
     return map ? value_shape(make_transform(e->builder, shape, map, call->syntax->span))
@@ -164,8 +164,8 @@ static Value method_offset(Elaboration *e, const Shape *shape, Call *call)
         grown_outline(e, shape, make_offset(e->builder, shape, r, call->syntax->span)));
 }
 
-/* The shape that, grown by r, is `shape` with round edges; NULL when it does not know one.  *good
-   becomes false where it knows a wrong one. */
+/* Returns the shape that, grown by r, is `shape` with round edges; NULL when it does not know one.
+   *good becomes false where it knows a wrong one. */
 static const Shape *core_of(Elaboration *e, const Shape *shape, Node r, const Call *call,
                             bool *good)
 {
@@ -274,7 +274,7 @@ static Node open_surface_thickness(Elaboration *e, const Shape *region, const Ca
     return graph_number(e->graph, 1e-3 * box_diagonal(region->box));
 }
 
-/* The surface alone. */
+/* Returns the surface alone. */
 static const Shape *open_surface_of(Elaboration *e, const Shape *shape, const Shape *region,
                                     Node thickness, const Call *call)
 {
@@ -329,7 +329,7 @@ static MakeDeformed *deformation(const char *name)
     return all[i].make;
 }
 
-/* One of the deformations of shapes.def: an axis, and one or two numbers after it. */
+/* Evaluates one of the deformations of shapes.def: an axis, and one or two numbers after it. */
 static Value method_deform(Elaboration *e, const Shape *shape, Call *call)
 {
     DeformArguments asked = {.name       = call->name,
@@ -384,7 +384,8 @@ static bool is_method(const char *name)
     return false;
 }
 
-/* What helps where something other than a shape has no such method; NULL: nothing is known. */
+/* Returns help for a method that something other than a shape does not have; NULL: nothing is
+   known. */
 static const char *method_help(Elaboration *e, const Syntax *syntax, Value receiver)
 {
     if (receiver.type == VALUE_FUNCTION)

@@ -59,7 +59,8 @@ static Value direction_of_cell(Elaboration *e, const Call *call, uint32_t stream
 
 /* ---- seeds that are numbers ---- */
 
-/* What depends on the iteration of a loop that is made at once (iterations.c) is a number in each iteration. */
+/* Tells whether a seed depends on the iteration of a loop whose iterations are evaluated at once
+   (iterations.c). */
 static bool is_of_iteration(const Elaboration *e, Value seed)
 {
     return e->iterated && seed.type == VALUE_EXPRESSION &&
@@ -78,7 +79,7 @@ static Value seeded_of_iteration(Elaboration *e, const Call *call, Op op, uint32
     return value_of_node(e, graph_op(e->graph, op, operands));
 }
 
-/* False: reported. */
+/* Makes a random number of a number's seed; false: reported. */
 static bool seeded_of_number(Elaboration *e, const Call *call, Op op, GraphType type,
                              uint32_t stream, NodeValue *result)
 {
@@ -139,7 +140,7 @@ static Node noise_of(Graph *g, Node point)
     return graph_op1(g, g->items[point].type == TYPE_VEC2 ? OP_noise2 : OP_noise3, point);
 }
 
-/* The argument `p`; NODE_NONE: reported. */
+/* Returns the argument `p`; NODE_NONE: reported. */
 static Node noise_point(Elaboration *e, const Call *call)
 {
     Node point = want_numeric(e, call, 0);

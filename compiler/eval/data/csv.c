@@ -76,7 +76,7 @@ static Value cell(const Table *table)
     return table->data->text[table->data->at] == '"' ? quoted_cell(table) : plain_cell(table);
 }
 
-/* The cells of a row; false: reported. */
+/* Reads the cells of a row; false: reported. */
 static bool read_row(const Table *table, Values *cells)
 {
     DataText *data = table->data;
@@ -104,7 +104,7 @@ static bool keep_row(Table *table, const Values *cells, uint32_t start)
     return data_push(data, &table->rows, value_list(data->e, cells->items, cells->count));
 }
 
-/* Rows of cells, without the first `skip` ones. */
+/* Reads rows of cells, without the first `skip` ones. */
 static Value read_text(DataText *data, char separator, uint32_t skip)
 {
     Table table = {.data = data, .separator = separator};
@@ -122,7 +122,7 @@ static Value read_text(DataText *data, char separator, uint32_t skip)
     return value_list(data->e, table.rows.items, table.rows.count);
 }
 
-/* One character, a comma unless given; 0: reported. */
+/* Returns the separator, a comma unless given; 0: reported. */
 static char separator_argument(Elaboration *e, const Call *call)
 {
     const Argument *argument = &call->arguments[2];

@@ -19,14 +19,14 @@ typedef struct DataText {
 
 /* Opens the file that the first argument of a call names; false: reported. */
 bool data_open(Elaboration *e, const Call *call, DataText *data);
-/* Bytes [start, end) are not what such a file has. */
+/* Reports that bytes [start, end) are not what such a file has. */
 Diag *data_error(DataText *data, uint32_t start, uint32_t end, const char *message);
-/* The length of the number that begins at a place, 0 without one.  `strict`: as JSON has it; else
-   also with `+`, zeros before it, and a point without digits on one side. */
+/* Returns the length of the number that begins at a place, 0 without one.  `strict`: as JSON has
+   it; else also with `+`, zeros before it, and a point without digits on one side. */
 uint32_t data_number_length(const DataText *data, uint32_t start, bool strict);
-/* VALUE_ERROR: too large, which is reported. */
+/* Reads a number; VALUE_ERROR: it is too large, which is reported. */
 Value data_number(DataText *data, uint32_t start, uint32_t end);
-/* A string of what was gathered in `scratch`; it may hold no NUL and must be UTF-8. */
+/* Returns a string of what was gathered in `scratch`; it may hold no NUL and must be UTF-8. */
 Value data_string(DataText *data, uint32_t start, uint32_t end);
 /* Adds an element to a list; false: too many, which is reported. */
 bool data_push(DataText *data, Values *values, Value value);

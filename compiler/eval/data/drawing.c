@@ -56,7 +56,7 @@ static void place_curves(const Placing *placing, Curves *curves)
     }
 }
 
-/* The box of the view, or of what is drawn where there is no view. */
+/* Finds the box of the view, or of what is drawn where there is no view. */
 static void find_view(SvgDrawing *drawing)
 {
     if (drawing->low[0] <= drawing->high[0])

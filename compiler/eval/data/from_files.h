@@ -9,7 +9,7 @@
 BuiltinFunction builtin_read_csv, builtin_read_json, builtin_text, builtin_svg, builtin_texture,
     builtin_footprint;
 
-/* `t.alpha(u, v)`, `t.size`, of the texture of this number. */
+/* Evaluates `t.alpha(u, v)` or `t.size` of the texture of this number. */
 Value texture_method(Elaboration *e, const Environment *env, const Syntax *syntax, uint32_t number);
 
 #endif

@@ -27,7 +27,7 @@ static bool unexpected(DataText *data, const char *expected)
 
 /* ---- strings ---- */
 
-/* Four hexadecimal digits; UINT32_MAX: there are none. */
+/* Returns the value of four hexadecimal digits; UINT32_MAX: there are none. */
 static uint32_t hexadecimal(const char *digits)
 {
     uint32_t number = 0;
@@ -72,7 +72,7 @@ static bool read_code(DataText *data)
     return true;
 }
 
-/* A backslash and what follows it. */
+/* Reads a backslash and what follows it. */
 static bool read_escape(DataText *data)
 {
     static const char written[] = "\"\\/bfnrt", meant[] = "\"\\/\b\f\n\r\t";
@@ -147,7 +147,7 @@ static Value read_array(DataText *data, uint32_t level)
     return good ? value_list(data->e, values.items, values.count) : value_error();
 }
 
-/* `"name": value`; false: reported. */
+/* Reads `"name": value`; false: reported. */
 static bool read_member(DataText *data, Values *names, Values *values, uint32_t level)
 {
     skip_blanks(data);
@@ -187,7 +187,7 @@ static Value read_object(DataText *data, uint32_t level)
 
 /* ---- values ---- */
 
-/* true, false or null. */
+/* Accepts true, false or null. */
 static bool accept_word(DataText *data, const char *word)
 {
     size_t length = strlen(word);
@@ -228,7 +228,7 @@ static Value read_value(DataText *data, uint32_t level)
     }
 }
 
-/* The value of a whole text. */
+/* Reads the value of a whole text. */
 static Value read_text(DataText *data)
 {
     Value value = read_value(data, 0);

@@ -75,7 +75,7 @@ static bool find_font(Elaboration *e, const Call *call, const char *name, Font *
     return true;
 }
 
-/* False: reported. */
+/* Finds the font of a call; false: reported. */
 static bool want_font(Elaboration *e, const Call *call, Font *font)
 {
     const Argument *argument = &call->arguments[FONT];

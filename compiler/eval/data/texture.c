@@ -123,7 +123,8 @@ Value builtin_footprint(Elaboration *e, Call *call)
 
 /* ---- samples ---- */
 
-/* What a texture needs to know of a pixel (graph/texture.h).  Its taps need be no narrower than a texel. */
+/* Returns what a texture needs to know of a pixel (graph/texture.h).  Its taps need be no narrower
+   than a texel. */
 static Node pixel_on_texture(Graph *g, const Texture *texture, Node uv)
 {
     const double sides[2] = {texture->levels[0].width, texture->levels[0].height};
@@ -141,7 +142,7 @@ static Node pixel_on_texture(Graph *g, const Texture *texture, Node uv)
     return graph_op4(g, OP_vec4, u, v, taps, wide);
 }
 
-/* An argument that is a number, or both as a vector; NODE_NONE: reported. */
+/* Returns an argument that is a number, or both as a vector; NODE_NONE: reported. */
 static Node want_coordinate(Elaboration *e, const Argument *argument, uint32_t size,
                             const char *wanted)
 {
@@ -151,7 +152,7 @@ static Node want_coordinate(Elaboration *e, const Argument *argument, uint32_t s
     return NODE_NONE;
 }
 
-/* The place that the arguments `u v` are; NODE_NONE: reported. */
+/* Returns the place that the arguments `u v` are; NODE_NONE: reported. */
 static Node want_place(Elaboration *e, const Call *call)
 {
     const Argument *u = &call->arguments[0], *v = &call->arguments[1];
@@ -164,7 +165,7 @@ static Node want_place(Elaboration *e, const Call *call)
                                                   : graph_op2(e->graph, OP_vec2, across, up);
 }
 
-/* What is known now is read now. */
+/* Reads a texture at compile time, if the place is known. */
 static Value known_sample(Elaboration *e, const Texture *texture, Node uv, bool alpha)
 {
     double place[2];

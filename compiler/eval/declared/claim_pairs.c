@@ -6,7 +6,7 @@
 #include "compiler/lower/context.h"
 #include "compiler/shape/slope.h"
 
-/* A declared shape, or one that was moved. */
+/* Returns a declared shape, or one that was moved. */
 static const Shape *declared_in(const Shape *shape)
 {
     while (!shape->declaration)
@@ -76,7 +76,7 @@ static void claim_ball(Graph *g, ShapeClaims *claims, const Shape *shape)
                  "it is empty inside of the ball");
 }
 
-/* The distance of a shape where an offset is above it. */
+/* Returns the distance of a shape where an offset is above it. */
 static Node offset_distance(Graph *g, const Shape *shape, Arena *scratch)
 {
     Lowering l   = {.graph = g, .scratch = scratch, .most = g->count + MAX_LOWERED};

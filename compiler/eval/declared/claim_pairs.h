@@ -24,8 +24,8 @@ typedef struct ShapeClaims {
     uint32_t   count;
 } ShapeClaims;
 
-/* The claims `figure`, `plane` and `bound` of a declared shape, and `core` of one that was rounded
-   by it; none of any other shape. */
+/* Returns the claims `figure`, `plane` and `bound` of a declared shape, and `core` of one that was
+   rounded by it; none of any other shape. */
 ShapeClaims claims_of(Graph *graph, const Shape *shape, Arena *scratch);
 
 /* Claims that a core is all that is deeper in a shape than `rounding`. */

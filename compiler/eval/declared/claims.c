@@ -21,7 +21,7 @@
 /* Samples, and the least of them where many operations make each one slow. */
 enum { SAMPLES = 400, MIN_SAMPLES = 40, MANY_OPERATIONS = 5000 };
 
-/* What is sampled: numbers at points of a box, at the default values of the parameters. */
+/* The numbers that are sampled at points of a box, at the default values of the parameters. */
 typedef struct Sampling {
     Tape       tape;
     NodeValue *values;
@@ -31,7 +31,7 @@ typedef struct Sampling {
     bool       flat;  /* z stays 0 */
 } Sampling;
 
-/* Points for sampling: a fixed sequence (Roberts' R3), spread over a box. */
+/* Fills a point for sampling: a fixed sequence (Roberts' R3), spread over a box. */
 static void sample_point(uint32_t index, Box box, double point[3])
 {
     static const double steps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
@@ -49,7 +49,7 @@ static void parameter_values(const Elaboration *e, NodeValue *values)
     }
 }
 
-/* False: the box is so large that check_extent refuses it, in better words. */
+/* Begins to sample; false: the box is so large that check_extent refuses it, in better words. */
 static bool start_sampling(Elaboration *e, Sampling *s, const Node *roots, size_t count, Box box)
 {
     NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
@@ -139,7 +139,7 @@ static bool check_slope_and_box(Elaboration *e, const Shape *shape, double slope
 
 /* ---- exact ---- */
 
-/* The unit gradient of a number; false: it is flat there. */
+/* Finds the unit gradient of a number; false: it is flat there. */
 static bool gradient_at(const Sampling *s, Node number, const double point[3], double gradient[3])
 {
     double step = 1e-6 * s->size, length = 0;
@@ -160,7 +160,8 @@ static bool gradient_at(const Sampling *s, Node number, const double point[3], d
     return length > 0 && isfinite(length);
 }
 
-/* From outside, the surface lies against the gradient, as far away as an exact distance says. */
+/* Checks points outside: the surface lies against the gradient, as far away as an exact distance
+   says. */
 static bool check_exact(Elaboration *e, const Shape *shape)
 {
     Node     distance = shape->declared;
@@ -240,7 +241,7 @@ static bool refutes_between(const Sampling *s, const ShapeClaim *claim, const do
     return false;
 }
 
-/* `shape`: whose points they are. */
+/* Checks claims at pairs of points; `shape` is what they are claimed of. */
 static bool check_pairs(Elaboration *e, const Shape *shape, const ShapeClaims *claims)
 {
     Node     roots[2 * MAX_SHAPE_CLAIMS];
@@ -292,7 +293,7 @@ static void find_surfaces(const Sampling *s, Node distance, Surfaces *surfaces)
     }
 }
 
-/* The distance from a point to the nearest point of the surface. */
+/* Returns the distance from a point to the nearest point of the surface. */
 static double distance_to(const Surfaces *surfaces, const double p[3])
 {
     double least = HUGE_VAL;

@@ -54,7 +54,7 @@ static bool check_properties(Elaboration *e, const Syntax *declaration)
     return good;
 }
 
-/* A property that is a number at every point. */
+/* Returns a property that is a number at every point. */
 static Node field_property(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Value value = evaluate(e, env, syntax);
@@ -73,13 +73,13 @@ static bool flag_property(Elaboration *e, const Environment *env, const Syntax *
     Value value = evaluate(e, env, syntax);
     if (value.type == VALUE_BOOLEAN)
         return value.boolean;
-    /* What is true for some values of the parameters only cannot be claimed. */
+    /* A claim must be true for all values of the parameters. */
     if (value.type != VALUE_EXPRESSION || e->graph->items[value.node].type != TYPE_BOOL)
         type_error(e, syntax, value, "true or false");
     return false;
 }
 
-/* `slope`: a claimed bound on how fast the distance changes; 0 when there is none. */
+/* Reads `slope`: a claimed bound on how fast the distance changes; 0 when there is none. */
 static bool slope_property(Elaboration *e, const Environment *env, const Syntax *declaration,
                            double *slope)
 {
@@ -96,7 +96,7 @@ static bool slope_property(Elaboration *e, const Environment *env, const Syntax 
     return false;
 }
 
-/* A corner of `within`, for all values of the parameters; false: reported. */
+/* Finds a corner of `within`, for all values of the parameters; false: reported. */
 static bool corner_property(Elaboration *e, Value value, const Syntax *syntax, uint32_t side,
                             Shape *shape)
 {
@@ -116,7 +116,7 @@ static bool corner_property(Elaboration *e, Value value, const Syntax *syntax, u
     return true;
 }
 
-/* `within`: a shape, or two corners. */
+/* Reads `within`: a shape, or two corners. */
 static bool within_property(Elaboration *e, const Environment *env, const Syntax *declaration,
                             Shape *shape)
 {
@@ -154,7 +154,7 @@ static bool plane_property(Elaboration *e, const Environment *env, const Syntax 
     return false;
 }
 
-/* `ball`: a radius.  The box follows from it, unless there is a `within`. */
+/* Reads `ball`: a radius.  The box follows from it, unless there is a `within`. */
 static bool ball_property(Elaboration *e, const Environment *env, const Syntax *declaration,
                           Shape *shape)
 {
@@ -176,7 +176,8 @@ static void require_order(Elaboration *e, Node low, Node high)
         iterations_require(e, ordered);
 }
 
-/* Where iterations of a loop are evaluated at once, none may be empty: that one earns a warning. */
+/* Requires the ends of a box in order.  If iterations of a loop are evaluated at once, none may be
+   empty: that one earns a warning. */
 static void require_sizes(Elaboration *e, const Shape *shape)
 {
     if (shape->ball_box)
@@ -232,8 +233,8 @@ bool needs_check(Elaboration *e, const Syntax *syntax)
     return true;
 }
 
-/* Two coordinates on the surface, which materials know as `u` and `v`.  Thousands of shapes need not
-   compute what none asks for; the first of a declaration shows its mistakes. */
+/* Reads the two coordinates on the surface, which materials know as `u` and `v`.  Thousands of
+   shapes need not compute what none asks for; the first of a declaration shows its mistakes. */
 static bool uv_property(Elaboration *e, const Environment *env, const Syntax *declaration,
                         bool first, Shape *shape)
 {
@@ -254,7 +255,7 @@ static bool uv_property(Elaboration *e, const Environment *env, const Syntax *de
 /* Fewer corners are a formula, unless all outlines are wanted: a loop over a list costs as much as some. */
 enum { MIN_CORNERS = 64 };
 
-/* A corner that is known now, where no arc begins. */
+/* Finds a corner that is known now, where no arc begins. */
 static bool known_corner(Value value, double corner[4])
 {
     uint32_t count = value_numbers(value, corner);
@@ -272,8 +273,8 @@ static const Syntax *outline_syntax(const Elaboration *e, const Syntax *declarat
                                                          : outline;
 }
 
-/* `outline`: the corners of a polygon.  Where they are many and known now, its distance comes from a
-   table, not from the property `distance`.  False: they are not. */
+/* Reads `outline`: the corners of a polygon.  If they are many and known now, its distance comes
+   from a table, not from the property `distance`; false: they are not. */
 static bool outline_property(Elaboration *e, const Environment *env, const Syntax *declaration,
                              Path *path)
 {
@@ -303,7 +304,7 @@ static const Syntax *border_property(const Elaboration *e, const Syntax *declara
     return border ? border : find_property(declaration, "outline");
 }
 
-/* [x, y] or [x, y, bulge]; false: it is no such corner. */
+/* Reads [x, y] or [x, y, bulge]; false: it is no such corner. */
 static bool border_corner(Elaboration *e, Value value, BorderCorner *corner)
 {
     double   numbers[4];
@@ -343,7 +344,7 @@ static void find_border(Elaboration *e, const Shape *shape)
     border->count = (uint32_t)value.list->count;
 }
 
-/* CSG nodes below have been through this. */
+/* Finds the borders of a shape; CSG nodes below have theirs already. */
 void find_borders(Elaboration *e, const Shape *shape)
 {
     if (shape->border && !shape->border->found)
@@ -364,7 +365,7 @@ Value value_of_csg_node(Elaboration *e, const Shape *csg_node)
 
 /* ---- properties ---- */
 
-/* What the shape is, out of its properties. */
+/* Reads the shape out of its properties. */
 static bool read_properties(Elaboration *e, const Environment *env, const Syntax *declaration,
                             bool first, Span call, Shape *shape)
 {
@@ -464,7 +465,7 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     if (first && !check_properties(e, declaration))
         return value_error();
 
-    /* What the library makes of other shapes is what its caller asked for. */
+    /* The author asked for what the library makes of other shapes. */
     const char *name = function->name;
     Span        call = span, caller = e->graph->here;
     made_for_author(e, &name, &span);

@@ -10,13 +10,14 @@
    here on. */
 bool needs_check(Elaboration *e, const Syntax *syntax);
 
-/* What `core` is for this `rounding`; NULL: reported. */
+/* Returns the `core` for this `rounding`; NULL: reported. */
 const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
-/* The value of `hull`. */
+/* Returns the value of `hull`. */
 Value declared_hull(Elaboration *e, const Shape *shape);
 /* Finds the corners of all figures below a sharp CSG node. */
 void find_borders(Elaboration *e, const Shape *csg_node);
-/* Shapes that are joined or copied, or NULL; of figures one knows then where the boundary is. */
+/* Returns the value of shapes that are joined or copied, or of NULL; of figures one knows then
+   where the boundary is. */
 Value value_of_csg_node(Elaboration *e, const Shape *csg_node);
 
 #endif

@@ -15,7 +15,7 @@ typedef struct Beams {
 
 static bool add_beams(Beams *b, const Shape *shape);
 
-/* A primitive, or one that is moved. */
+/* Adds a primitive, or one that is moved. */
 static bool add_beam(Beams *b, const Shape *shape)
 {
     Extents extents = {0};
@@ -35,7 +35,7 @@ static bool add_beam(Beams *b, const Shape *shape)
     return true;
 }
 
-/* What is moved is the union of what is moved of it. */
+/* Adds the parts of a moved shape, each of which is moved. */
 static bool add_moved(Beams *b, const Shape *shape)
 {
     const Shape *inner = shape->children[0];

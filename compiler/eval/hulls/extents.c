@@ -18,7 +18,7 @@ typedef struct Placing {
     Node columns[3], shift, scale;
 } Placing;
 
-/* What stays the same in all parts of a shape; `grown` is added to all radii. */
+/* The values that stay the same in all parts of a shape; `grown` is added to all radii. */
 typedef struct Gathering {
     Elaboration *e;
     Graph       *graph;
@@ -52,7 +52,7 @@ static Node place_point(Graph *g, const Placing *placing, Node point)
     return plus(g, place_direction(g, placing, point), placing->shift);
 }
 
-/* placing(inner(x)) */
+/* Returns placing(inner(x)). */
 static Placing placing_product(Graph *g, const Placing *placing, const Placing *inner)
 {
     bool    even    = placing->scale != NODE_NONE && inner->scale != NODE_NONE;
@@ -84,7 +84,7 @@ static Placing placing_of_stretch(Graph *g, Node factors)
     return placing;
 }
 
-/* x -> x - 2 (dot(normal, x) - offset) normal */
+/* Returns x -> x - 2 (dot(normal, x) - offset) normal. */
 static Placing placing_of_mirror(Graph *g, Node normal, Node offset)
 {
     Placing placing = placing_identity(g);
@@ -146,7 +146,7 @@ static void add_axis(const Gathering *g, Node on, Node along)
     array_push(g->e->values, &g->extents->axes, ((ExtentLine){on, along}));
 }
 
-/* The images of the planes between the axes. */
+/* Adds the images of the planes between the axes. */
 static void add_faces(const Gathering *g, const Placing *placing, bool figure)
 {
     for (int i = 0; i < (figure ? 2 : 3); i++) {
@@ -178,7 +178,7 @@ static Node corner_side(Graph *g, const Shape *shape, int side, uint32_t axis)
     return graph_number(g, side ? range.high : range.low);
 }
 
-/* The corners of its box. */
+/* Adds the corners of its box. */
 static void add_box(const Gathering *g, const Shape *shape, const Placing *placing, Node grown)
 {
     Graph *graph = g->graph;
@@ -198,7 +198,7 @@ static void add_box(const Gathering *g, const Shape *shape, const Placing *placi
     }
 }
 
-/* `[centre, radius]` or `[centre, radius, rim]`. */
+/* Reads `[centre, radius]` or `[centre, radius, rim]`. */
 static bool read_extent(Elaboration *e, Value value, Extent *part)
 {
     Graph *g = e->graph;
@@ -220,7 +220,7 @@ static bool read_extent(Elaboration *e, Value value, Extent *part)
     return true;
 }
 
-/* Round about a line: two balls of one size, or rims. */
+/* Adds the axes about which the parts are round: through two balls of one size, or of rims. */
 static void add_axes(const Gathering *g, size_t first)
 {
     Graph        *graph = g->graph;
@@ -242,7 +242,8 @@ static void add_axes(const Gathering *g, size_t first)
     }
 }
 
-/* What a declaration of the library says; what others claim is put to the test by `hull` alone. */
+/* Adds the extents that a declaration of the library states; claims of others are checked by `hull`
+   alone. */
 static bool add_declared(const Gathering *g, const Shape *shape, const Placing *placing, Node grown)
 {
     Elaboration *e = g->e;
@@ -291,7 +292,7 @@ static void add_children(const Gathering *g, const Shape *shape, uint32_t count,
         add_shape(g, shape->children[i], placing, grown);
 }
 
-/* Grown by as much, which a distance that is less than the true one does not tell. */
+/* Adds a shape that is grown by `by`, which a distance less than the true one does not tell. */
 static void add_grown(const Gathering *g, const Shape *shape, const Placing *placing, Node by,
                       Node grown)
 {
@@ -303,7 +304,8 @@ static void add_grown(const Gathering *g, const Shape *shape, const Placing *pla
     add_children(g, shape, 1, placing, plus(g->graph, grown, times(g->graph, by, placing->scale)));
 }
 
-/* Those of a figure by themselves; false: they are not all balls of numbers that a solid can have. */
+/* Finds the extents of a figure by themselves; false: they are not all balls of numbers that a
+   solid can have. */
 static bool flat_extents(const Gathering *g, const Shape *figure, Extents *flat)
 {
     flat->figure = true;
@@ -485,7 +487,7 @@ Node extents_along(Elaboration *e, const Extents *extents, Node along)
     return most;
 }
 
-/* Across a unit vector. */
+/* Returns the part of an offset across a unit vector. */
 static Node across(Graph *g, Node offset, Node along)
 {
     return sub(g, offset, stretch(g, along, graph_op2(g, OP_dot, offset, along)));

@@ -45,11 +45,12 @@ void extents_add(Elaboration *e, const Shape *shape, Extents *extents);
 
 Extents extents_of_both(Elaboration *e, const Extents *a, const Extents *b);
 
-/* The least and the greatest coordinates of all of it; false: it has none. */
+/* Finds the least and the greatest coordinates of all of it; false: it has none. */
 bool extents_box(Elaboration *e, const Extents *extents, Node corners[2]);
-/* The greatest of dot(along, q) over all of it; NODE_NONE: there is none. */
+/* Returns the greatest of dot(along, q) over all of it; NODE_NONE: there is none. */
 Node extents_along(Elaboration *e, const Extents *extents, Node along);
-/* No less than the greatest distance from a line, or from a point; there are no half-spaces. */
+/* Returns no less than the greatest distance from a line, or from a point; there are no
+   half-spaces. */
 Node extents_about(Elaboration *e, const Extents *extents, ExtentLine axis);
 Node extents_from(Elaboration *e, const Extents *extents, Node centre);
 

@@ -136,7 +136,7 @@ static bool add_shape_parts(Filleting *f, const Shape *shape, uint32_t owner)
 
 /* ---- pairs ---- */
 
-/* NULL: it adds nothing. */
+/* Makes the fillet of a pair; NULL: it adds nothing. */
 static const Shape *make_pair(Filleting *f, const FilletPair *pair)
 {
     Elaboration     *e       = f->e;

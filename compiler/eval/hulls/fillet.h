@@ -6,8 +6,8 @@
 
 #include "compiler/eval/elaborate.h"
 
-/* The union of shapes, all solids or all figures, with fillets of the blend's width in between; NULL:
-   reported, or nothing that a loop has in common. */
+/* Makes the union of shapes, all solids or all figures, with fillets of the blend's width in
+   between; NULL: reported, or nothing that a loop has in common. */
 const Shape *make_fillet(Elaboration *e, const Call *call, const Shape *const *shapes,
                          uint32_t count, Blend blend);
 

@@ -33,7 +33,7 @@ static bool depends_on_frame(const Tape *tape)
     return false;
 }
 
-/* False: they depend on the frame, or are too large. */
+/* Finds the distances of two parts; false: they depend on the frame, or are too large. */
 static bool find_distances(Elaboration *e, const Shape *const parts[2], Distances *distances)
 {
     Graph   *g = e->graph;

@@ -27,7 +27,7 @@ FilletZone fillet_zone(Elaboration *e, const Shape *a, const Shape *b, double wi
                        size_t most);
 /* Tells whether a convex function of the point, with slope 1, may be above 0 there. */
 bool zone_goes_beyond(Elaboration *e, const FilletZone *zone, Node distance);
-/* The same of dot(normal, p) - offset, in numbers. */
+/* Does the same of dot(normal, p) - offset, in numbers. */
 bool zone_goes_beyond_plane(const FilletZone *zone, const double normal[3], double offset);
 
 #endif

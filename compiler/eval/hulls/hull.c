@@ -66,7 +66,7 @@ static Value faces_value(Elaboration *e, const HullSupports *hull)
     return value_list(e, faces.items, faces.count);
 }
 
-/* [[centre, axis, middle], [radius, sine, cosine, least]] */
+/* Returns [[centre, axis, middle], [radius, sine, cosine, least]]. */
 static Value edges_value(Elaboration *e, const HullSupports *hull)
 {
     Values edges = {0};
@@ -81,7 +81,7 @@ static Value edges_value(Elaboration *e, const HullSupports *hull)
     return value_list(e, edges.items, edges.count);
 }
 
-/* [centre, radius, [[towards, longer], ...]] */
+/* Returns [centre, radius, [[towards, longer], ...]]. */
 static Value corners_value(Elaboration *e, const HullSupports *hull)
 {
     Values corners = {0};
@@ -102,7 +102,7 @@ static Value corners_value(Elaboration *e, const HullSupports *hull)
     return value_list(e, corners.items, corners.count);
 }
 
-/* Two corners of the box around all balls. */
+/* Returns two corners of the box around all balls. */
 static Value box_value(Elaboration *e, const HullBall *balls, size_t count)
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -134,7 +134,7 @@ static Value by_supports(const Hulling *h, const HullBall *balls, size_t count, 
     return call_library(e, plane ? "_hull_of_discs" : "_hull_of_balls", parts, h->call->syntax);
 }
 
-/* The hull of their centres, grown by their radius. */
+/* Returns the hull of their centres, grown by their radius. */
 static Value by_points(const Hulling *h, const HullBall *balls, size_t count)
 {
     Elaboration *e      = h->e;
@@ -148,7 +148,7 @@ static Value by_points(const Hulling *h, const HullBall *balls, size_t count)
                         pair_value(e, value_list(e, points.items, count), radius), h->call->syntax);
 }
 
-/* Solid: it has an inside. */
+/* Tells whether the hull has an inside. */
 static bool is_solid(const Hulling *h, const HullBall *balls, size_t count, bool flat)
 {
     bool solid = h->least > 0 || !flat;
@@ -182,7 +182,7 @@ typedef struct Axis {
     double on[3], along[3], across[3], other[3];
 } Axis;
 
-/* The axis of the rims, if it is that of all of them. */
+/* Finds the axis of the rims, if it is that of all of them. */
 static bool common_axis(const HullParts *parts, Axis *axis)
 {
     size_t first = parts->count;
@@ -211,7 +211,7 @@ static bool common_axis(const HullParts *parts, Axis *axis)
     return true;
 }
 
-/* The coordinates of a centre: across the axis, twice, and along it. */
+/* Finds the coordinates of a centre: across the axis, twice, and along it. */
 static void axis_place(const Axis *axis, const HullPart *part, double place[3])
 {
     double offset[3];
@@ -245,7 +245,8 @@ static Value put_in_place(const Hulling *h, const Shape *shape, double axes[3][3
     return value_shape(make_transform(h->e->builder, shape, map, h->call->syntax->span));
 }
 
-/* All about one axis: what is left and right of it in a plane through it, turned. */
+/* Makes the hull of balls about one axis: that of what is left and right of it in a plane through
+   it, revolved. */
 static bool turned_hull(const Hulling *h, const Axis *axis, double slack, Value *result)
 {
     size_t    count = 2 * h->parts.count;
@@ -288,8 +289,8 @@ static bool ends_match(const HullParts *parts, double (*places)[3], double middl
     return true;
 }
 
-/* The sections of columns that all have both their ends in the same two planes, and balls of one
-   size about them.  False: they are no such columns. */
+/* Finds the sections of columns that all have both their ends in the same two planes, and balls of
+   one size about them.  False: they are no such columns. */
 static bool sections(const Hulling *h, const Axis *axis, double slack, HullBall *discs, Range *ends)
 {
     size_t count       = h->parts.count;
@@ -311,7 +312,7 @@ static bool sections(const Hulling *h, const Axis *axis, double slack, HullBall 
            ends_match(&h->parts, places, 0.5 * (ends->low + ends->high), slack);
 }
 
-/* Such columns: the hull of their sections, extruded. */
+/* Makes the hull of parallel columns: that of their sections, extruded. */
 static bool extruded_hull(const Hulling *h, const Axis *axis, double slack, Value *result)
 {
     HullBall *discs = arena_new_array(h->e->values, HullBall, h->parts.count);
@@ -342,7 +343,7 @@ static bool extruded_hull(const Hulling *h, const Axis *axis, double slack, Valu
     return true;
 }
 
-/* False: it is none of those that can be made. */
+/* Makes the hull of rims; false: it is none of those that can be made. */
 static bool rims_hull(const Hulling *h, bool *common, Value *result)
 {
     Axis axis    = {0};
@@ -366,7 +367,8 @@ static Value hull_with_rims(const Hulling *h)
 
 /* ---- the function and the method ---- */
 
-/* `radius`, also as the second argument, behind a list of points: a number, or one for each point. */
+/* Reads `radius`, also as the second argument, behind a list of points: a number, or one for each
+   point. */
 static bool read_radius(Hulling *h, Call *call)
 {
     Argument *radius = &call->arguments[1];
@@ -440,7 +442,7 @@ const Shape *round_hull(Elaboration *e, const Call *call, const HullParts *parts
     return result.type == VALUE_SHAPE ? result.shape : NULL;
 }
 
-/* What shapes of the scene say of themselves is put to the test, each by its hull alone. */
+/* Checks what shapes of the scene state of themselves, each by its hull alone. */
 static bool check_claimed(const Hulling *h)
 {
     for (size_t i = 0; i < h->parts.unchecked.count; i++) {

@@ -9,7 +9,8 @@
 /* hull_triangles.c has the latter. */
 BuiltinFunction builtin_hull, builtin_hull_triangles;
 Value           method_hull(Elaboration *e, const Shape *shape, Call *call);
-/* The hull of parts; NULL: they are corners of a solid, too many, or more than can be said. */
+/* Returns the hull of parts; NULL: they are corners of a solid, too many, or more than can be
+   said. */
 const Shape *round_hull(Elaboration *e, const Call *call, const HullParts *parts);
 
 #endif

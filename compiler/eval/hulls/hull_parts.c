@@ -15,7 +15,7 @@ typedef struct Place {
     double matrix[3][3], shift[3], scale;
 } Place;
 
-/* What stays the same in all parts of an argument. */
+/* The values that stay the same in all parts of an argument. */
 typedef struct Gathering {
     Elaboration  *e;
     const Call   *call;
@@ -56,7 +56,7 @@ static void place_rotate(const Place *place, const double v[3], double rotated[3
         rotated[i] = dot3(place->matrix[i], v);
 }
 
-/* place(inner(x)) */
+/* Returns place(inner(x)). */
 static Place place_product(const Place *place, const Place *inner)
 {
     Place product = {.scale = place->scale * inner->scale};
@@ -122,7 +122,7 @@ static bool add_part(const Gathering *g, const Shape *shape, const Place *place,
     return true;
 }
 
-/* `[centre, radius]` or `[centre, radius, rim]`. */
+/* Reads `[centre, radius]` or `[centre, radius, rim]`. */
 static bool read_part(Value value, HullPart *part)
 {
     double numbers[4];
@@ -166,7 +166,7 @@ static bool add_declared(const Gathering *g, const Shape *shape, const Place *pl
 
 static bool add_shape(const Gathering *g, const Shape *shape, const Place *place, double grown);
 
-/* Said once of a hull. */
+/* Warns once of a hull that it loses paint. */
 static void warn_of_paint(const Gathering *g, const Shape *shape)
 {
     if (g->parts->painted)
@@ -198,7 +198,7 @@ static bool add_extruded(const Gathering *g, const Shape *shape, const Place *pl
     return true;
 }
 
-/* CSG nodes and maps keep the hull where they are one of hulls. */
+/* Adds the parts of a shape.  CSG nodes and maps keep the hull if it is one of hulls. */
 static bool add_shape(const Gathering *g, const Shape *shape, const Place *place, double grown)
 {
     Place  inner = IDENTITY;

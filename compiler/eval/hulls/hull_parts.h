@@ -28,7 +28,7 @@ typedef struct HullParts {
     } unchecked; /* shapes of the scene whose property `hull` is used for the first time */
 } HullParts;
 
-/* The parts of what stands before the parameter `radius` of a call; false: reported. */
+/* Finds the parts of what stands before the parameter `radius` of a call; false: reported. */
 bool hull_parts(Elaboration *e, const Call *call, HullParts *parts);
 /* Adds the parts of a shape; false: reported at `syntax`. */
 bool hull_parts_of_shape(Elaboration *e, const Call *call, const Syntax *syntax, const Shape *shape,

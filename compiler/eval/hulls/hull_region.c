@@ -14,8 +14,8 @@
 #include "compiler/graph/build.h"
 #include "compiler/lower/lower.h"
 
-/* How many corners stand for a circle, and for a ball if there are no more of these: fewer where more
-   planes would be left than so many. */
+/* The numbers of corners that stand for a circle, and for a ball if there are no more of these:
+   fewer where more planes would be left than so many. */
 typedef struct Sampling {
     int    rim, ball;
     size_t most;
@@ -23,7 +23,7 @@ typedef struct Sampling {
 static const Sampling samplings[] = {{64, 200, 64}, {32, 100, SIZE_MAX}};
 enum { MAX_SAMPLED_BALLS = 4 };
 
-/* Where regions are many, their numbers of planes are multiples of this. */
+/* The number of which the planes of many regions are multiples. */
 enum { ALIKE = 4 };
 
 /* Up to which distance unit vectors count as one. */
@@ -101,7 +101,8 @@ static void add_rim(Elaboration *e, Points *points, const HullPart *part, int co
     }
 }
 
-/* Which ways faces of the hull look, or those of a solid with corners that is nearly the hull. */
+/* Adds the directions of faces of the hull, or those of a solid with corners that is nearly the
+   hull. */
 static void add_hull_faces(Elaboration *e, const HullParts *parts, const Sampling *sampling,
                            Extents *extents)
 {
@@ -145,7 +146,7 @@ static void add_distance(Region *region, Node distance, bool acts)
         array_push(region->e->values, &region->spare, distance);
 }
 
-/* Many pairs shall have as many planes, as far as possible. */
+/* Adds planes so that many pairs have equally many, as far as possible. */
 static void add_spare(Region *region)
 {
     for (size_t i = 0; i < region->spare.count && region->distances.count % ALIKE; i++)
@@ -161,7 +162,7 @@ static Node greatest(Region *region)
     return most;
 }
 
-/* dot(along, p), where it is a coordinate without a product. */
+/* Returns dot(along, p), which may be a coordinate without a product. */
 static Node height_along(const Region *region, Node along)
 {
     Graph     *g     = region->e->graph;
@@ -176,7 +177,8 @@ static Node height_along(const Region *region, Node along)
     return graph_op2(g, OP_dot, along, point);
 }
 
-/* Both parts have some of their faces in common, and with their hull. */
+/* Tells whether a direction was tried: both parts have some of their faces in common, and with
+   their hull. */
 static bool is_tried(Region *region, Node along)
 {
     const Graph *g = region->e->graph;

@@ -13,7 +13,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* What is less than this part of the size of all is rounding. */
+/* The part of the size of all below which a length is rounding. */
 static const double SLACK = 1e-11;
 /* Shorter arcs leave nothing out that single precision can tell, nor do nearer normals. */
 static const double SHORTEST_ARC = 1e-7, NEAR_NORMALS = 1e-9;
@@ -50,7 +50,7 @@ static double size_of(const HullBall *balls, size_t count)
 
 /* ---- pairs ---- */
 
-/* False: one ball has the other in it. */
+/* Makes a pair of balls; false: one has the other in it. */
 static bool pair_make(const Work *w, size_t first, size_t second, bool plane, Pair *pair)
 {
     const HullBall *a = &w->balls[first], *b = &w->balls[second];
@@ -118,8 +118,8 @@ static void add_edge(Work *w, const Pair *pair, double from, double to)
     mark_joined(w, pair);
 }
 
-/* The directions of a pair beyond which another ball reaches: `arc_ends` gets where they begin and
-   end, from -PI to PI.  False: all of them. */
+/* Finds the directions of a pair beyond which another ball reaches: `arc_ends` gets where they
+   begin and end, from -PI to PI. False: all of them. */
 static bool hide_behind(Work *w, const Pair *pair, size_t other, size_t *end_count)
 {
     const HullBall *a = &w->balls[pair->first], *c = &w->balls[other];
@@ -152,7 +152,7 @@ static int compare_arc_ends(const void *left, const void *right)
     return b->change - a->change; /* what begins where another ends leaves no gap */
 }
 
-/* What is left of the circle: an edge for each arc.  The first and the last may be one. */
+/* Adds an edge for each arc that is left of the circle.  The first and the last may be one. */
 static void add_edges(Work *w, const Pair *pair, size_t end_count)
 {
     double from = -PI, first_end = -PI;
@@ -229,7 +229,7 @@ static void add_corner(Work *w, size_t index)
 
 /* ---- all ---- */
 
-/* Balls that are in no other one; of equal ones the first. */
+/* Finds the balls that are in no other one; of equal ones the first. */
 static size_t outer_balls(const HullBall *balls, size_t count, double slack, HullBall *outer)
 {
     size_t kept = 0;
@@ -269,8 +269,8 @@ HullSupports hull_supports(Arena *arena, const HullBall *balls, size_t count, bo
     return w.hull;
 }
 
-/* The centre that is farthest from a point, a line or a plane through the first one: what is left
-   of its offset when the parts along unit vectors are taken away.  Returns its size. */
+/* Returns the centre that is farthest from a point, a line or a plane through the first one: what
+   is left of its offset when the parts along unit vectors are taken away.  Returns its size. */
 static double farthest(const HullBall *balls, size_t count, double (*along)[3], int known)
 {
     double most = 0;

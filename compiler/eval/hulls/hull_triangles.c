@@ -21,7 +21,7 @@ static Value refuse(Elaboration *e, const Call *call, const char *what)
     return value_error();
 }
 
-/* A point, three numbers that are known now. */
+/* Reads a point, three numbers that are known now. */
 static bool read_point(Value value, coordT *point)
 {
     if (value.type != VALUE_LIST || value.list->count != 3)
@@ -54,7 +54,7 @@ static bool faces_outwards(coordT *const corners[3], const coordT *normal)
     return dot3(across, normal) > 0;
 }
 
-/* The three corners of a facet, counterclockwise as seen from outside. */
+/* Returns the three corners of a facet, counterclockwise as seen from outside. */
 static Value triangle_value(Elaboration *e, const facetT *facet)
 {
     Value  *corners = arena_new_array(e->values, Value, 3);

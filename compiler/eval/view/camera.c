@@ -20,7 +20,7 @@ static Node ask_angle(const Asked *a, const char *name, const double otherwise[4
     return ask_number(a, name, otherwise);
 }
 
-/* The length along the view up to a point. */
+/* Returns the length along the view up to a point. */
 static Node length_up_to(Graph *g, Node point, const CameraNodes *camera)
 {
     Node offset = graph_op2(g, OP_sub, point, camera->eye);

@@ -16,7 +16,7 @@ static Node ask_color(const Asked *a, const char *name, const double otherwise[4
     return ask_axis(a, name, otherwise);
 }
 
-/* Two lengths. */
+/* Returns two lengths. */
 static Node ask_sides(const Asked *a, const char *name, const double otherwise[4])
 {
     Elaboration  *e     = a->e;
@@ -57,7 +57,7 @@ static void warn_of_light(const Asked *a)
     }
 }
 
-/* Those that only lights at a position have. */
+/* Refuses properties that only lights at a position have. */
 static void refuse_placed(Elaboration *e, const Syntax *syntax)
 {
     static const struct {

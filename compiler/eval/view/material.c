@@ -17,7 +17,7 @@ static void not_a_colour(Elaboration *e, const Syntax *syntax, Value value, cons
         diag->help = "a texture has a colour at each place: `t(u, v)`, or `t(x, z)`";
 }
 
-/* A direction that may depend on the point, of any length. */
+/* Finds a direction that may depend on the point, of any length. */
 static void direction_property(Elaboration *e, const Syntax *syntax, Value value, Node *property)
 {
     Node node = value_node(e, value);
@@ -27,7 +27,7 @@ static void direction_property(Elaboration *e, const Syntax *syntax, Value value
         type_error(e, syntax, value, "a direction, such as `[1, 0, 0]`");
 }
 
-/* A number or a colour that may depend on the point; *property stays when it is not given. */
+/* Finds a number or a colour that may depend on the point; *property stays when it is not given. */
 static void material_property(Elaboration *e, const Environment *env, const Syntax *block,
                               const char *name, GraphType type, bool limited, Node *property)
 {
@@ -52,7 +52,7 @@ static void material_property(Elaboration *e, const Environment *env, const Synt
         type_error(e, syntax, value, "a number");
 }
 
-/* Materials of one name are one: each call of a material with parameters makes another. */
+/* Returns the number of a material's name: each call of a material with parameters makes another. */
 static uint32_t number_of_name(Elaboration *e, const char *name)
 {
     Scene *scene = e->scene;
@@ -75,7 +75,7 @@ static Material *material_new(Elaboration *e, const char *name)
     return material;
 }
 
-/* The range of a property; at points it may be anything that pictures permit. */
+/* Returns the range of a property; at points it may be anything that pictures permit. */
 static Range property_range(Elaboration *e, Node property)
 {
     const bool varies = e->graph->items[property].time == TIME_POINT;

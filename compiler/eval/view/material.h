@@ -6,7 +6,7 @@
 
 #include "compiler/eval/elaborate.h"
 
-/* A material, or a colour that becomes one; NULL: reported. */
+/* Returns a material, or a colour that becomes one; NULL: reported. */
 const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
 
 /* palette.c: `.color_by`. */

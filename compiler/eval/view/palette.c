@@ -29,7 +29,7 @@ static const Choices palette_names = {
     .count   = sizeof palettes / sizeof *palettes,
 };
 
-/* The colours of a palette's name, the first one's without an argument; 0: reported. */
+/* Returns the colours of a palette's name, the first one's without an argument; 0: reported. */
 static uint32_t named_colors(Elaboration *e, const Argument *argument, Node *colors)
 {
     uint32_t chosen;
@@ -50,7 +50,7 @@ static const Syntax *stop_syntax(const Syntax *written, const List *list, size_t
     return elements ? written->children[index] : written;
 }
 
-/* The colours of a list of them; 0: reported. */
+/* Returns the colours of a list of them; 0: reported. */
 static uint32_t listed_colors(Elaboration *e, const Argument *argument, Node *colors)
 {
     const List *list  = argument->value.type == VALUE_LIST ? argument->value.list : NULL;
@@ -69,7 +69,8 @@ static uint32_t listed_colors(Elaboration *e, const Argument *argument, Node *co
     return 0;
 }
 
-/* The first colour and, for each that follows, as much of the way there as the field is past. */
+/* Returns the first colour and, for each that follows, as much of the way there as the field is
+   past. */
 static Node color_at(Graph *g, Node field, const Node *colors, uint32_t count)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1), color = colors[0];

@@ -11,7 +11,7 @@
 /* The largest picture: 128 MiB on the device, and a third more to choose directions by. */
 enum { MAX_SKY_SIDE = 1 << 13, MAX_SKY_TEXELS = 1 << 23 };
 
-/* Red, green and blue; what is negative is 0. */
+/* Makes a map of red, green and blue; negative numbers become 0. */
 static const KrsSkyMap *make_map(Elaboration *e, const Image *image)
 {
     const uint32_t channels = image_channels(image);
@@ -45,7 +45,7 @@ static const KrsSkyMap *read_map(Elaboration *e, const Syntax *syntax, const cha
     return map;
 }
 
-/* The picture of the sky; NULL: there is none, or it is reported. */
+/* Returns the picture of the sky; NULL: there is none, or it is reported. */
 static const KrsSkyMap *sky_image(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     const Syntax *image = find_property(syntax, "image");
@@ -126,7 +126,7 @@ void complete_sky(Elaboration *e)
 
 /* ---- all skies ---- */
 
-/* A colour of the sky, times its intensity; of daylight `ground` is an albedo. */
+/* Returns a colour of the sky, times its intensity; of daylight `ground` is an albedo. */
 static Node sky_colour(Elaboration *e, const Environment *env, const Syntax *syntax,
                        const char *name, const double otherwise[3])
 {

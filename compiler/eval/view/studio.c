@@ -18,7 +18,7 @@ void plan_boxes(Elaboration *e)
     box_plan_states(e->builder, shapes, count, &e->scene->boxes);
 }
 
-/* Around all boxes, or infinite where one of them is. */
+/* Returns the box around all boxes, which is infinite if one of them is. */
 static Box box_around(const Box *boxes, size_t count)
 {
     Box box = box_empty;
@@ -79,7 +79,7 @@ static double lowest_of_level_rays(Elaboration *e)
     return lowest;
 }
 
-/* A height that is found for each state, in this box as a rule. */
+/* Returns a height that is found for each state, in this box as a rule. */
 static Node state_floor(Elaboration *e, Box box)
 {
     StateFloor          *floor = &e->scene->floor;
@@ -95,7 +95,7 @@ static Node state_floor(Elaboration *e, Box box)
     return graph_parameter(e->graph, floor->slot, TYPE_FLOAT);
 }
 
-/* The scope of the library's file, whose statements are run like those of the scene. */
+/* Returns the scope of the library's file, whose statements are run like those of the scene. */
 static Scope *find_studio(const Elaboration *e, const Files *files)
 {
     for (size_t i = 0; i < files->count; i++)

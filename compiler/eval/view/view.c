@@ -11,7 +11,7 @@
 
 static const double ORIGIN[3] = {0, 0, 0};
 
-/* 1 over the height, unless that is 0: then the fog is as dense everywhere. */
+/* Returns 1 over the height, unless that is 0: then the fog is as dense everywhere. */
 static Node fog_fall(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Node          height = number_property(e, env, syntax, "height", 0);
@@ -22,7 +22,7 @@ static Node fog_fall(Elaboration *e, const Environment *env, const Syntax *synta
     return graph_op2(e->graph, OP_div, graph_number(e->graph, 1), height);
 }
 
-/* Its color is that of the horizon, unless given. */
+/* Sets the fog, whose color is that of the horizon, unless given. */
 static void set_fog(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     static const double grey[3] = {0.56, 0.6, 0.66};

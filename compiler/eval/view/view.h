@@ -23,13 +23,13 @@ Node ask_pair(const Asked *a, const char *name, const double otherwise[4]);
 /* ---- light.c ---- */
 /* Adds a light to the scene. */
 void elaborate_light(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* A light with the properties of a block, the others as lights.def says. */
+/* Reads a light with the properties of a block, the others as lights.def says. */
 SceneLight read_light(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- camera.c ---- */
 /* Adds a camera to the scene. */
 void elaborate_camera(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* A camera with the properties of a block, the others as camera.def says. */
+/* Reads a camera with the properties of a block, the others as camera.def says. */
 SceneCamera read_camera(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- sky.c ---- */

@@ -84,7 +84,7 @@ Jet jet_dot(const Fact *a, const Fact *b, uint32_t size)
     return sum;
 }
 
-/* Every derivative is at most `most` in size. */
+/* Limits the size of every derivative to `most`. */
 static void jet_limit(Jet *jet, double most)
 {
     for (int j = 0; j < 3; j++)
@@ -118,8 +118,8 @@ Fact fact_of_truth(const RuleInput *input, uint32_t count, Range value)
 
 /* ---- slopes from gradients ---- */
 
-/* Largest singular value of the size x 3 matrix m: root of the largest eigenvalue of m^T m, by
-   the trigonometric formula, plus more than it can lose. */
+/* Returns the largest singular value of the size x 3 matrix m: the root of the largest eigenvalue
+   of m^T m, by the trigonometric formula, plus more than it can lose. */
 static double largest_singular_value(double m[4][3], uint32_t size)
 {
     double a[3][3], deviation = 0;

@@ -17,7 +17,7 @@ static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_
 
 /* ---- facts of nodes ---- */
 
-/* What facts are computed for: the needed nodes, each with its index in `facts`. */
+/* The needed nodes for which facts are computed, each with its index in `facts`. */
 typedef struct Analysis {
     const Graph *graph;
     Tape         tape;
@@ -31,7 +31,7 @@ static Fact *analysis_fact(const Analysis *analysis, Node node)
     return &analysis->facts[analysis->whole ? node : tape_index(&analysis->tape, node)];
 }
 
-/* What each component of a leaf lies in. */
+/* The range of each component of a leaf. */
 static const Range leaf_ranges[OP_COUNT] = {
 #define LEAF(name, text, type, low, high, value, meaning) [OP_##name] = {low, high},
 #include "compiler/graph/ops.def"
@@ -143,7 +143,7 @@ static double cell_slope(const Analysis *analysis, Node root, Box box)
     return analysis_fact(analysis, root)->slope;
 }
 
-/* A place to cut: the middle, or further and further out where there is none. */
+/* Returns a place to cut: the middle, or further and further out where there is none. */
 static double range_cut(Range a)
 {
     if (a.low > -HUGE_VAL && a.high < HUGE_VAL)
@@ -197,7 +197,7 @@ static bool cutting_helps(const Analysis *analysis, Node root, Cell cell)
     return cell_slope(analysis, root, middle) < cell.slope * (1 - 1e-9);
 }
 
-/* How many facts are found at most, about, to make a bound less that there is. */
+/* The facts, about, that are found at most to make a bound less that there is. */
 enum { MOST_FACTS = 1 << 18 };
 
 /* Cuts the steepest cell in two until there are `cells`; the steepest is then the first.  A long
@@ -222,8 +222,8 @@ static void heap_refine(const Analysis *analysis, Node root, Cell *heap, size_t 
     }
 }
 
-/* Down the steepest operands: the node where the slope first becomes infinite or, when it never
-   does, the one that multiplies it most. */
+/* Goes down the steepest operands: to the node where the slope first becomes infinite or, when it
+   never does, the one that multiplies it most. */
 static Node analysis_blame(const Analysis *analysis, Node root)
 {
     Node   worst = root;

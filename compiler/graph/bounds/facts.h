@@ -18,16 +18,16 @@ typedef struct Fact {
     double slope;          /* Lipschitz constant with respect to the point, Euclidean norms */
 } Fact;
 
-/* A fact per node of the graph for points in the box and parameters in their ranges (or, where
-   `parameters` is given, at these very values: NodeValue-like rows of 4 doubles per slot). */
+/* Returns a fact per node of the graph for points in the box and parameters in their ranges (or,
+   where `parameters` is given, at these very values: NodeValue-like rows of 4 doubles per slot). */
 Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Arena *arena);
 
 /* frame_ranges.c: range of a component of a node that does not depend on the point, over the ranges
    of the parameters. */
 Range graph_frame_range(const Graph *graph, Node node, uint32_t component, Arena *scratch);
 
-/* The slope of `root` over a box, refined by cutting the box into at most `cells` cells; inf
-   when there is no bound. `*blame` (may be NULL) is the node whose slope first became infinite
+/* Returns the slope of `root` over a box, refined by cutting the box into at most `cells` cells;
+   inf when there is no bound.  `*blame` (may be NULL) is the node whose slope first became infinite
    or contributes most. */
 double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4],
                    uint32_t cells, Node *blame, Arena *scratch);
@@ -42,7 +42,7 @@ typedef struct SlopeTask {
 
 /* The tape is in the arena; the graph must live as long. */
 SlopeTask slope_task(const Graph *graph, Node root, Box box, uint32_t cells, Arena *arena);
-/* Bytes that it needs to be run, aligned as doubles. */
+/* Returns the bytes that a task needs to be run, aligned as doubles. */
 size_t slope_task_size(const SlopeTask *task);
 /* Finds the slope as graph_slope does. */
 double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *workspace,
@@ -54,14 +54,14 @@ typedef struct RangeTask {
     Fact *facts;
 } RangeTask;
 
-/* Task and facts are in the arena; the graph must live as long. */
+/* Makes a task, with its facts, in the arena; the graph must live as long. */
 RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena);
 void      range_task_run(const RangeTask *task, Box box);
 /* Return the values of a FLOAT that a root needs, over the box of the last run, and how fast it changes there. */
 Range  range_task_value(const RangeTask *task, Node node);
 double range_task_slope(const RangeTask *task, Node node);
 
-/* The fact of one operation from the facts of its operands: the rule of its row. */
+/* Returns the fact of one operation from the facts of its operands: the rule of its row. */
 Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,
              const double *constant);
 

@@ -42,7 +42,7 @@ static bool is_defined_nowhere(Op op, const Range *divisor, uint32_t size)
     return false;
 }
 
-/* A MAP row, and what vectors are made of; false: another one. */
+/* Finds the range of a MAP row, and of what vectors are made of; false: it is another one. */
 static bool common_range(Op op, uint32_t index, uint32_t size, Range *const *o,
                          uint32_t operand_count, Range *result)
 {
@@ -157,8 +157,8 @@ static void keep_ranges(const Graph *graph, Node node, Arena *scratch)
     keep_range(graph, node);
 }
 
-/* The range of a node that depends on parameters.  Those of all such nodes that it needs stand in
-   the table meanwhile. */
+/* Returns the range of a node that depends on parameters.  Those of all such nodes that it needs
+   stand in the table meanwhile. */
 static Range range_of_varying(const Graph *graph, Node node, uint32_t component, Arena *scratch)
 {
     Range   **ranges = graph->frame_ranges->items;

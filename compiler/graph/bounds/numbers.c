@@ -3,7 +3,7 @@
 
 /* ---- what the columns of ranges are written in ---- */
 
-/* A component over the length of its vector; 0 of 0. */
+/* Returns a component over the length of its vector; 0 of 0. */
 static Range range_unit_part(Range a, Range length)
 {
     const Range unit = {-1 - 0x1p-48, 1 + 0x1p-48};
@@ -12,7 +12,7 @@ static Range range_unit_part(Range a, Range length)
     return range_intersect((Range){a.low < 0 ? unit.low : 0, a.high > 0 ? unit.high : 0}, unit);
 }
 
-/* Where the period is above 0, whole periods are taken off; behind the first and the last cell no more
+/* Takes whole periods off where the period is above 0; behind the first and the last cell no more
    than there. */
 static Range range_moved(Range p, Range period, Range first, Range last)
 {
@@ -39,7 +39,7 @@ static bool is_in_one_cell(Range p, Range period, Range first, Range last)
     return period.high <= 0 || (period.low > 0 && is_finite(p) && range_is_single(cell));
 }
 
-/* Clamp of 1/2 + (b - a) / 2k, and its derivative by b. */
+/* Returns the range of 1/2 + (b - a) / 2k between 0 and 1, and its derivative by b. */
 static Range range_weight(Range a, Range b, Range k)
 {
     const Range bounds = {0, 1};
@@ -55,7 +55,7 @@ static Range range_weight_slope(Range k, Range weight)
     return weight.low > 0 && weight.high < 1 ? steep : range_hull(steep, ZERO);
 }
 
-/* 6 (1 - 2 t) / (b - a)^2 with t = (c - a) / (b - a) from 0 to 1, and 0 beyond. */
+/* Returns 6 (1 - 2 t) / (b - a)^2 with t = (c - a) / (b - a) from 0 to 1, and 0 beyond. */
 static Range bend_of_smoothstep(Range a, Range b, Range c)
 {
     Range width = plus(b, minus(a)), t = range_div(plus(c, minus(a)), width);
@@ -80,7 +80,7 @@ static unsigned lesser(Range a, Range b)
     return a.high <= b.low ? A : b.high <= a.low ? B : A | B;
 }
 
-/* min(max(a, b), c) */
+/* Returns the operands that min(max(a, b), c) may be. */
 static unsigned clamped(Range a, Range b, Range c)
 {
     Range    above = range_max(a, b);

@@ -11,10 +11,10 @@
 #include "compiler/graph/graph.h"
 #include "compiler/graph/range.h"
 
-/* How slopes combine: ops.def. */
+/* The ways in which slopes combine: ops.def. */
 typedef enum Norm { NORM_SUM, NORM_CONVEX, NORM_MIX, NORM_NONE } Norm;
 
-/* What the columns of derivatives are written in. */
+/* The columns of derivatives are written in these ranges. */
 #define ZERO      range_of(0)
 #define ONE       range_of(1)
 #define MINUS_ONE range_of(-1)
@@ -22,7 +22,7 @@ typedef enum Norm { NORM_SUM, NORM_CONVEX, NORM_MIX, NORM_NONE } Norm;
 #define HALF      range_of(0.5)
 #define LN2       ((Range){0.69314718055994528, 0.6931471805599454})
 
-/* Which operands something may be, or which are meant: ops.def. */
+/* The operands that something may be, or that are meant: ops.def. */
 enum { CHOOSES_A = 1, CHOOSES_B = 2, CHOOSES_C = 4, CHOOSES_D = 8 };
 
 /* All get the ranges of MAX_OPERANDS operands, of which `arity` count; r is that of the result. */

@@ -37,7 +37,8 @@ static Fact fact_vector(const RuleInput *input)
     return fact;
 }
 
-/* |(u . v)'| and |(u x v)'| are at most |u| |v'| + |v| |u'|, and so is |(s v)'|. */
+/* Bounds the slope of a product: |(u . v)'| and |(u x v)'| are at most |u| |v'| + |v| |u'|, and so
+   is |(s v)'|. */
 static double slope_product(const RuleInput *input)
 {
     const Fact *u = &input->operands[0], *v = &input->operands[1];
@@ -96,7 +97,7 @@ static Fact fact_length(const RuleInput *input)
     return fact;
 }
 
-/* The derivative of v, less its part along v, over the length of v. */
+/* Returns the derivative of v, less its part along v, over the length of v. */
 static Fact fact_normalize(const RuleInput *input)
 {
     const Fact *v        = &input->operands[0];
@@ -126,14 +127,14 @@ static Fact fact_component(const RuleInput *input)
 
 /* ---- OP rows: truth and choice ---- */
 
-/* What the row says of the numbers that are operands. */
+/* Finds what the row says of the numbers that are operands. */
 static void value_ranges(const RuleInput *input, Range *ranges)
 {
     for (uint32_t k = 0; k < MAX_OPERANDS; k++)
         ranges[k] = k < number_rows[input->op].arity ? input->operands[k].value[0] : ZERO;
 }
 
-/* Where a condition is neither always true nor never, its value may jump. */
+/* Returns the fact of a condition: where it is neither always true nor never, its value may jump. */
 static Fact fact_truth(const RuleInput *input)
 {
     const NumberRow *row = &number_rows[input->op];
@@ -142,7 +143,7 @@ static Fact fact_truth(const RuleInput *input)
     return fact_of_truth(input, row->arity, row->range(ranges));
 }
 
-/* Where the condition changes within the box, the value may jump. */
+/* Returns the fact of a choice: where the condition changes within the box, the value may jump. */
 static Fact fact_select(const RuleInput *input)
 {
     const Fact *truth = &input->operands[0], *yes = &input->operands[1], *no = &input->operands[2];
@@ -162,7 +163,7 @@ static Fact fact_select(const RuleInput *input)
     return fact;
 }
 
-/* Where a guard goes from one case to the other, its value jumps. */
+/* Returns the fact of a guard: where it goes from one case to the other, its value jumps. */
 static Fact fact_guard(const RuleInput *input)
 {
     const NumberRow *row = &number_rows[OP_guard];
@@ -221,7 +222,7 @@ static Fact fact_constant(const RuleInput *input, const double *constant)
     return fact;
 }
 
-/* A MAP row. */
+/* Returns a MAP row. */
 static Fact fact_of_numbers(const RuleInput *input)
 {
     const NumberRow *row = &number_rows[input->op];

@@ -37,17 +37,17 @@ Jet  jet_add(Jet a, Jet b);
 Jet  jet_sub(Jet a, Jet b);
 Jet  jet_mul(Jet a, Jet b);
 Jet  jet_hull(Jet a, Jet b);
-/* The jet times a factor that is the same all over the box. */
+/* Returns the jet times a factor that is the same all over the box. */
 Jet jet_times(Jet a, Range factor);
 Jet jet_dot(const Fact *a, const Fact *b, uint32_t size);
 
-/* Nothing is known of `size` components; rules put in what they can say. */
+/* Returns a fact of `size` components of which nothing is known; rules put in what they can say. */
 Fact fact_unknown(uint32_t size);
-/* Range of the Euclidean length of a vector. */
+/* Returns the range of the Euclidean length of a vector. */
 Range length_range(const Range *sides, uint32_t size);
-/* Room for the rounding of a computation with numbers of this size. */
+/* Returns a range with room for the rounding of a computation with numbers of this size. */
 Range loosened(Range range, double scale);
-/* A component of the unit vector along a vector of this length. */
+/* Returns a component of the unit vector along a vector of this length. */
 static inline Range unit_component(Range component, Range length)
 {
     Range sides = {component.low < 0 ? -1 : 0, component.high > 0 ? 1 : 0};
@@ -61,19 +61,19 @@ typedef struct Partials {
     Range value, by[MAX_OPERANDS];
 } Partials;
 
-/* A MAP row: the operands weighted by partial derivatives, component by component. */
+/* Returns a MAP row: the operands weighted by partial derivatives, component by component. */
 Fact fact_map(Norm norm, int arity, const Fact *operands, const Partials *rows, uint32_t size);
-/* Both engines meet: the smaller slope counts, and no derivative is larger.  Ends out of order
+/* Joins both engines: the smaller slope counts, and no derivative is larger.  Ends out of order
    come from operands that are defined nowhere in the box. */
 Fact fact_agreed(Fact fact, uint32_t size);
 
-/* A truth value of so many operands: 1, 0, or, where it may jump, both. */
+/* Returns a truth value of so many operands: 1, 0, or, where it may jump, both. */
 Fact fact_of_truth(const RuleInput *input, uint32_t count, Range value);
 
 /* ---- rules of rows ---- */
 
-/* What a rule says of the value alone, of `size` components, from those of the operands; NULL: the row
-   has no RANGES. */
+/* Finds the range of the value alone, of `size` components, from those of the operands; NULL: the
+   row has no RANGES. */
 typedef void RangeRule(uint32_t size, Range *const *operands, Range *result);
 RangeRule   *range_rule(Op op);
 RangeRule    range_scale, range_cross, range_normalize;

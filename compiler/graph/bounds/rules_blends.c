@@ -12,7 +12,7 @@ static double smooth_corner(const RuleInput *input, double a, double b, double k
     return op_evaluate(input->op, TYPE_FLOAT, 0, types, operands).v[0];
 }
 
-/* All grow with a and b and shrink with k. */
+/* Returns the range of a blend, which grows with a and b and shrinks with k. */
 static Range smooth_range(const RuleInput *input, double n)
 {
     Range  a = input->operands[0].value[0], b = input->operands[1].value[0];
@@ -50,7 +50,7 @@ static Fact smooth_mean(const RuleInput *input, uint32_t count, Range value)
     return fact_smooth(input, count, value, fmax(a->slope, b->slope), either);
 }
 
-/* The same where one of them is 1 further apart than the width. */
+/* Returns the same where one of them is 1 further apart than the width. */
 static Fact smooth_mean_within(const RuleInput *input, uint32_t count, Range value)
 {
     const Fact *a = &input->operands[0], *b = &input->operands[1];
@@ -108,7 +108,8 @@ Fact fact_smin_chamfer(const RuleInput *input)
     return fact_smooth(input, 3, smooth_range(input, 0), slope, hull);
 }
 
-/* On each step one of a and b has the derivative 1 and the other 0 (op_values.c). */
+/* Returns the fact of stairs: on each step one of a and b has the derivative 1 and the other 0
+   (op_values.c). */
 Fact fact_smin_stairs(const RuleInput *input)
 {
     Range  a = input->operands[0].value[0], b = input->operands[1].value[0];
@@ -124,7 +125,7 @@ Fact fact_smin_stairs(const RuleInput *input)
 
 /* ---- of several numbers that share the result ---- */
 
-/* All components of the vectors at their least, or at their greatest. */
+/* Returns the value at all components of the vectors at their least, or at their greatest. */
 static double shares_corner(const RuleInput *input, uint32_t vectors, bool high, double width)
 {
     NodeValue operands[MAX_OPERANDS] = {{{0}}};
@@ -137,7 +138,7 @@ static double shares_corner(const RuleInput *input, uint32_t vectors, bool high,
     return op_evaluate(input->op, TYPE_FLOAT, 0, input->types, operands).v[0];
 }
 
-/* `grows`: with the width, too.  A result shrinks with it. */
+/* Returns the range of a blend; `grows`: with the width, too.  A result shrinks with it. */
 static Range shares_range(const RuleInput *input, uint32_t vectors, bool grows)
 {
     Range  k     = input->operands[vectors].value[0];

@@ -26,7 +26,7 @@ Fact fact_rotate(const RuleInput *input)
     return fact;
 }
 
-/* dot(u, p) - w, the height above a mirror. */
+/* Returns dot(u, p) - w, the height above a mirror. */
 static Jet mirror_height(const RuleInput *input)
 {
     Jet along = jet_dot(&input->operands[1], &input->operands[0], 3);
@@ -195,8 +195,8 @@ Fact fact_footprint(const RuleInput *input)
 
 /* ---- fractals ---- */
 
-/* The value in the middle of the point's range, and how far from there the point can be; false
-   where other operands move. */
+/* Finds the value in the middle of the point's range, and how far from there the point can be;
+   false where other operands move. */
 static bool fractal_middle(const RuleInput *input, uint32_t others, double *middle, double *reach)
 {
     NodeValue operands[MAX_OPERANDS] = {0};
@@ -267,7 +267,7 @@ Fact fact_trap(const RuleInput *input)
 
 static Range either_sign(double size) { return (Range){-size, size}; }
 
-/* Room for the rounding of sums and products. */
+/* Returns a bound with room for the rounding of sums and products. */
 static double rounded_up(double bound) { return bound * (1 + 0x1p-48); }
 
 static Jet channel_jet(const Texture *texture, int channel, const Fact *uv)
@@ -280,7 +280,8 @@ static Jet channel_jet(const Texture *texture, int channel, const Fact *uv)
     return sum;
 }
 
-/* Coarser levels have the same range; of their slopes nothing is needed. */
+/* Returns the fact of a texture.  Coarser levels have the same range; of their slopes nothing is
+   needed. */
 static Fact texture_fact(const Texture *texture, bool one, const Fact *uv, const Fact *pixel)
 {
     Fact fact = fact_unknown(TEXTURE_CHANNELS);

@@ -46,7 +46,7 @@ enum {
 #define FLAT_IN_CELLS   1.75  /* how far away what decides in a cell of a flat grid may be */
 #define SMALLEST_SIDE   1e-12 /* of a cell */
 
-/* Not so where a coordinate is not a number. */
+/* Tells whether a box is bounded, which it is not if a coordinate is not a number. */
 static bool box_is_bounded(const Box *box)
 {
     for (int k = 0; k < 3; k++)
@@ -96,7 +96,7 @@ bool grid_box_is_empty(const Box *box)
     return false;
 }
 
-/* The cells that are up to `distance` away from a box along each axis. */
+/* Returns the cells that are up to `distance` away from a box along each axis. */
 static Cover cover_box(const Builder *b, const Box *box, double distance)
 {
     Cover cover;
@@ -171,7 +171,7 @@ static void find_inner(Builder *b)
     }
 }
 
-/* One layer of cells around the plane. */
+/* Places one layer of cells around the plane. */
 static void place_flat(Builder *b)
 {
     Grid *grid     = b->grid;
@@ -181,8 +181,8 @@ static void place_flat(Builder *b)
     b->seen        = fmax(b->seen, FLAT_IN_CELLS * grid->size + b->pad[0] + b->pad[1]);
 }
 
-/* Cells of this side around `inner` and a margin.  Corners are single precision numbers, and so is
-   1 / side, as shaders have them. */
+/* Places cells of this side around `inner` and a margin.  Corners are single precision numbers, and
+   so is 1 / side, as shaders have them. */
 static void place_cells(Builder *b, double side)
 {
     Grid *grid = b->grid;
@@ -228,7 +228,7 @@ static double max_entries(const Builder *b)
     return fmax((double)ENTRIES_PER_INSTANCE * b->present, few) + SPARE_ENTRIES;
 }
 
-/* The least side with few enough cells. */
+/* Returns the least side with few enough cells. */
 static double min_side(Builder *b)
 {
     double most    = max_cells(b);
@@ -248,7 +248,7 @@ static double min_side(Builder *b)
     return high;
 }
 
-/* No fewer than the entries of all lists. */
+/* Returns no fewer than the entries of all lists. */
 static double count_entries(const Builder *b)
 {
     double entries = 0;
@@ -265,7 +265,8 @@ static double count_entries(const Builder *b)
     return entries;
 }
 
-/* In the end there is one cell, which has as many entries as there are boxes. */
+/* Chooses the size of cells.  In the end there is one cell, which has as many entries as there are
+   boxes. */
 static void choose_cells(Builder *b)
 {
     double side = min_side(b);
@@ -310,7 +311,7 @@ void grid_begin_lists(Grid *grid, Arena *arena)
     grid->instances = arena_new_array(arena, uint32_t, entries + 1);
 }
 
-/* Each first[] is now where the next list begins. */
+/* Ends the lists: each first[] is where the next list begins. */
 void grid_end_lists(Grid *grid)
 {
     for (size_t c = grid_cell_count(grid); c > 0; c--)
@@ -344,7 +345,8 @@ static void visit_cells(const Builder *b, uint32_t instance, Slab slab)
     }
 }
 
-/* What is true of the center of a cell is true of all of it but for half of the diagonal. */
+/* Visits a flat cell.  What is true of its center is true of all of it but for half of the
+   diagonal. */
 static void visit_flat_cell(const Builder *b, uint32_t instance, size_t cell,
                             const double center[2], double gap)
 {
@@ -377,7 +379,7 @@ static void visit_flat_cells(const Builder *b, uint32_t instance, Slab slab)
     }
 }
 
-/* The lists of a slab. */
+/* Visits the lists of a slab. */
 static void visit_all(void *task, size_t part, size_t parts)
 {
     const Builder *b    = task;
@@ -391,7 +393,7 @@ static void visit_all(void *task, size_t part, size_t parts)
             visit_cells(b, i, slab);
 }
 
-/* A distance for each cell, to be found. */
+/* Returns a distance for each cell, to be found. */
 static float *endless_distances(const Builder *b)
 {
     const size_t cells     = grid_cell_count(b->grid);
@@ -425,7 +427,7 @@ static void fill_lists(Builder *b, Arena *arena)
 
 /* ---- Distances in cells to the nearest cell with a box ---- */
 
-/* 0 in cells that touch a cell with a part of this box. */
+/* Marks cells that touch a cell with a part of this box by 0. */
 static void mark_box(const Builder *b, const Box *box, double *squares, Slab slab)
 {
     const Grid *grid  = b->grid;
@@ -474,7 +476,7 @@ static double *cells_to_boxes(const Builder *b)
 
 static float rounded_down(double number) { return (float)fmax(number * ROUNDED_DOWN, FLT_MIN); }
 
-/* When all lists are filled. */
+/* Finds the clearances when all lists are filled. */
 static void find_clearances(const Builder *b, Arena *arena)
 {
     Grid         *grid    = b->grid;
@@ -493,7 +495,7 @@ static void find_clearances(const Builder *b, Arena *arena)
 
 /* ---- All ---- */
 
-/* False: nothing has an end, or there is nothing. */
+/* Begins to build; false: nothing has an end, or there is nothing. */
 static bool begin(Builder *b)
 {
     *b->grid = (Grid){0};
@@ -543,7 +545,7 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
     build(&b, arena);
 }
 
-/* Around few and large cells each instance is in 8 of them at most. */
+/* Returns the limits of few and large cells, of which an instance is in 8 at most. */
 GridLimits grid_limits_of_frame(uint32_t count)
 {
     const double most = (double)OF_FRAME * count + SPARE_OF_FRAME;
@@ -559,7 +561,7 @@ void grid_build_within(Grid *grid, const Box *boxes, uint32_t count, double reac
     build(&b, arena);
 }
 
-/* Large cells, if there are few enough boxes. */
+/* Places large cells, if there are few enough boxes. */
 static bool place_coarse(Builder *b)
 {
     b->coarse = true;

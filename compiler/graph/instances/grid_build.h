@@ -16,26 +16,26 @@
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                 uint32_t texels, Arena *arena, Arena *scratch);
 
-/* What a grid has at most: cells, and entries of all lists together. */
+/* The limits of a grid: cells, and entries of all lists together. */
 typedef struct GridLimits {
     double cells, entries;
 } GridLimits;
 
-/* Those of a grid that is built for each frame, of so many boxes. */
+/* Returns the limits of a grid that is built for each frame, of so many boxes. */
 GridLimits grid_limits_of_frame(uint32_t count);
 
-/* The same as grid_build, within limits that one cell for all is always within. */
+/* Does the same as grid_build, within limits that one cell for all is always within. */
 void grid_build_within(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                        GridLimits most, Arena *arena, Arena *scratch);
 
 /*
- * The same with large cells, for grid_refine.  False: all of space would be one cell, or lists would be so
- * long that refining them takes too long; then there is no grid.
+ * Does the same with large cells, for grid_refine.  False: all of space would be one cell, or lists
+ * would be so long that refining them takes too long; then there is no grid.
  */
 bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                        Arena *arena, Arena *scratch);
 
-/* How many cells a cell becomes when a grid is refined, along each axis and in all. */
+/* The cells that a cell becomes when a grid is refined, along each axis and in all. */
 enum { GRID_REFINED_ALONG = 4, GRID_REFINED = 64 };
 
 /* Instances in the plane z = 0, of which the nearest one decides. */
@@ -45,9 +45,9 @@ typedef struct GridInstances {
 } GridInstances;
 
 /*
- * The same for instances in that plane, with one layer of cells.  Where something is so near to a cell
- * that it may be in it, the list has all instances that are nearest anywhere in the cell; its clearance
- * is NOWHERE.  So no instance is in a cell with another clearance.
+ * Does the same for instances in that plane, with one layer of cells.  Where something is so near
+ * to a cell that it may be in it, the list has all instances that are nearest anywhere in the cell;
+ * its clearance is NOWHERE. So no instance is in a cell with another clearance.
  */
 void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,
                      GridInstances instances, Arena *arena, Arena *scratch);

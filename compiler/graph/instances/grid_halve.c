@@ -19,7 +19,7 @@
 #include "compiler/graph/instances/grid_build.h"
 #include "compiler/graph/op_values.h"
 
-/* How much of the sum of a blend that fades may be left out: so many widths a result is wrong. */
+/* The part of the sum of a fading blend that may be left out: so many widths a result is wrong. */
 #define MAX_LEFT_OUT 1e-4
 
 /* e^-37 is 2^-53. */
@@ -74,7 +74,7 @@ static void add_distance(Nearest *nearest, double distance)
         nearest->distances[at] = distance;
 }
 
-/* What the instances make, of which these are the nearest. */
+/* Returns what the instances make, of which these are the nearest. */
 static double join_nearest(const GridBlend *blend, const Nearest *nearest)
 {
     static const GraphType types[][MAX_OPERANDS] = {

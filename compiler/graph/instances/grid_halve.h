@@ -14,7 +14,7 @@ typedef struct Halver {
     double           pad; /* how far from its cell single precision may find a point */
 } Halver;
 
-/* What one processor works with. */
+/* The memory of one processor. */
 typedef struct HalvingDesk {
     void *rows;                      /* of lanes */
     double (*distances)[GRID_PARTS]; /* of each instance of the list at hand */
@@ -33,14 +33,14 @@ typedef struct Halving {
 HalvingDesk halving_desk_new(const GridBlend *blend, uint32_t most, Arena *scratch);
 double      halving_pad(const Grid *grid);
 
-/* The distances of an instance at points. */
+/* Finds the distances of an instance at points. */
 void halving_distances(const Halver *halver, const HalvingDesk *desk, size_t instance,
                        const double (*points)[3], size_t count, double *distances);
 
 /* Sets bit k of needs[i] where part k needs instance i of the list. */
 void grid_halve(const Halver *halver, const HalvingDesk *desk, uint8_t *needs, Halving *h);
 
-/* The clearance of a part without instances. */
+/* Returns the clearance of a part without instances. */
 double halving_emptied(const Halving *h, int part);
 
 #endif

@@ -19,10 +19,10 @@
    twice as many are no faster. */
 #define EMPTY_IN_CELLS 1.0
 
-/* What the two halvings may leave out of what all may. */
+/* The parts that the two halvings may leave out of what all may. */
 static const double shares[2] = {0.25, 0.5};
 
-/* What one processor works with: for each instance of the list at hand */
+/* The memory of one processor: for each instance of the list at hand */
 typedef struct Desk {
     HalvingDesk halving;
     uint8_t    *needs[2]; /* which parts need it, of a cell and of one of its parts */
@@ -55,7 +55,7 @@ static void set_clearance(const Refiner *r, const uint32_t *cell, int number, do
     r->to->clearance[first_refined(r, cell) + r->offsets[number]] = (float)clearance;
 }
 
-/* The cells in a part of a cell, which is `whole`. */
+/* Refines the cells in a part of a cell, which is `whole`. */
 static void refine_part(const Refiner *r, const Desk *desk, const uint32_t *cell,
                         const Halving *whole, int part, uint64_t *masks)
 {
@@ -121,7 +121,7 @@ static size_t refined_along(uint32_t number, int axis)
     return 2 * (number >> (3 + axis) & 1) + (number >> axis & 1);
 }
 
-/* The middles of the cells that a cell becomes. */
+/* Finds the middles of the cells that a cell becomes. */
 static void find_middles(const Refiner *r, const uint32_t *cell, double (*middles)[3])
 {
     for (uint32_t number = 0; number < GRID_REFINED; number++)
@@ -130,7 +130,8 @@ static void find_middles(const Refiner *r, const uint32_t *cell, double (*middle
                                  ((double)refined_along(number, k) + 0.5) * r->to->size;
 }
 
-/* The lists of the cells that a cell becomes; where there are to be tails, distances in their place. */
+/* Fills the lists of the cells that a cell becomes; where there are to be tails, distances in their
+   place. */
 static void fill_cell(const Refiner *r, const Desk *desk, const uint32_t *cell)
 {
     double middles[GRID_REFINED][3], distances[GRID_REFINED];
@@ -151,7 +152,7 @@ static void fill_cell(const Refiner *r, const Desk *desk, const uint32_t *cell)
     }
 }
 
-/* Rows of cells along x are dealt out to the processors. */
+/* Visits rows of cells along x, which are dealt out to the processors. */
 static void visit_rows(void *task, size_t part, size_t parts)
 {
     const Cells    *cells   = task;

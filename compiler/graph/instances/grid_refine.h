@@ -8,9 +8,9 @@
 #include "compiler/graph/instances/grid_blend.h"
 
 /*
- * Each cell of a coarse grid becomes GRID_REFINED cells.  In each of them the instances of its list make the
- * same of all points as all instances of the coarse list do, where that is less than the clearance.  Elsewhere
- * that is no less than the clearance.
+ * Refines a coarse grid: each cell becomes GRID_REFINED cells.  In each of them the instances of
+ * its list make the same of all points as all instances of the coarse list do, where that is less
+ * than the clearance.  Elsewhere that is no less than the clearance.
  */
 void grid_refine(Grid *refined, const Grid *coarse, const GridBlend *blend, Arena *arena,
                  Arena *scratch);

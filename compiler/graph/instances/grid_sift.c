@@ -22,10 +22,11 @@ enum { MAX_LEVELS = 16, MAX_ENTRIES = 1 << 21, MAX_EVALUATED = 1 << 22 };
 /* All processors find all of the first levels, so that they can share the cubes below. */
 enum { SHARED_LEVELS = 2 };
 
-/* What all levels together may leave out of what all halvings may; those of grid_refine.c have the rest. */
+/* The part that all levels together may leave out of what all halvings may; those of grid_refine.c
+   have the rest. */
 #define SHARE_OF_LEVELS 0.25
 
-/* What one processor works with, and what it finds. */
+/* The memory of one processor, and its results. */
 typedef struct Sieve {
     HalvingDesk desk;
     uint8_t
@@ -90,7 +91,7 @@ static void set_list(const Sifter *s, Sieve *sieve, const Cube *cube)
     s->grid->clearance[cell] = (float)NOWHERE;
 }
 
-/* No result in a cube is less than the clearance. */
+/* Empties a cube in which no result is less than the clearance. */
 static void empty_cube(const Sifter *s, const Cube *cube, double clearance)
 {
     uint32_t end[3], cell[3];
@@ -104,7 +105,7 @@ static void empty_cube(const Sifter *s, const Cube *cube, double clearance)
                 s->grid->clearance[cell_number(s->grid, cell)] = (float)clearance;
 }
 
-/* A part of a cube, and its list. */
+/* Returns a part of a cube, and its list. */
 static Cube part_of(const Sieve *sieve, const Cube *cube, int part)
 {
     Cube            half  = {.level = cube->level - 1};

@@ -24,7 +24,7 @@ bool grid_may_have_tails(const GridBlend *blend, double size)
     return blend->slope * 0.5 * sqrt(3) * size <= MAX_WIDTHS * blend->width;
 }
 
-/* What one processor works with: the list of a cell. */
+/* The memory of one processor: the list of a cell. */
 typedef struct Sorting {
     uint32_t *instances;
     float    *distances;

@@ -39,7 +39,8 @@ static Box shifted(const Box *box, const double shift[3])
     return result;
 }
 
-/* No side of an endless box is a number, and then a grid is one cell. */
+/* Returns the box of a mapped box.  No side of an endless box is a number, and then a grid is one
+   cell. */
 Box box_under_map(const Box *box, const NodeValue *const map[5])
 {
     const double scale = map[0]->v[0];

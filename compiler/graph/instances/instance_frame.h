@@ -12,14 +12,14 @@
 /* Tells whether the instances of some table move. */
 bool instances_move(const Instances *instances);
 
-/* A copy with tables of its own, which share all that they have; NULL of NULL. */
+/* Returns a copy with tables of its own, which share all that they have; NULL of NULL. */
 Instances *instances_for_frames(const Instances *instances, Arena *arena);
 
 /* Gives each table of such a copy whose instances move a grid of the frame that `values` are of. */
 void instances_enter_frame(Instances *instances, const NodeValue *values, Arena *arena,
                            Arena *scratch);
 
-/* A box under a similarity: its scale, the rows of its rotation, and its shift. */
+/* Returns a box under a similarity: its scale, the rows of its rotation, and its shift. */
 Box box_under_map(const Box *box, const NodeValue *const map[5]);
 
 #endif

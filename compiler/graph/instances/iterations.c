@@ -84,7 +84,7 @@ typedef struct NodeList {
     size_t count, capacity;
 } NodeList;
 
-/* What the host finds, as numbers of the text. */
+/* Returns what the host finds, as numbers of the text. */
 static Node settled(Graph *graph, Node node, NodeValue value)
 {
     const Expr     e     = graph->items[node];

@@ -12,12 +12,13 @@
 
 /* Marks what depends on a leaf: depends[n - leaf] of the nodes n from the leaf on. */
 void graph_mark_iterated(const Graph *graph, Node leaf, bool *depends);
-/* The components of roots, one root after the other, for each of these values of the leaf.  The roots
-   are of frame time, and need no parameter but the leaf. */
+/* Finds the components of roots, one root after the other, for each of these values of the leaf.
+   The roots are of frame time, and need no parameter but the leaf. */
 void graph_at_iterations(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
                          const double *iterations, size_t iteration_count, double *results,
                          Arena *scratch);
-/* A root in one iteration.  Random numbers in it are numbers of the scene's text then, where that has some. */
+/* Returns a root in one iteration.  Random numbers in it are numbers of the scene's text then,
+   where that has some. */
 Node graph_in_iteration(Graph *graph, Node root, Node leaf, double iteration, Arena *scratch);
 /* Tells whether roots need a parameter but this leaf. */
 bool graph_needs_parameters(const Graph *graph, const Node *roots, size_t root_count, Node leaf,

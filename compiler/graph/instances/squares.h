@@ -8,8 +8,8 @@
 
 #include "compiler/base/arena.h"
 
-/* The value of each cell becomes the least sum of any cell's value and the square of the distance to
-   that cell.  HUGE_VAL stands for cells that do not count.  x runs fastest, then y. */
+/* Replaces the value of each cell by the least sum of any cell's value and the square of the
+   distance to that cell.  HUGE_VAL stands for cells that do not count.  x runs fastest, then y. */
 void squares_transform(const uint32_t cells[3], double *values, Arena *scratch);
 
 #endif

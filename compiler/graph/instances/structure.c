@@ -68,7 +68,7 @@ static bool is_number(GraphType type) { return type <= TYPE_VEC4; }
 
 static bool is_operation(const Expr *e) { return e->time == TIME_POINT && e->operand_count > 0; }
 
-/* What a node is where `user` has it as an operand; user NULL: it is a root. */
+/* Returns what a node is where `user` has it as an operand; user NULL: it is a root. */
 static int use_kind(const Structures *structures, const Expr *user, int operand, Node node)
 {
     if (node == NODE_NONE)
@@ -129,7 +129,7 @@ static bool is_finite(const Expr *e, const double *value)
     return true;
 }
 
-/* The value of an operation on what is known; UNKNOWN: it is not. */
+/* Returns the value of an operation on what is known; UNKNOWN: it is not. */
 static uint32_t note_value(Structures *structures, const Expr *e)
 {
     GraphType types[MAX_OPERANDS]    = {0};
@@ -261,7 +261,7 @@ static void make_node(TemplateMaker *maker, Node node)
     maker->places[place] = (uint32_t)maker->nodes.count;
 }
 
-/* The nodes that a root needs, operands first. */
+/* Makes the nodes that a root needs, operands first. */
 static void make_nodes(TemplateMaker *maker, Node root)
 {
     grow_places(maker);
@@ -342,7 +342,7 @@ static bool same_node(const Structures *structures, Node a, Node b)
                      known_value(structures, a));
 }
 
-/* The number, or node of the frame, that is an element of a node. */
+/* Returns the number, or node of the frame, that is an element of a node. */
 static Node element_node(Graph *graph, Node node, uint32_t element)
 {
     const Expr *e = &graph->items[node];
@@ -424,7 +424,7 @@ bool template_match(Structures *structures, const Template *template, const Node
 
 /* ---- copies ---- */
 
-/* The nodes that the wanted roots need. */
+/* Returns the nodes that the wanted roots need. */
 static bool *needed_nodes(const Template *template, const bool *wanted, Arena *scratch)
 {
     bool *needed = arena_new_array(scratch, bool, template->node_count + 1);

@@ -12,14 +12,15 @@
 
 #include "compiler/graph/graph.h"
 
-/* What is known of the nodes of a graph. */
+/* The structures of the nodes of a graph. */
 typedef struct Structures Structures;
 
 Structures *structures_new(Graph *graph, Arena *arena);
-/* Nodes from this one on were dropped (graph_release): others may take their places. */
+/* Forgets nodes from this one on, which were dropped (graph_release): others may take their
+   places. */
 void structures_forget(Structures *structures, size_t first);
 
-/* What an operand of a node of a template is, or one of its roots. */
+/* The use of a node by an operand of a node of a template, or by one of its roots. */
 typedef struct TemplateUse {
     enum {
         USE_SAME, /* the node `index` of the graph, a leaf or known in each frame; or NODE_NONE */
@@ -60,13 +61,13 @@ typedef struct Template {
     } known;
 } Template;
 
-/* What is in a slot, by elements. */
+/* The content of a slot, by elements. */
 typedef struct SlotContent {
     double numbers[4];
     Node   nodes[4]; /* FLOAT, where the number is one of the frame; NODE_NONE: it is known */
 } SlotContent;
 
-/* Alike expressions have equal hashes.  Roots may be NODE_NONE. */
+/* Hashes structures, so that equal ones have equal hashes.  Roots may be NODE_NONE. */
 uint64_t  structure_hash(Structures *structures, const Node *roots, uint32_t count);
 Template *template_new(Structures *structures, const Node *roots, uint32_t count, Arena *arena);
 /* Makes a template independent of nodes from this one on, which may be dropped then: it serves
@@ -82,8 +83,8 @@ typedef struct LeafPair {
     Node leaf, by;
 } LeafPair;
 
-/* A copy with nodes in the slots.  Of the roots those that are `wanted` are copied; the others
-   become NODE_NONE. */
+/* Copies a template with nodes in the slots.  Of the roots those that are `wanted` are copied; the
+   others become NODE_NONE. */
 void template_copy(Graph *graph, const Template *template, const Node *slots, const LeafPair *pairs,
                    uint32_t pair_count, const bool *wanted, Node *roots, Arena *scratch);
 /* Tells whether the wanted roots need this leaf. */

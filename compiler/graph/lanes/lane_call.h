@@ -6,16 +6,17 @@
 
 #include "compiler/graph/lanes/lanes.h"
 
-/* An operation at one point; `values`, which only those that read tables need, are of the frame. */
+/* Returns an operation at one point; `values`, which only those that read tables need, are of the
+   frame. */
 NodeValue lane_call(const Tape *tape, NodeValue *values, Node node, const NodeValue *operands);
 
-/* A call that has a body, in as many points; `run` is the loop that asks. */
+/* Runs a call that has a body, in as many points; `run` is the loop that asks. */
 void lane_instance_call(const LaneTape *tape, const LaneWork *work, const LaneCall *call,
                         size_t points, LaneRun *run);
 /* Steps that tell of the instance of each lane, in blocks that are full. */
 void lane_instance_step(const LaneWork *work, const LaneCode *code, size_t points);
 
-/* The length of a vector that is very long or very short. */
+/* Returns the length of a vector that is very long or very short. */
 double lane_length(const double *vector, uint32_t size);
 
 LaneRun lane_double_plain, lane_single_plain;

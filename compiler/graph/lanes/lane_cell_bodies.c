@@ -20,7 +20,7 @@ static size_t rows_of(const CellTape *tape)
     return (size_t)tape->inputs + LANE_INPUTS + tape->count;
 }
 
-/* The rows of numbers of the instance, and those of states. */
+/* Finds the rows of numbers of the instance, and those of states. */
 static void find_rows(CellBody *body, const Instances *groups, Arena *arena)
 {
     const uint32_t first = body->tape.inputs + LANE_INPUTS;
@@ -37,7 +37,7 @@ static void find_rows(CellBody *body, const Instances *groups, Arena *arena)
     }
 }
 
-/* Where states are behind an instance: outputs are their components. */
+/* Finds where the components of states are behind an instance. */
 static void find_outputs(CellBody *body, const Expr *items, const Node *bodies, Arena *arena)
 {
     uint32_t *rows = arena_new_array(arena, uint32_t, body->lanes.output_count + 1), at = 0;
@@ -163,7 +163,7 @@ static void read_instance(const CellBody *body, const NodeValue *values, uint32_
     }
 }
 
-/* An operand of the call becomes inputs of the body. */
+/* Passes an operand of the call to inputs of the body. */
 static void pass_operand(const CellCall *call, int operand, uint32_t size, const float *rows,
                          float *inputs)
 {
@@ -205,7 +205,7 @@ static void visit(const CellCall *call, NodeValue *values, uint32_t instance, fl
             memcpy(states[k], inner + (size_t)body->outputs[k] * CELL_LANES, row);
 }
 
-/* The box around the points of a call. */
+/* Returns the box around the points of a call. */
 static CellView find_box(const CellCall *call, const float *rows)
 {
     CellView view = {.radius = 0};
@@ -219,7 +219,7 @@ static CellView find_box(const CellCall *call, const float *rows)
     return view;
 }
 
-/* What an instance must be nearer than to count in some lane, with room for rounding. */
+/* Returns the distance below which an instance counts in some lane, with room for rounding. */
 static double farthest_of(const float *state, double size)
 {
     double farthest = 0;
@@ -324,8 +324,8 @@ bool cell_find_instances(const CellCall *call, const CellView *view, uint32_t *i
     const uint32_t all       = call->instances ? call->instance_count : table->rows;
     const double   middle[2] = {0.5 * (view->at[0].low + view->at[0].high),
                                 0.5 * (view->at[1].low + view->at[1].high)};
-    /* Of outlines the nearest curve anywhere in the ball is no farther from its middle.  A blend is less than the nearest of
-       its parts, by less than they reach. */
+    /* The nearest curve of an outline anywhere in the ball is no farther from its middle.  A blend
+       is less than the nearest of its parts, by less than they reach. */
     const double farthest = range_largest(view->value) + view->radius;
     const double reach    = body->sharp ? max2(view->value.high, 0) * table->stretch
                                         : (max2(view->value.high, 0) + table->reach) * table->stretch +

@@ -41,7 +41,7 @@ static inline float lane_id_unit(float a)
 
 static inline float lane_fade(float t) { return t * t * t * (t * (6 * t - 15) + 10); }
 
-/* The whole part of a coordinate as an integer, and the rest. */
+/* Returns the whole part of a coordinate as an integer, and the rest. */
 static inline float lane_lattice(float p, uint32_t *cell)
 {
     const float clamped = p < -1073741824.0f  ? -1073741824.0f
@@ -104,7 +104,7 @@ static inline float lane_noise3(float x, float y, float z)
 
 /* ---- fractals ---- */
 
-/* A power of a number and an imaginary unit whose square is -square: of (a, b).  Powers are up to 16. */
+/* Raises (a, b), a number and an imaginary unit whose square is -square, to a power up to 16. */
 static inline void lane_raise(float *a, float *b, int power, float square)
 {
     float all = 1, other = 0, x = *a, y = *b;
@@ -138,13 +138,13 @@ static inline float lane_step_back(float size, float x, int power)
 
 #endif
 
-/* Of fractals the power and the most iterations are the same in all lanes. */
+/* Returns the power, or the most iterations, of fractals, if it is the same in all lanes. */
 static int LOCAL(same_whole)(const REAL *x, int most)
 {
     return x[0] > 0 ? (x[0] < (REAL)most ? (int)x[0] : most) : 0;
 }
 
-/* A step of all lanes of z^power + c. */
+/* Takes a step of all lanes of z^power + c. */
 static void LOCAL(julia_step)(REAL z[4][CELL_LANES], const REAL *const *c, int power)
 {
     const REAL *c0 = c[0], *c1 = c[1], *c2 = c[2], *c3 = c[3];
@@ -159,7 +159,7 @@ static void LOCAL(julia_step)(REAL z[4][CELL_LANES], const REAL *const *c, int p
     }
 }
 
-/* As krs_julia of julia.glsl. */
+/* Evaluates what krs_julia of julia.glsl does. */
 static void LOCAL(cell_julia)(const REAL *const *x, REAL *to)
 {
     enum { MOST = 64, MOST_POWER = 16 };
@@ -209,7 +209,8 @@ static void LOCAL(cell_julia)(const REAL *const *x, REAL *to)
     ALL_LANES { to[i] = last[i] > radius[i] * radius[i] ? to[i] : -to[i]; }
 }
 
-/* As triplex_step of fractal.c; the lengths of what the tilt is stretched by go to `lateral`. */
+/* Evaluates what triplex_step of fractal.c does; the lengths of what the tilt is stretched by go to
+   `lateral`. */
 static void LOCAL(triplex_step)(REAL w[3][CELL_LANES], const REAL *const *c, int power,
                                 REAL *lateral)
 {
@@ -228,7 +229,7 @@ static void LOCAL(triplex_step)(REAL w[3][CELL_LANES], const REAL *const *c, int
     }
 }
 
-/* As evaluate_mandelbulb of fractal.c. */
+/* Evaluates what evaluate_mandelbulb of fractal.c does. */
 static void LOCAL(cell_mandelbulb)(const REAL *const *x, REAL *to)
 {
     enum { MOST = 64, MOST_POWER = 16 };
@@ -331,7 +332,7 @@ static void LOCAL(cell_heights)(const REAL *const *x, uint32_t count, const REAL
         }
 }
 
-/* As shares_quadratic of blend_shares.c. */
+/* Evaluates what shares_quadratic of blend_shares.c does. */
 static void LOCAL(cell_shares)(const REAL *const *x, uint32_t count, bool threshold, REAL *to)
 {
     _Alignas(64) REAL rows[8][CELL_LANES], left[CELL_LANES], taken[CELL_LANES];
@@ -408,7 +409,7 @@ static LOCAL(Loop) *const LOCAL(loops)[OP_COUNT] = {LANE_LOOPS(LOOP_ROW)};
 #undef LOOP_FUNCTION
 #undef LOOP_ROW
 
-/* False: there is no such loop. */
+/* Runs the loop of an operation; false: there is no such loop. */
 static bool LOCAL(call_of_lanes)(Op op, const REAL *const *x, REAL *const *to)
 {
     LOCAL(Loop) *loop = op < OP_COUNT ? LOCAL(loops)[op] : NULL;

@@ -37,7 +37,7 @@ static uint32_t row_of(uint32_t operand, uint32_t inputs)
     return operand & LANE_SCALAR ? operand & ~LANE_SCALAR : inputs + operand;
 }
 
-/* How fast a row changes at most; 0: not known. */
+/* Returns how fast a row changes at most; 0: not known. */
 static double steepest_of(const CellStep *steps, uint32_t inputs, uint32_t row)
 {
     const uint32_t first = inputs + LANE_INPUTS;
@@ -160,7 +160,7 @@ static void fill_constants(const CellTape *tape, float *rows)
             rows[i * CELL_LANES + lane] = (float)tape->whole->scalars[i] + 0.0f;
 }
 
-/* Memory for so many numbers, aligned for vectors. */
+/* Allocates so many numbers, aligned for vectors. */
 static float *new_numbers(size_t count, Arena *arena)
 {
     enum { ALIGNMENT = 64 };
@@ -240,7 +240,7 @@ const float *cell_run(const CellTape *tape, CellWork *work, uint32_t depth,
     return rows + (size_t)tape->output * CELL_LANES;
 }
 
-/* Block by block. */
+/* Runs a tape block by block. */
 static void run_blocks(const CellTape *tape, CellWork *work, uint32_t depth,
                        const float points[3][CELL_WIDE], size_t blocks)
 {

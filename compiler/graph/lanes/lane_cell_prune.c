@@ -46,8 +46,8 @@ static void need_all(Pruning *p, const CellStep *step)
         need(p, step->from[k], HUGE_VALF, -HUGE_VALF);
 }
 
-/* How much less a row may count as than in the middle.  Of a component without a slope the surface is no nearer than
-   that: this is what rays go by. */
+/* Returns how much less a row may count as than in the middle.  Of a component without a slope the
+   surface is no nearer than that: this is what rays go by. */
 static float reach_below(const Ball *ball, uint32_t row)
 {
     const CellStep *step  = step_of(ball->tape, row);
@@ -88,7 +88,7 @@ static bool is_arithmetic(uint16_t op)
     return op == OP_add || op == OP_sub || op == OP_mul || op == OP_div;
 }
 
-/* The only operand that it may be; `row`: there may be several. */
+/* Returns the only operand that it may be; `row`: there may be several. */
 static uint32_t only_operand(const Pruning *p, const CellStep *step, uint32_t row)
 {
     const NumberRow *known           = step->op < OP_COUNT ? &number_rows[step->op] : NULL;
@@ -104,14 +104,15 @@ static uint32_t only_operand(const Pruning *p, const CellStep *step, uint32_t ro
     return row;
 }
 
-/* Few bodies become steps, where that is possible. */
+/* Makes steps of bodies, if they are few and that is possible. */
 static bool bodies_expand(const CellTape *tape, const CellCall *call, uint32_t count)
 {
     return least_of_instances(tape->whole, call->call) && count <= MAX_CELL_INSTANCES &&
            count * steps_of_instance(call->call->body) <= MAX_BODY_STEPS;
 }
 
-/* The distance to the instances; of a call that is none, that of another one at the same point, if there is any. */
+/* Returns the distance to the instances; of a call that is none, that of another one at the same
+   point, if there is any. */
 static Range distance_of_call(const Pruning *p, const CellCall *call, uint32_t row)
 {
     const CellTape *tape = p->ball.tape;
@@ -220,7 +221,8 @@ static uint32_t moved(const Pruning *p, uint32_t row)
     return step_of(p->ball.tape, row) ? p->work->now[row] : row;
 }
 
-/* The row that stands for a step whose operands have moved, by those that are constants; `row`: none. */
+/* Returns the row that stands for a step whose operands have moved, by those that are constants;
+   `row`: none. */
 static uint32_t simpler(const Pruning *p, const CellStep *step, uint32_t row)
 {
     Range o[MAX_OPERANDS] = {ANYTHING, ANYTHING, ANYTHING, ANYTHING};
@@ -236,13 +238,13 @@ static uint32_t simpler(const Pruning *p, const CellStep *step, uint32_t row)
     return chosen == CHOOSES_A ? step->from[0] : chosen == CHOOSES_B ? step->from[1] : row;
 }
 
-/* 0: it is not known. */
+/* Returns how fast a step changes in the ball; 0: it is not known. */
 static float steepest_in_ball(const Pruning *p, const CellStep *step)
 {
     return p->ball.steepest ? p->ball.steepest[step - p->ball.tape->steps] : step->steepest;
 }
 
-/* How fast a row of the shorter tape changes; infinite: that is not known. */
+/* Returns how fast a row of the shorter tape changes; infinite: that is not known. */
 static double steepest_of_moved(const Pruning *p, uint32_t row)
 {
     const CellTape *tape  = p->ball.tape;
@@ -253,7 +255,7 @@ static double steepest_of_moved(const Pruning *p, uint32_t row)
     return step->op == LANE_NUMBER ? 0 : step->steepest > 0 ? (double)step->steepest : HUGE_VAL;
 }
 
-/* The size of a row of the shorter tape that is a number; infinite: it is none. */
+/* Returns the size of a row of the shorter tape that is a number; infinite: it is none. */
 static double size_of_number(const Pruning *p, uint32_t row)
 {
     const CellTape *tape  = p->ball.tape;
@@ -267,7 +269,7 @@ static double size_of_number(const Pruning *p, uint32_t row)
     return (double)fabsf(number);
 }
 
-/* How fast a step changes by how fast its operands do; infinite: that is not known. */
+/* Returns how fast a step changes by how fast its operands do; infinite: that is not known. */
 static double steepest_by_operands(const Pruning *p, const CellStep *step)
 {
     double by[MAX_OPERANDS] = {0}, square = 0;
@@ -288,7 +290,7 @@ static double steepest_by_operands(const Pruning *p, const CellStep *step)
     return HUGE_VAL;
 }
 
-/* Without what was steeper a step changes less fast. */
+/* Returns how fast a step changes without what was steeper. */
 static float least_steepest(const Pruning *p, const CellStep *step)
 {
     const double steep = fmax(steepest_by_operands(p, step) * (1 + 1e-6), 1e-30);
@@ -335,7 +337,7 @@ static uint32_t add_number(Pruning *p, CellTape *to, double number)
     return add_step(p, to, step);
 }
 
-/* What a step of the body reads of the instance. */
+/* Returns a number of the instance that a step of the body reads. */
 static double number_of_instance(const Pruning *p, const InstanceTable *table, const LaneStep *step,
                                  uint32_t instance)
 {
@@ -434,7 +436,7 @@ static void move_step(Pruning *p, CellTape *to, uint32_t i)
     to->count += work->now[row] == next;
 }
 
-/* Where all steps have slopes nothing has to be found. */
+/* Returns the ball of a lane.  If all steps have slopes nothing has to be found. */
 static Ball ball_of_lane(const CellTape *tape, const CellWork *work, uint32_t depth, uint32_t lane,
                          float radius, float margin)
 {
@@ -446,7 +448,7 @@ static Ball ball_of_lane(const CellTape *tape, const CellWork *work, uint32_t de
                   .ranges   = tape->steep ? NULL : work->ranges};
 }
 
-/* The shorter tape, of no steps yet. */
+/* Returns the shorter tape, of no steps yet. */
 static CellTape begin_shorter(const Ball *ball, CellWork *work)
 {
     const CellTape *tape = ball->tape;

@@ -23,7 +23,7 @@ float cell_steepest(const Ball *ball, uint32_t row)
     return steepest > 0 ? steepest : HUGE_VALF;
 }
 
-/* Of what has no slope. */
+/* Returns the range of a row that has no slope. */
 static Range known_range(const Ball *ball, uint32_t row)
 {
     const CellStep *step = step_of(ball->tape, row);
@@ -69,7 +69,7 @@ static double length_of(const double *steepest, uint32_t count)
     return sqrt(square);
 }
 
-/* What of an operand is known, as a fact of one component. */
+/* Fills a fact of one component with what of an operand is known. */
 static void put_in_fact(Fact *fact, uint32_t component, Range range, double steepest)
 {
     fact->value[component] = range;
@@ -78,7 +78,7 @@ static void put_in_fact(Fact *fact, uint32_t component, Range range, double stee
     fact->slope = component == 0 ? steepest : real_hypot(fact->slope, steepest);
 }
 
-/* Of a step in the ball: how fast it changes, and else its range. */
+/* The slope of a step in the ball, or else its range. */
 typedef struct Found {
     double steepest;
     Range  range;
@@ -96,7 +96,7 @@ static Found find_by_rule(const CellStep *step, const Operands *x)
     return (Found){op_has_traits((Op)step->op, STEADY) ? fact.slope : HUGE_VAL, fact.value[0]};
 }
 
-/* Where an operation is one of its operands, it changes as that does. */
+/* Returns the slope of an operation that is one of its operands. */
 static double slope_of_choice(const NumberRow *row, const CellStep *step, const Operands *x)
 {
     const unsigned chosen = row->chooses ? row->chooses(x->o) : 0;
@@ -144,7 +144,7 @@ static Found find_of_step(const Ball *ball, const CellStep *step)
 
 /* ---- calls ---- */
 
-/* Within one sector a point is turned. */
+/* Tells whether a point lies within one sector, in which it is rotated. */
 static bool is_in_one_sector(const Fact *point, const Fact *count)
 {
     const Range sector = range_div(range_of(2 * M_PI), count->value[0]);
@@ -200,7 +200,7 @@ void cell_find_slopes(const Ball *ball, float *steepest, Range *ranges)
         }
         const Found found = step->op == LANE_CALL ? find_of_call(ball, &tape->calls[step->from[0]])
                                                   : find_of_step(ball, step);
-        /* What does not change has a slope, too. */
+        /* A step that does not change has a slope, too. */
         steepest[i] = !(found.steepest < 1e30) ? 0
                       : found.steepest > 1e-30 ? (float)(found.steepest * (1 + 1e-6))
                                                : 1e-30f;

@@ -8,7 +8,7 @@
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_cells.h"
 
-/* At most so many instances of a call have their bodies in a tape, and these so many steps. */
+/* The instances of a call whose bodies a tape may have, and their steps. */
 enum { MAX_CELL_INSTANCES = 8, MAX_BODY_STEPS = 4096 };
 /* Longer tapes are run block by block: their rows would need much memory. */
 enum { MOST_WIDE_STEPS = 1024 };
@@ -49,8 +49,8 @@ struct CellWork {
     NodeValue *values;
     float    **rows;                 /* of each depth */
     float *constants, *wide, *found; /* of all scalars; rows, and distances, of CELL_WIDE numbers */
-    /* What is known of rows while a tape is made: whether one is needed, and then between a floor
-       and a cap; the row that stands for it; and where that is in the tape that is made. */
+    /* The state of rows while a tape is made: whether one is needed, and then between a floor and a
+       cap; the row that stands for it; and where that is in the tape that is made. */
     bool     *needed;
     float    *caps, *floors;
     uint32_t *same, *now;
@@ -58,7 +58,8 @@ struct CellWork {
     CellCall *calls;  /* a stack, too */
     uint32_t *listed; /* and one of instances */
     size_t    step_count, call_count, listed_count, most_listed;
-    /* By step of the tape that is shortened, in the ball: how fast it changes, 0: not known; and its range then. */
+    /* The slopes in the ball, by step of the tape that is shortened, 0: not known; and the ranges
+       then. */
     float    *steepest;
     Range    *ranges;
     CellList *lists;                    /* by its calls */
@@ -70,7 +71,7 @@ struct CellWork {
 static inline bool is_lesser(uint16_t op) { return op == OP_min || op == LANE_LESSER; }
 static inline bool is_greater(uint16_t op) { return op == OP_max || op == LANE_GREATER; }
 
-/* What ops.def says of an operation. */
+/* Returns the row of ops.def for an operation. */
 static inline const NumberRow *row_of_op(uint16_t op)
 {
     return &number_rows[is_lesser(op)    ? OP_min
@@ -86,14 +87,14 @@ typedef struct Ball {
     const CellTape *tape;
     const float    *rows; /* values in its middle: those of the lane */
     float           radius, margin;
-    /* By step: as CellWork has them.  NULL: as steps have it, and none. */
+    /* The slopes and ranges by step, as CellWork has them.  NULL: as steps have them, and none. */
     const float *steepest;
     const Range *ranges;
 } Ball;
 
 static inline bool is_constant(const CellTape *tape, uint32_t row) { return row < tape->inputs; }
 
-/* Of the operands of a step those that are constants. */
+/* Returns the operands of a step that are constants, as bits. */
 static inline unsigned scalars_of(const CellStep *step, uint32_t inputs)
 {
     unsigned scalars = 0;
@@ -115,7 +116,7 @@ static inline float value_of(const Ball *ball, uint32_t row)
 
 /* lane_cell_slopes.c: how fast a row changes in the ball at most; infinite: that is not known. */
 float cell_steepest(const Ball *ball, uint32_t row);
-/* How much it may differ from its value in the middle; infinite: there is no bound. */
+/* Returns how much a row may differ from its value in the middle; infinite: there is no bound. */
 float reach_of(const Ball *ball, uint32_t row);
 Range cell_range(const Ball *ball, uint32_t row);
 /* Finds how fast steps change in a ball of which nothing is known everywhere, or at least their ranges. */
@@ -123,32 +124,34 @@ void cell_find_slopes(const Ball *ball, float *steepest, Range *ranges);
 
 /* ---- instance groups ---- */
 
-/* The function of a call that is a distance with a slope; NULL: it is none. */
+/* Returns the function of a call that is a distance with a slope; NULL: it is none. */
 const InstanceFunction *distance_of_instances(const LaneTape *tape, const LaneCall *call);
-/* One that takes the least distance of its instances, one after the other. */
+/* Returns the function of a call that takes the least distance of its instances, one after the
+   other. */
 const InstanceFunction *least_of_instances(const LaneTape *tape, const LaneCall *call);
 
-/* How far the point of a call moves at most where its components move so far. */
+/* Returns how far the point of a call moves at most if its components move so far. */
 double cell_call_moves(const CellCall *call, const double by[3], double point);
 
 /* Tells whether all steps have slopes. */
 bool cell_all_steep(const CellStep *steps, uint32_t count);
-/* The cell tape of output 0 without bodies of instance functions. */
+/* Returns the cell tape of output 0 without bodies of instance functions. */
 CellTape cell_tape_alone(const LaneTape *tape, CellCall **calls, Arena *arena);
-/* What bodies of instances may add to all tapes that are made of one, and the steps of the longest body. */
+/* Returns the steps that bodies of instances may add to all tapes that are made of one, and the
+   steps of the longest body. */
 size_t cell_steps_of_bodies(const CellTape *tape, size_t *longest);
 /* Makes the bodies of a tape for all of space. */
 void cell_bodies_new(const CellTape *tape, CellCall *calls, const NodeValue *values, Arena *arena);
-/* What rows a tape and its bodies have. */
+/* Returns the number of rows of a tape and its bodies. */
 size_t cell_row_count(const CellTape *tape);
-/* What all instances of the list make of the states. */
+/* Computes what all instances of the list make of the states. */
 void cell_visit(const CellCall *call, NodeValue *values, float *rows, CellStates states,
                 LaneCellRun *run);
 
 /* Numbers of a table; false: some lane has no instance. */
 bool cell_read_rows(const Graph *graph, const Expr *row, const NodeValue *values,
                     const float *instances, float *to);
-/* What the operation behind the bodies makes of the states, point by point. */
+/* Computes what the operation behind the bodies makes of the states, point by point. */
 void cell_join(const CellCall *call, const Graph *graph, CellStates states, float *to);
 
 /* The points of a call in a ball, and the distance there. */

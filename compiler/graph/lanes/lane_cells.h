@@ -56,27 +56,28 @@ typedef struct CellTape {
 /* The work of one thread; cell_work_new makes it. */
 typedef struct CellWork CellWork;
 
-/* The cell tape of output 0 for all of space; the lane tape lives as long, and its scalars are known.  Values are those
-   of the frame. */
+/* Returns the cell tape of output 0 for all of space; the lane tape lives as long, and its scalars
+   are known.  Values are those of the frame. */
 CellTape cell_tape_new(const LaneTape *tape, const NodeValue *values, Arena *arena);
 
-/* What one thread needs for cells within cells: `depth` of them, each within the one before.  Values are those of the
-   frame, its own if the tape reads tables. */
+/* Makes what one thread needs for cells within cells: `depth` of them, each within the one before.
+   Values are those of the frame, its own if the tape reads tables. */
 CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values, Arena *arena);
 
 /* Runs it at CELL_LANES points: x, y and z of all, by rows of this depth.  Returns the row of the distance. */
 const float *cell_run(const CellTape *tape, CellWork *work, uint32_t depth,
                       const float points[3][CELL_LANES]);
 
-/* The same at up to CELL_BLOCKS times as many points at once, which takes less time for each.  Returns all distances. */
+/* Returns the same at up to CELL_BLOCKS times as many points at once, which takes less time for
+   each.  Returns all distances. */
 const float *cell_run_wide(const CellTape *tape, CellWork *work, uint32_t depth,
                            const float points[3][CELL_WIDE], size_t blocks);
 
-/* The same on rays of these directions, by the rows of depth 0. */
+/* Returns the same on rays of these directions, by the rows of depth 0. */
 const float *cell_run_seen(const CellTape *tape, CellWork *work, const float points[3][CELL_LANES],
                            const float directions[3][CELL_LANES]);
 
-/* Rows of outputs of the whole tape, as many as it has. */
+/* Finds the rows of outputs of the whole tape, as many as it has. */
 void cell_outputs(const CellTape *tape, uint32_t *rows);
 
 /* Points on surfaces, where they are seen from: all inputs of a tape. */
@@ -87,10 +88,10 @@ typedef struct CellPoints {
 const float *cell_run_surfaces(const CellTape *tape, CellWork *work, uint32_t depth,
                                const CellPoints *points);
 
-/* How much a row differs in a ball from its value in the middle, at most. */
+/* Returns how much a row differs in a ball from its value in the middle, at most. */
 float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float margin);
 
-/* How many steps all lanes take by it, those for instances of lists included. */
+/* Returns the steps that all lanes take by it, those for instances of lists included. */
 size_t cell_cost(const CellTape *tape);
 
 /* Shorten a tape, after a run in the middles of balls, to what is left in the ball of a lane.
@@ -103,8 +104,8 @@ CellMark cell_mark(const CellWork *work);
 void     cell_release(CellWork *work, CellMark mark);
 CellTape cell_prune(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
                     float radius, float margin);
-/* The same, but of several rows, all of which are right in all of the ball.  They get the numbers of the rows that
-   stand for them. */
+/* Returns the same, but of several rows, all of which are right in all of the ball.  They get the
+   numbers of the rows that stand for them. */
 CellTape cell_prune_rows(const CellTape *tape, CellWork *work, uint32_t depth, uint32_t lane,
                          float radius, float margin, uint32_t *rows, size_t count);
 

@@ -14,7 +14,7 @@ uint32_t lane_only_operand(const LaneTape *tape, const LaneRanges *ranges, const
     return only;
 }
 
-/* What an operand cuts at 0: above, for a minimum, or below. */
+/* Returns what an operand cuts at 0: above, for a minimum, or below. */
 static uint32_t cut_at_zero(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
                             Op least, uint32_t lane)
 {

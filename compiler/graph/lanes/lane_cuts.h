@@ -9,9 +9,10 @@
 
 #include "compiler/graph/lanes/lanes.h"
 
-/* The operand of a length that alone is not 0 all over the box of the ranges; NODE_NONE: there is no such. */
+/* Returns the operand of a length that alone is not 0 all over the box of the ranges; NODE_NONE:
+   there is no such. */
 uint32_t lane_only_operand(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step);
-/* The number that a sum of two parts is; NODE_NONE: it is no such sum. */
+/* Returns the number that a sum of two parts is; NODE_NONE: it is no such sum. */
 uint32_t lane_sum_of_cuts(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step);
 
 #endif

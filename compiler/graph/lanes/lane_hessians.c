@@ -44,7 +44,7 @@ static Range range_at(const Run *run, uint32_t operand)
 static Range range_in(const Run *run, int k) { return range_at(run, run->step->operands[k]); }
 static Range result(const Run *run) { return run->ranges->ranges[LANE_INPUTS + run->at]; }
 
-/* NULL: it is the same everywhere. */
+/* Returns the slope of an operand; NULL: it is the same everywhere. */
 static const LaneSlope *slope_at(const Run *run, uint32_t operand)
 {
     return operand & LANE_SCALAR ? NULL : &run->slopes[operand];
@@ -69,7 +69,7 @@ static bool operand_is_constant(const Run *run, int k)
 
 /* ---- sums ---- */
 
-/* sum += factor h */
+/* Computes sum += factor h. */
 static void add_hessian(LaneHessian *sum, Range factor, const LaneHessian *h)
 {
     if (range_is_zero(factor) || (h->known && h->flat))
@@ -80,7 +80,7 @@ static void add_hessian(LaneHessian *sum, Range factor, const LaneHessian *h)
         sum->by[i] = plus(sum->by[i], times(factor, h->by[i]));
 }
 
-/* sum += factor a a^T */
+/* Computes sum += factor a a^T. */
 static void add_square(LaneHessian *sum, Range factor, const LaneSlope *a)
 {
     if (range_is_zero(factor) || slope_is_zero(a))
@@ -93,7 +93,7 @@ static void add_square(LaneHessian *sum, Range factor, const LaneSlope *a)
     }
 }
 
-/* sum += factor (a b^T + b a^T) */
+/* Computes sum += factor (a b^T + b a^T). */
 static void add_product(LaneHessian *sum, Range factor, const LaneSlope *a, const LaneSlope *b)
 {
     if (range_is_zero(factor) || slope_is_zero(a) || slope_is_zero(b))
@@ -128,7 +128,7 @@ static LaneHessian hessian_by_partials(const Run *run, const NumberRow *row, con
 
 /* ---- length ---- */
 
-/* What is squared, so that corners at 0 do not count: of abs(a) and max(a, 0) it is a. */
+/* Returns what is squared, so that corners at 0 do not count: of abs(a) and max(a, 0) it is a. */
 static uint32_t without_corner(const Run *run, uint32_t operand)
 {
     const LaneStep *step = lane_step_of(run->tape, operand);
@@ -149,7 +149,7 @@ static bool sign_counts(const Run *run, uint32_t operand)
     return !step || step->op != OP_abs;
 }
 
-/* A component over the length; of abs(a) the sign is that of a, which is not known. */
+/* Returns a component over the length; of abs(a) the sign is that of a, which is not known. */
 static Range unit_part(const Run *run, uint32_t operand, Range length)
 {
     const LaneStep *step = lane_step_of(run->tape, operand);
@@ -158,7 +158,8 @@ static Range unit_part(const Run *run, uint32_t operand, Range length)
     return corner ? range_hull(unit, minus(unit)) : unit;
 }
 
-/* Where one number alone is not 0, and its sign is known, the length is that number or its complement. */
+/* Finds the length of a vector of which one number alone is not 0, and its sign is known: it is
+   that number or its negative. */
 static bool length_of_one(const Run *run, LaneHessian *hessian)
 {
     uint32_t only = lane_only_operand(run->tape, run->ranges, run->step);
@@ -172,8 +173,8 @@ static bool length_of_one(const Run *run, LaneHessian *hessian)
     return true;
 }
 
-/* (sum of a_k^2) - l^2, a_k the derivatives of the components and l those of the length, is at least 0 in all
-   directions (Cauchy). */
+/* Returns the Hessian of a length: (sum of a_k^2) - l^2, a_k the derivatives of the components and
+   l those of the length, is at least 0 in all directions (Cauchy). */
 static LaneHessian hessian_of_length(const Run *run)
 {
     Range       length = result(run);
@@ -197,7 +198,7 @@ static LaneHessian hessian_of_length(const Run *run)
     return sum;
 }
 
-/* a a, or a^2 */
+/* Returns the Hessian of a a, or a^2. */
 static LaneHessian hessian_of_square(const Run *run)
 {
     uint32_t         operand = run->step->operands[0], inner = without_corner(run, operand);
@@ -213,7 +214,7 @@ static LaneHessian hessian_of_square(const Run *run)
 
 /* ---- smooth minima ---- */
 
-/* The derivatives of a - b. */
+/* Returns the derivatives of a - b. */
 static LaneSlope slope_of_difference(const Run *run, uint32_t a, uint32_t b)
 {
     const LaneSlope *slopes[2]  = {slope_at(run, a), slope_at(run, b)};
@@ -368,7 +369,7 @@ bool lane_hessians_run(const LaneTape *tape, const LaneRanges *ranges, const Lan
     return hessian->known && ((output & LANE_SCALAR) || ranges->sure[output]);
 }
 
-/* What is added does not tell. */
+/* Returns the operand of a negation, or of a sum or product with a scalar; NODE_NONE: it is none. */
 static uint32_t without_scalar(const LaneStep *step)
 {
     if (step->op == OP_neg)

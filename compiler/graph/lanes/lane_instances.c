@@ -83,7 +83,7 @@ static void close_lane(LaneLoop *loop, double *rows, size_t lane)
         loop->states[k][lane] = loop->states[k][last];
 }
 
-/* The next instance of a lane; false: it is done. */
+/* Takes the next instance of a lane; false: it is done. */
 static bool next_instance(LaneLoop *loop, size_t lane)
 {
     uint32_t     distance = loop->function->distance != NO_DISTANCE ? loop->function->distance : 0;
@@ -122,7 +122,7 @@ static void take_states(LaneLoop *loop, const LaneTape *body, const double *rows
         }
 }
 
-/* An operand of the call becomes inputs of the body. */
+/* Passes an operand of the call to inputs of the body. */
 static void pass_operand(const LaneTape *tape, const double *rows, const uint32_t *from,
                          uint32_t size, double *inputs, size_t lanes)
 {
@@ -184,7 +184,7 @@ typedef struct Pairs {
     size_t    lanes;
 } Pairs;
 
-/* Instances of a point, as many as there are lanes for it; false: it is done. */
+/* Takes instances of a point, as many as there are lanes for it; false: it is done. */
 static bool take_instances(Pairs *pairs, size_t at, size_t most)
 {
     LaneLoop *loop  = pairs->loop;
@@ -223,7 +223,8 @@ static void fill_pairs(Pairs *pairs, const LaneCall *call, double *outer)
     }
 }
 
-/* Each lane begins with the first state: the result is that or the distance to the instance. */
+/* Runs pairs of points and instances.  Each lane begins with the first state: the result is that or
+   the distance to the instance. */
 static void run_pairs(Pairs *pairs, const LaneTape *instance, const LaneWork *work, LaneRun *run)
 {
     LaneLoop *loop = pairs->loop;

@@ -32,7 +32,7 @@ LESSER(float, float)
 
 #include "compiler/graph/lanes/lane_math.h"
 
-/* In single precision functions that the C library would be called for are loops, too. */
+/* Functions of single precision for which the C library would be called are loops, too. */
 #define OF_SINGLE(a, single, other) _Generic((a), float : single, default : other)
 #define real_sin(a)                 OF_SINGLE(a, lane_sin, real_sin)(a)
 #define real_cos(a)                 OF_SINGLE(a, lane_cos, real_cos)(a)
@@ -75,7 +75,8 @@ LESSER(float, float)
 
 #define LOCAL(name) LANE_NAME(LANE_LOOP, name)
 
-/* Where the sum of squares overflows or loses what is small, the scalar operation goes on.  All are often 0: within a box. */
+/* Computes lengths.  Where the sum of squares overflows or loses what is small, the scalar
+   operation goes on.  All are often 0: within a box. */
 static void LOCAL(length)(REAL *to, const REAL *const *x, uint32_t size, size_t blocks)
 {
     const REAL small = sizeof(REAL) == 4 ? (REAL)1e-30 : (REAL)1e-200, large = 1 / small;
@@ -149,7 +150,7 @@ static void LOCAL(call)(const LaneTape *tape, const LaneWork *work, const LaneCa
 /* Zero has no sign (op_evaluate). */
 #define STORE(value) to[i] = (REAL)(value) + 0
 
-/* A step on two operands of which the first is a scalar; false: there is no such loop. */
+/* Runs a step on two operands of which the first is a scalar; false: there is no such loop. */
 static bool LOCAL(scalar_first)(const LaneCode *code, REAL a, REAL *rows, size_t blocks)
 {
     const REAL  c  = 0;
@@ -213,7 +214,7 @@ static bool LOCAL(mixed_step)(const LaneTape *tape, const LaneCode *code, REAL *
         }                                                                  \
         return;
 
-/* A step on rows. */
+/* Runs a step on rows. */
 static void LOCAL(step)(uint16_t op, REAL *to, const REAL *const *x, uint32_t size, size_t blocks)
 {
     switch (op) {
@@ -235,7 +236,7 @@ static void LOCAL(step)(uint16_t op, REAL *to, const REAL *const *x, uint32_t si
     }
 }
 
-/* The row of an operand; a scalar fills the row `spare`. */
+/* Returns the row of an operand; a scalar fills the row `spare`. */
 static const REAL *LOCAL(operand)(const LaneTape *tape, const LaneCode *code, int k, REAL *rows,
                                   REAL *spare, size_t blocks)
 {
@@ -287,7 +288,7 @@ void LANE_LOOP(const LaneTape *tape, const LaneWork *work, size_t points)
 
 #include "compiler/graph/lanes/lane_cell_calls.h"
 
-/* What the operation behind the bodies makes of the states. */
+/* Joins the states as the operation behind the bodies does; false: it has no loop. */
 static bool LOCAL(cell_joined)(const CellTape *tape, const CellCall *call, CellStates states,
                                REAL *to)
 {
@@ -302,7 +303,7 @@ static bool LOCAL(cell_joined)(const CellTape *tape, const CellCall *call, CellS
     return LOCAL(call_of_lanes)((Op)graph->items[node].op, x, &to);
 }
 
-/* An instance function over the instances of its list. */
+/* Runs an instance function over the instances of its list. */
 static void LOCAL(cell_instances)(const CellTape *tape, NodeValue *values, const CellCall *call,
                                   REAL *rows, REAL *to)
 {
@@ -370,7 +371,7 @@ static void LOCAL(cell_call)(const CellTape *tape, NodeValue *values, const Cell
         }                                \
         return;                          \
     }
-/* What is very long is infinite, and what is very short has no length: cells need no more. */
+/* Computes lengths.  Very long ones are infinite, and very short ones 0: cells need no more. */
 static inline void LOCAL(cell_length)(const CellStep *step, const REAL *rows, REAL *to)
 {
     CELL_SQUARE(2, a * a + b * b)
@@ -450,7 +451,7 @@ static void LOCAL(wide_length)(uint32_t size, const REAL *const *x, REAL *to, si
         WIDE_LANES { STORE(sqrt(p[i] * p[i])); }
 }
 
-/* A step, of which scalars fill rows. */
+/* Runs a step, of which scalars fill rows. */
 static void LOCAL(wide_step)(const CellTape *tape, const CellStep *step, const REAL *constants,
                              const REAL *rows, REAL *to, size_t blocks)
 {
@@ -488,7 +489,8 @@ static void LOCAL(wide_step)(const CellTape *tape, const CellStep *step, const R
     }
 }
 
-/* What most steps are: of one row, or of two operands of which none, the first or the second is a scalar. */
+/* Most steps have this form: one row, or two operands of which none, the first or the second is a
+   scalar. */
 #define WIDE_ROW(k)            (rows + (size_t)(step->from[k] - tape->inputs) * CELL_WIDE)
 #define WIDE_SCALAR(k)         (constants[step->from[k]])
 #define WIDE_CASE(op, scalars) (uint32_t)(op) | (scalars) << 16

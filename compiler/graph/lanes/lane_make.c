@@ -60,7 +60,7 @@ static uint32_t emit2(Builder *b, uint16_t op, uint32_t x, uint32_t y)
     return emit(b, op, 2, (uint32_t[]){x, y});
 }
 
-/* The components of a node; those of the frame become scalars. */
+/* Returns the components of a node; those of the frame become scalars. */
 static const Parts *parts_of(Builder *b, Node node)
 {
     const Expr *e     = &b->graph->items[node];
@@ -112,7 +112,7 @@ static uint32_t emit_minor(Builder *b, const uint32_t *x, const uint32_t *y, int
     return emit2(b, OP_sub, emit2(b, OP_mul, x[i], y[k]), less);
 }
 
-/* A step of a body that has no operands, but a number. */
+/* Emits a step of a body that has no operands, but a number. */
 static uint32_t emit_of_instance(Builder *b, uint16_t op, uint32_t number)
 {
     return lane_steps_add(b->to, (LaneStep){.op = op, .operands = {number}});
@@ -176,7 +176,7 @@ static void steps_of_scale(Builder *b, const Operands *o, uint32_t *to)
         to[k] = emit2(b, OP_mul, o->x[k], o->y[0]);
 }
 
-/* Where nobody looks there are no pixels. */
+/* Makes the steps of a footprint, which is 0: lanes have no pixels. */
 static void steps_of_footprint(Builder *b, const Operands *o, uint32_t *to)
 {
     for (uint32_t k = 0; k < components(o->e->type); k++)
@@ -200,7 +200,7 @@ static MakeSteps *const steps_of[OP_COUNT] = {
 #include "compiler/graph/ops.def"
 };
 
-/* An operation on the same component of each operand; operands that are FLOAT have only one. */
+/* Emits an operation on the same component of each operand; operands that are FLOAT have only one. */
 static void emit_each(Builder *b, const Operands *o, uint32_t *to)
 {
     const uint32_t *from[] = {o->x, o->y, o->z, o->w};
@@ -212,7 +212,7 @@ static void emit_each(Builder *b, const Operands *o, uint32_t *to)
     }
 }
 
-/* An operation that has no steps: point by point. */
+/* Emits an operation that has no steps: point by point. */
 static void emit_call(Builder *b, Node node, uint32_t *to)
 {
     const Expr *e    = &b->graph->items[node];

@@ -117,7 +117,7 @@ static inline float lane_atan2(float a, float b)
 
 /* ---- powers ---- */
 
-/* x 2^n, by two factors, as either alone may be beyond what there is. */
+/* Returns x 2^n, by two factors, as either alone may overflow or underflow. */
 static inline float lane_scaled(float x, float n)
 {
     const int32_t whole = (int32_t)(n == n ? n : 0), half = whole >> 1;
@@ -149,7 +149,8 @@ static inline float lane_exp2(float a)
     return lane_scaled(lane_exp_small((x - n) * 0.69314718f), n);
 }
 
-/* A number above 0 as the power of 2 in *n times 1 + what is returned, which is from -0.3 to 0.42. */
+/* Returns a number above 0 as the power of 2 in *n times 1 + what is returned, which is from -0.3
+   to 0.42. */
 static inline float lane_split(float a, float *n)
 {
     const float    tiny  = a < 1.17549435e-38f ? 1 : 0;
@@ -160,7 +161,7 @@ static inline float lane_split(float a, float *n)
     return (lower != 0 ? part + part : part) - 1;
 }
 
-/* The logarithm of 1 + m, less m. */
+/* Returns the logarithm of 1 + m, less m. */
 static inline float lane_log_rest(float m)
 {
     const float z = m * m;
@@ -175,7 +176,7 @@ static inline float lane_log_rest(float m)
     return m * z * p - 0.5f * z;
 }
 
-/* Where a is not above 0, or infinite. */
+/* Returns the logarithm where a is not above 0, or infinite. */
 static inline float lane_log_odd(float a, float log)
 {
     const float beyond = a == 0 ? -HUGE_VALF : a > 0 ? a : lane_bits(0x7fc00000u);

@@ -27,7 +27,7 @@ typedef struct View {
     double               farthest; /* the nearest curve is not farther, anywhere */
 } View;
 
-/* False: it is no outline, or one does not know how far. */
+/* Finds the view of an outline; false: it is none, or one does not know how far it is. */
 static bool look(const LaneTape *tape, const LaneRanges *ranges, size_t step, View *view)
 {
     const Graph *graph = tape->tape->graph;
@@ -94,7 +94,7 @@ static void point_at(const InstanceArc *arc, double t, double point[2])
         point[k] = arc->start[k] + t * (2 * arc->tangent[k] + t * arc->bend[k]);
 }
 
-/* The distance to the line of a straight curve, below 0 on its left. */
+/* Finds the distance to the line of a straight curve, below 0 on its left. */
 static bool find_line(const InstanceArc *arc, double line[3])
 {
     double length = real_hypot(arc->tangent[0], arc->tangent[1]);
@@ -117,8 +117,9 @@ static bool put_in_order(const InstanceArc *arcs[2], double ends[2][2], double s
     return forth != back;
 }
 
-/* What changes sides within `reach` of the middle are curves that come so near; if their other ends are farther, they are as
-   good as rays there.  The nearest curve to the middle is one of them, so sides are the same there, and so all over the box. */
+/* Finds the curves of an outline that decide sides within `reach` of the middle: those that come so
+   near; if their other ends are farther, they are as good as rays there.  The nearest curve to the
+   middle is one of them, so sides are the same there, and so all over the box. */
 bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t step, double level,
                         OutlineLines *lines)
 {
@@ -154,7 +155,7 @@ bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t s
 
 /* ---- one curve ---- */
 
-/* The unit tangent where the curve is nearest to the middle; false: that is not found. */
+/* Finds the unit tangent where the curve is nearest to the middle; false: that is not found. */
 static bool nearest_tangent(const View *view, const InstanceArc *arc, double tangent[2])
 {
     enum { STEPS = 12 };
@@ -188,7 +189,8 @@ static bool is_within_ends(const View *view, const InstanceArc *arc)
            view->farthest;
 }
 
-/* The most that it is curved: at an end, since it turns only one way and is not cut at an apex. */
+/* Returns the most that it is curved: at an end, since it turns only one way and is not cut at an
+   apex. */
 static double largest_curvature(const InstanceArc *arc)
 {
     double cross = arc->tangent[0] * arc->bend[1] - arc->tangent[1] * arc->bend[0];

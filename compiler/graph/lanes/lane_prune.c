@@ -31,7 +31,7 @@ static uint32_t stand_in(const Pruning *p, uint32_t operand)
     return operand == NODE_NONE || (operand & LANE_SCALAR) ? operand : p->same[operand];
 }
 
-/* A number that the step has in every point. */
+/* Tells whether the step has one number in every point. */
 static bool is_single(const Pruning *p, size_t value, double *number)
 {
     Range range = p->ranges->ranges[value];
@@ -39,14 +39,14 @@ static bool is_single(const Pruning *p, size_t value, double *number)
     return p->ranges->sure[value] && range_is_single(range) && isfinite(range.low);
 }
 
-/* A finite number in every point of the box. */
+/* Tells whether an operand is a finite number in every point of the box. */
 static bool number_at(const Pruning *p, uint32_t operand, Range *range)
 {
     *range = lane_range_at(p->from, p->ranges, operand);
     return lane_is_sure(p->from, p->ranges, operand) && is_finite(*range);
 }
 
-/* The operand whose value the step has in every point; NODE_NONE: there is none. */
+/* Returns the operand whose value the step has in every point; NODE_NONE: there is none. */
 static uint32_t same_operand(const Pruning *p, const LaneStep *step)
 {
     const unsigned BOTH = CHOOSES_A | CHOOSES_B; /* of LANE_LESSER and LANE_GREATER */
@@ -71,7 +71,7 @@ static void prune_step(Pruning *p, size_t i)
         step.operands[k] = stand_in(p, step.operands[k]);
     if (step.op == LANE_PART)
         step.operands[0] = p->call_at;
-    /* What is clamped may stay what it was; then it is that less itself. */
+    /* A clamped number may stay the same; then the step is that less itself. */
     if (step.op == OP_sub && step.operands[0] == step.operands[1] &&
         number_at(p, whole.operands[0], &first)) {
         single = true;
@@ -90,7 +90,7 @@ static void prune_step(Pruning *p, size_t i)
 
 /* ---- rotations ---- */
 
-/* Within one sector cell_polar is a rotation by an angle that is known. */
+/* Tells whether cell_polar is a rotation by an angle that is known, as within one sector. */
 static bool is_rotation(const Pruning *p, const LaneCall *call, double *cosine, double *sine)
 {
     const Expr *e = &p->from->tape->graph->items[call->node];
@@ -109,7 +109,7 @@ static bool is_rotation(const Pruning *p, const LaneCall *call, double *cosine, 
     return range_is_single(sectors) && isfinite(angle);
 }
 
-/* a c + b s, or a c - b s */
+/* Adds a c + b s, or a c - b s. */
 static uint32_t add_rotated(Pruning *p, uint16_t op, uint32_t a, uint32_t c, uint32_t b, uint32_t s)
 {
     LaneStep first  = {.op = OP_mul, .operand_count = 2, .operands = {c, a}};
@@ -120,7 +120,7 @@ static uint32_t add_rotated(Pruning *p, uint16_t op, uint32_t a, uint32_t c, uin
     return lane_steps_add(&p->to, sum);
 }
 
-/* The steps of its three components; false: it stays a call. */
+/* Prunes the steps of its three components; false: it stays a call. */
 static bool prune_rotation(Pruning *p, size_t i)
 {
     const LaneStep *step = &p->from->steps[i];
@@ -139,7 +139,8 @@ static bool prune_rotation(Pruning *p, size_t i)
 
 /* ---- blends of many ---- */
 
-/* The numbers that may have a share somewhere in the box; their count, or 0: that is not known. */
+/* Returns the numbers that may have a share somewhere in the box; their count, or 0: that is not
+   known. */
 static uint32_t find_sharers(const Pruning *p, const LaneCall *call, uint32_t vectors, double width,
                              uint32_t sharers[MAX_SHARERS])
 {
@@ -205,7 +206,8 @@ static double distance_of_boxes(const Box *box, const Range at[3])
     return sqrt(square) * (1 - 1e-12);
 }
 
-/* Instances that may be nearer than the nearest is at most, in the box; false: they are not known, or too many. */
+/* Finds the instances that may be nearer than the nearest is at most, in the box; false: they are
+   not known, or too many. */
 static bool find_least_instances(const Pruning *p, const LaneCall *call, const InstanceTable *table,
                                  double farthest, uint32_t *instances, uint32_t *count)
 {
@@ -228,7 +230,7 @@ static bool find_least_instances(const Pruning *p, const LaneCall *call, const I
     return *count > 0;
 }
 
-/* What a step reads of the instance, as a number. */
+/* Returns what a step reads of the instance, as a number. */
 static uint32_t instance_number(Pruning *p, const InstanceTable *table, const LaneStep *step,
                                 uint32_t instance)
 {
@@ -336,7 +338,7 @@ static void prune_calls(Pruning *p)
     }
 }
 
-/* Room for everything at once, so that nothing is copied. */
+/* Makes room for everything at once, so that nothing is copied. */
 static void reserve(Pruning *p)
 {
     Arena *arena           = p->to.arena;

@@ -184,8 +184,8 @@ typedef struct Ball {
     double radius, size;
 } Ball;
 
-/* What changes no faster than that is as far from the value in the middle as that and the box permit.  Rounding is far
-   below these parts of the numbers around. */
+/* Returns the range around a value in the middle, as far as its steepness and the box permit.
+   Rounding is far below these parts of the numbers around. */
 static Range range_around(Range middle, double steepest, double stretch, const Ball *ball)
 {
     static const double UNCERTAIN = 1e-9, CANCELLED = 16;

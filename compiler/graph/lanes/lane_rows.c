@@ -161,7 +161,8 @@ static void find_last_uses(LaneSteps *steps, Rows *rows)
             rows->last[steps->outputs.items[i]] = ALWAYS;
 }
 
-/* The rows of a call and its parts: it writes them all at once, while it reads its operands. */
+/* Locates the rows of a call and its parts: it writes them all at once, while it reads its
+   operands. */
 static void locate_call(LaneSteps *steps, Rows *rows, size_t i)
 {
     LaneCall *call = &steps->calls.items[steps->steps.items[i].operands[0]];
@@ -174,7 +175,7 @@ static void locate_call(LaneSteps *steps, Rows *rows, size_t i)
     }
 }
 
-/* Components of a call that nobody reads. */
+/* Frees the rows of components of a call that nobody reads. */
 static void free_unread(const LaneSteps *steps, Rows *rows, size_t i)
 {
     uint32_t parts = steps->calls.items[steps->steps.items[i].operands[0]].parts;

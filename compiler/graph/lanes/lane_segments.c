@@ -39,7 +39,7 @@ static bool split_product(const LaneTape *tape, uint32_t operand, uint32_t *clam
     return is_clamp(tape, *clamped);
 }
 
-/* What has no clamped number is a component of q where d is 0. */
+/* Adds a component of q, where d is 0: it has no clamped number. */
 static bool add_component(Segment *s, uint32_t operand)
 {
     const LaneStep *step = lane_step_of(s->tape, operand);
@@ -59,14 +59,14 @@ static bool add_component(Segment *s, uint32_t operand)
 
 static bool add_weights(Segment *s, uint32_t operand, double factor, int depth);
 
-/* A number that is known but for rounding. */
+/* Tells whether a range is a number that is known but for rounding. */
 static bool is_number(Range range, double *number)
 {
     *number = 0.5 * (range.low + range.high);
     return range.high - range.low <= 0x1p-51 * range_largest(range);
 }
 
-/* The same of a step whose derivatives by all but scalars are known whatever these are. */
+/* Does the same of a step whose derivatives by all but scalars are known whatever these are. */
 static bool add_weights_of_step(Segment *s, const LaneStep *step, double factor, int depth)
 {
     const NumberRow *row             = lane_row(step);

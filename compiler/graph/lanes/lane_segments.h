@@ -9,8 +9,8 @@
 
 #include "compiler/graph/lanes/lanes.h"
 
-/* The components of q, if a step is such a length: its derivatives are those of |q - t d| with t held where it is.
-   False: it is none. */
+/* Finds the components of q, if a step is such a length: its derivatives are those of |q - t d|
+   with t held where it is.  False: it is none. */
 bool lane_from_segment(const LaneTape *tape, const LaneStep *step, uint32_t from[MAX_OPERANDS]);
 
 #endif

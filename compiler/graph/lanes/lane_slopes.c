@@ -97,7 +97,7 @@ static LaneSlope slope_by_partials(const Run *run, const NumberRow *row, const R
 
 /* ---- lengths ---- */
 
-/* The slope of a length: no more than the derivative of the vector. */
+/* Returns the slope of a length: no more than the derivative of the vector. */
 static LaneSlope slope_of_length(const Run *run)
 {
     uint32_t only = lane_only_operand(run->tape, run->ranges, run->step);
@@ -156,7 +156,7 @@ static LaneSlope slope_by_rule(const Run *run)
     return slope_of_fact(&fact, 0);
 }
 
-/* False: it is no outline, or its derivatives are not known. */
+/* Finds the slopes of an outline; false: it is none, or its derivatives are not known. */
 static bool run_outline(Run *run, const LaneCall *call)
 {
     const OutlinePartials p     = lane_outline_partials(run->tape, run->ranges, run->at);
@@ -221,7 +221,7 @@ static void run_step(Run *run)
     run->slopes[LANE_INPUTS + run->at] = same ? NO_SLOPE : slope;
 }
 
-/* Normals and footprints may change in any way. */
+/* Sets the slopes of inputs.  Normals and footprints may change in any way. */
 static void start_inputs(Run *run)
 {
     for (uint32_t k = 0; k < LANE_INPUTS; k++)

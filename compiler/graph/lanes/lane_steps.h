@@ -7,8 +7,8 @@
 #include "compiler/graph/bounds/numbers.h"
 #include "compiler/graph/lanes/lanes.h"
 
-/* What rows of ops.def say of a step; LANE_LESSER and LANE_GREATER are as min and max are of numbers.  Of others nothing is
-   known, as of a leaf. */
+/* Returns the row of ops.def for a step; LANE_LESSER and LANE_GREATER are as min and max are of
+   numbers.  Of others nothing is known, as of a leaf. */
 static inline const NumberRow *lane_row(const LaneStep *step)
 {
     if (step->op < OP_COUNT)
@@ -25,7 +25,7 @@ static inline bool lane_is_sure(const LaneTape *tape, const LaneRanges *ranges, 
     return ranges->sure[operand];
 }
 
-/* The ranges of all operands; 0 where there is none. */
+/* Finds the ranges of all operands; 0 where there is none. */
 static inline void lane_operands(const LaneTape *tape, const LaneRanges *ranges,
                                  const LaneStep *step, Range o[MAX_OPERANDS])
 {
@@ -33,7 +33,8 @@ static inline void lane_operands(const LaneTape *tape, const LaneRanges *ranges,
         o[k] = k < step->operand_count ? lane_range_at(tape, ranges, step->operands[k]) : ZERO;
 }
 
-/* Which operands a step may be in the box, where all are numbers, as bits; 0: it may be another number. */
+/* Returns which operands a step may be in the box, where all are numbers, as bits; 0: it may be
+   another number. */
 static inline unsigned lane_chooses(const LaneTape *tape, const LaneRanges *ranges,
                                     const LaneStep *step)
 {
@@ -44,7 +45,7 @@ static inline unsigned lane_chooses(const LaneTape *tape, const LaneRanges *rang
     return lane_row(step)->chooses(o);
 }
 
-/* The only operand among these; NODE_NONE: there are none, or several. */
+/* Returns the only operand among these; NODE_NONE: there are none, or several. */
 static inline uint32_t lane_only_of(const LaneStep *step, unsigned chosen)
 {
     for (uint32_t k = 0; k < step->operand_count; k++)

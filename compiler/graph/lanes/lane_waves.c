@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-/* The other operand of a step of this kind that has a scalar above 0; NODE_NONE: it is no such step. */
+/* Returns the other operand of a step of this kind that has a scalar above 0; NODE_NONE: it is no
+   such step. */
 static uint32_t beside_scalar(const LaneTape *tape, uint32_t operand, uint16_t op, double *scalar)
 {
     const LaneStep *step = lane_step_of(tape, operand);
@@ -14,7 +15,8 @@ static uint32_t beside_scalar(const LaneTape *tape, uint32_t operand, uint16_t o
     return NODE_NONE;
 }
 
-/* The number of periods in `a`, which is a quotient, or a product with the reciprocal. */
+/* Tells whether an operand is the number of periods in `a`: a quotient, or a product with the
+   reciprocal. */
 static bool counts_periods(const LaneTape *tape, uint32_t operand, uint32_t a, double period)
 {
     static const double ROUNDING = 0x1p-51;
@@ -25,7 +27,7 @@ static bool counts_periods(const LaneTape *tape, uint32_t operand, uint32_t a, d
            fabs(scalar * period - 1) <= ROUNDING;
 }
 
-/* The number whose distance to multiples a step is; NODE_NONE: it is no such distance. */
+/* Returns the number whose distance to multiples a step is; NODE_NONE: it is no such distance. */
 static uint32_t waving(const LaneTape *tape, const LaneStep *step, double *period)
 {
     const LaneStep *offset = step->op == OP_abs ? lane_step_of(tape, step->operands[0]) : NULL;
@@ -39,7 +41,7 @@ static uint32_t waving(const LaneTape *tape, const LaneStep *step, double *perio
     return offset->operands[0];
 }
 
-/* More than what rounding moves the steps by. */
+/* Returns more than what rounding moves the steps by. */
 static double slack_of(Range a, double period) { return 0x1p-48 * (range_largest(a) + period); }
 
 LaneWave lane_wave(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step)

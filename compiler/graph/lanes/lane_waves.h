@@ -15,9 +15,10 @@ typedef struct LaneWave {
         last; /* the nearest multiples are from `first` to `last` times the period */
 } LaneWave;
 
-/* What a step is in the box of a run of ranges. */
+/* Returns the wave that a step is in the box of a run of ranges. */
 LaneWave lane_wave(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step);
-/* Its range, once those of the steps before are known; ANYTHING: it is no such distance. */
+/* Returns the range of a step, once those of the steps before are known; ANYTHING: it is no such
+   distance. */
 Range lane_wave_range(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step);
 
 #endif

@@ -33,7 +33,7 @@ enum {
     LANE_NUMBER /* in cell tapes alone: a number, whose bits are in the place of the first operand */
 };
 
-/* What a step works on: the number of a value, or this bit and the number of a scalar.  Values are the
+/* An operand is the number of a value, or this bit and the number of a scalar.  Values are the
    inputs, then the results of the steps. */
 #define LANE_SCALAR 0x80000000u
 enum {
@@ -61,7 +61,7 @@ typedef struct LaneStep {
         kin; /* the same for steps that are one step of the tape, or of a body, at different instances */
 } LaneStep;
 
-/* How a step is run: on rows and, where the bit of the operand is set, scalars. */
+/* The operation of a step on rows and, where the bit of the operand is set, scalars. */
 typedef struct LaneCode {
     uint16_t op;
     uint8_t  operand_count, scalars;
@@ -106,38 +106,39 @@ typedef struct LaneTape {
     uint32_t    bodies_end; /* behind the rows of all bodies; 0: there are none */
 } LaneTape;
 
-/* What an instance function does at an instance: its outputs are the components of its states. */
+/* The tape of an instance function at an instance: its outputs are the components of its states. */
 typedef struct LaneBody {
     LaneTape tape;
     uint32_t function, table; /* their numbers */
     uint32_t first_row;       /* of its rows in the work space; its scalars lie behind them */
 } LaneBody;
 
-/* Outputs are the components of the roots, one root after the other; the tape has these roots, no guards
-   that skip, and lives as long.  With `least`, output 0 is the least of all roots but the last
-   `cuts`, which are numbers, cut by those: as far as the greatest of them is greater. */
+/* Makes a lane tape.  Outputs are the components of the roots, one root after the other; the tape
+   has these roots, no guards that skip, and lives as long.  With `least`, output 0 is the least of
+   all roots but the last `cuts`, which are numbers, cut by those: as far as the greatest of them is
+   greater. */
 LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, bool least,
                        size_t cuts, Arena *arena);
-/* The same, and steps know how fast they change at most. */
+/* Returns the same, and steps know how fast they change at most. */
 LaneTape lane_tape_new_steep(const Tape *tape, const Node *roots, size_t root_count, bool least,
                              size_t cuts, Arena *arena);
 
-/* The step that an operand is the result of; NULL: none. */
+/* Returns the step that an operand is the result of; NULL: none. */
 static inline const LaneStep *lane_step_of(const LaneTape *tape, uint32_t operand)
 {
     bool step = !(operand & LANE_SCALAR) && operand >= LANE_INPUTS;
     return step ? &tape->steps[operand - LANE_INPUTS] : NULL;
 }
 
-/* The values of its scalars: `values` is as tape_run_frame fills it; `scalars` has room for
-   scalar_count. */
+/* Computes the values of its scalars: `values` is as tape_run_frame fills it; `scalars` has room
+   for scalar_count. */
 void lane_tape_scalars(const LaneTape *tape, const NodeValue *values, double *scalars);
 
 /* ---- points ---- */
 
 typedef enum LanePrecision { LANE_DOUBLE, LANE_SINGLE, LANE_PRECISIONS } LanePrecision;
 
-/* What one thread needs to run a lane tape, and all that it is pruned to. */
+/* The memory of one thread for a lane tape, and all that it is pruned to. */
 typedef struct LaneWork {
     void *rows; /* aligned to 64 bytes */
     NodeValue *
@@ -162,7 +163,7 @@ static inline size_t lane_steps_of_calls(const LaneTape *tape)
             steps += MAX_STEPS_OF_INSTANCES;
     return steps;
 }
-/* The most steps of a lane tape and of all that it is pruned to, and the most rows. */
+/* Returns the most steps of a lane tape and of all that it is pruned to, and the most rows. */
 static inline size_t lane_max_steps(const LaneTape *tape)
 {
     return tape->count + lane_steps_of_calls(tape);
@@ -172,7 +173,7 @@ static inline size_t lane_most_rows(const LaneTape *tape)
     return tape->rows + lane_steps_of_calls(tape);
 }
 
-/* Bytes of rows, and the rows within a block of memory of that size. */
+/* These return the bytes of rows, and the rows within a block of memory of that size. */
 size_t   lane_work_bytes(const LaneTape *tape);
 LaneWork lane_work_in(void *memory, NodeValue *values);
 
@@ -183,13 +184,14 @@ typedef struct LanePoints {
     size_t        count;
 } LanePoints;
 
-/* Outputs `first` to first + outputs - 1 in all points: that of point i to results[i * outputs]. */
+/* Computes outputs `first` to first + outputs - 1 in all points: that of point i goes to results[i
+   * outputs]. */
 void lane_run(const LaneTape *tape, const LaneWork *work, LanePrecision precision,
               LanePoints points, size_t first, size_t outputs, double *results);
 
-/* How an instruction set runs a block of rows whose inputs are filled. */
+/* Runs a block of rows whose inputs are filled, by an instruction set. */
 typedef void LaneRun(const LaneTape *tape, const LaneWork *work, size_t points);
-/* How it runs a cell tape (lane_cells.h) on all lanes. */
+/* A lane tape runs cell tapes (lane_cells.h) on all lanes. */
 struct CellTape;
 typedef void LaneCellRun(const struct CellTape *tape, NodeValue *values, float *rows);
 /* The same on so many blocks of lanes, for a tape without calls: rows are as wide as all of them, and those of inputs
@@ -203,11 +205,11 @@ typedef struct LaneSet {
     LaneWideRun *run_wide;
 } LaneSet;
 
-/* The sets that this processor has, best first; the last is plain C. */
+/* Returns the sets that this processor has, best first; the last is plain C. */
 size_t lane_sets(const LaneSet **sets);
 /* Makes all threads use this set only, for tests; NULL: the best. */
 void lane_use_set(const LaneSet *set);
-/* The one that is used. */
+/* Returns the one that is used. */
 const LaneSet *lane_used_set(void);
 
 /* ---- boxes ---- */
@@ -227,13 +229,13 @@ typedef struct LaneRanges {
     double chords;  /* 0, or above: and if curves of outlines are so far away from where they are */
 } LaneRanges;
 
-/* Room for those of a lane tape, and of all that it is pruned to. */
+/* Makes room for the ranges of a lane tape, and of all that it is pruned to. */
 LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena);
 /* Returns that of output 0; it holds where the value is a number.  Normals and footprints may be
    anything. */
 Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box);
-/* The same, but narrower where steps know how fast they change.  Rotated boxes grow, so ranges of a
-   chain of rotations are wide; balls do not.  It takes twice the time. */
+/* Returns the same, but narrower where steps know how fast they change.  Rotated boxes grow, so
+   ranges of a chain of rotations are wide; balls do not.  It takes twice the time. */
 Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box box);
 /* Returns the range of an output, after a run. */
 Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output);
@@ -251,7 +253,7 @@ typedef struct LaneSlope {
     Range by[3];
 } LaneSlope;
 
-/* Room for those of a lane tape, and of all that it is pruned to; for one thread. */
+/* Makes room for the slopes of a lane tape, and of all that it is pruned to; for one thread. */
 LaneSlope *lane_slopes_new(const LaneTape *tape, Arena *arena);
 /* Finds, after a run over a box, the slopes of output 0 in it.  They are of its pieces if it
    chooses between some.  False: it may not be a number, or there is no bound. */
@@ -269,7 +271,7 @@ typedef struct LaneHessian {
     bool  known, flat; /* whether there are bounds; all are 0 */
 } LaneHessian;
 
-/* Room for those of a lane tape, and of all that it is pruned to; for one thread. */
+/* Makes room for the Hessians of a lane tape, and of all that it is pruned to; for one thread. */
 LaneHessian *lane_hessians_new(const LaneTape *tape, Arena *arena);
 /* Finds, after a run of slopes over a box, the second derivatives of output 0 in it, whose first
    derivatives do not jump there.  False: they may, or there is no bound. */

@@ -66,7 +66,7 @@ static double greatest(const double *sides, uint32_t count)
     return most;
 }
 
-/* The value at the corner, which grows with each side. */
+/* Returns the value at the corner, which grows with each side. */
 static double corner_at(const double *sides, uint32_t count)
 {
     double square = 0;
@@ -174,7 +174,7 @@ static uint32_t sides_that_count(const Search *s, const CsgPart *part)
     return count;
 }
 
-/* Which operands of two may be the result, or change it. */
+/* Finds which operands of two may be the result, or change it. */
 static void find_operands(const Search *s, const CsgPart *part, bool *a_counts, bool *b_counts)
 {
     Range  a = s->range[part->a], b = s->range[part->b];
@@ -190,7 +190,7 @@ static bool may_blend(const Search *s, const CsgPart *part)
     return fmax(b.low - a.high, a.low - b.high) <= part->number;
 }
 
-/* Which operands that mattered may have a share, as bits. */
+/* Returns which operands that mattered may have a share, as bits. */
 static uint32_t find_sharers(const Search *s, const CsgPart *part, const bool *mattered)
 {
     uint32_t bits  = 0;
@@ -250,7 +250,7 @@ static void mark_operands(const Search *s, const CsgPart *part, const bool *matt
     matters[part->a] |= a;
 }
 
-/* The most that the whole may be where a corner is not below 0. */
+/* Returns the most that the whole may be where a corner is not below 0. */
 static double max_beside(Search *s, const Cell *cell, uint32_t corner)
 {
     const CsgTree *tree = s->tree;
@@ -265,7 +265,7 @@ static double max_beside(Search *s, const Cell *cell, uint32_t corner)
     return s->other[tree->count - 1].high;
 }
 
-/* What is nearest to an edge of a corner is outside of two sides. */
+/* Tells whether a cell may be nearest to an edge of a corner: it is outside of two sides. */
 static bool may_be_round(Search *s, const Cell *cell, uint32_t corner)
 {
     const CsgPart *part    = &s->tree->parts[corner];
@@ -275,7 +275,7 @@ static bool may_be_round(Search *s, const Cell *cell, uint32_t corner)
     return !part->is_round && outside > 1 && !(max_beside(s, cell, corner) <= 0);
 }
 
-/* How small the box is: what is in question there is needed. */
+/* The size below which all of a box is needed. */
 typedef struct Size {
     bool least, min_at_edges;
 } Size;
@@ -319,7 +319,7 @@ static bool find_influences(Search *s, const Cell *cell, bool *matters, Size siz
 
 static void visit(Search *s, const Cell *cell);
 
-/* The cell of a half; with a tape for the leaves that matter, where they are much fewer. */
+/* Returns the cell of a half; with a tape for the leaves that matter, where they are much fewer. */
 static Cell prune_cell(const Search *s, const Cell *cell, bool *matters, Arena *arena)
 {
     Cell      inner   = {.box = cell->box, .matters = matters};
@@ -375,7 +375,7 @@ static void visit(Search *s, const Cell *cell)
 
 /* ---- all around ---- */
 
-/* Outside of the box nothing may be inside of the solid. */
+/* Tells whether a cell is outside of the box, where nothing may be inside of the solid. */
 static bool is_outside(Search *s, Cell cell)
 {
     const Box box = cell.box;
@@ -411,7 +411,7 @@ static Cell whole_cell(const CsgTree *tree, Box box, Tape *tape, Arena *scratch)
     return cell;
 }
 
-/* The lane tape's numbers: nothing depends on the frame. */
+/* Sets the lane tape's numbers: nothing depends on the frame. */
 static void set_scalars(Cell *cell, const Tape *tape, Arena *scratch)
 {
     NodeValue *values     = arena_new_array(scratch, NodeValue, tape->graph->count);

@@ -36,7 +36,7 @@ static bool is_zero(const Making *m, Node node)
 
 /* ---- corners ---- */
 
-/* The operand of an operation beside 0; NODE_NONE: it is no such operation. */
+/* Returns the operand of an operation beside 0; NODE_NONE: it is no such operation. */
 static Node beside_zero(const Making *m, Node node, Op op)
 {
     const Expr *e = expr_of(m, node);
@@ -70,7 +70,7 @@ static bool is_greatest(const Making *m, Node node, const Node *sides, uint32_t 
     return leaves == count && found == (1u << count) - 1;
 }
 
-/* The sides of length(max(sides, 0)), which may be one vector; 0: it is something else. */
+/* Returns the sides of length(max(sides, 0)), which may be one vector; 0: it is something else. */
 static uint32_t sides_of_length(const Making *m, Node node, Node sides[MAX_SIDES])
 {
     const Expr *e = expr_of(m, node);
@@ -95,7 +95,7 @@ static uint32_t sides_of_length(const Making *m, Node node, Node sides[MAX_SIDES
     return count;
 }
 
-/* length(max(sides, 0)) + min(greatest of sides, 0) */
+/* Finds the sides of length(max(sides, 0)) + min(greatest of sides, 0). */
 static uint32_t sides_of_corner(const Making *m, Node node, Node sides[MAX_SIDES])
 {
     const Expr e = *expr_of(m, node);
@@ -110,8 +110,8 @@ static uint32_t sides_of_corner(const Making *m, Node node, Node sides[MAX_SIDES
 
 /* ---- the tree ---- */
 
-/* A minimum where its operands differ by its width or more, and as steep as they are.  Not stairs, whose number is a
-   fourth operand. */
+/* Tells whether it is a minimum where its operands differ by its width or more, and as steep as
+   they are.  Not stairs, whose number is a fourth operand. */
 static bool is_narrow_blend(Op op)
 {
     const double n = 2;
@@ -156,8 +156,8 @@ static CsgPart part_of_corner(const Making *m, Node node, const Node *sides, uin
     return part;
 }
 
-/* The numbers that a blend of several is of, without those that are nowhere; 0: it is none of known width, or of
-   other vectors than of numbers. */
+/* Returns the numbers that a blend of several is of, without those that are nowhere; 0: it is none
+   of known width, or of other vectors than of numbers. */
 static uint32_t operands_of_shares(const Making *m, const Expr *e, Node operands[MAX_SHARERS])
 {
     uint32_t count = 0, vectors = e->operand_count - 1u;
@@ -281,7 +281,7 @@ static Node rest_of_corner(Graph *g, const CsgPart *part, const Node *rests)
     return count == part->side_count ? part->node : corner_of(g, sides);
 }
 
-/* Those that share with operand k, or with one that does, as bits. */
+/* Returns those that share with operand k, or with one that does, as bits. */
 static uint32_t who_share_with(const CsgPart *part, uint32_t k)
 {
     uint32_t all = 1u << k, before = 0;
@@ -309,7 +309,7 @@ static Node blend_of(Graph *g, Op op, Node width, const Node *operands, uint32_t
                       : graph_op3(g, sharing.of_eight, vectors[0], vectors[1], width);
 }
 
-/* The least of what those make that share. */
+/* Returns the least of what those make that share. */
 static Node rest_of_shares(Graph *g, const CsgPart *part, const Node *rests)
 {
     const Expr e     = g->items[part->node];
@@ -359,7 +359,7 @@ static Node rest_of(const CsgTree *tree, Arena *scratch)
     return rests[tree->count - 1];
 }
 
-/* What may be left out is known of points, not of frames. */
+/* Tells whether a part depends on the frame: parts are left out by points alone. */
 static bool depends_on_frame(const Graph *graph, const Tape *tape)
 {
     for (size_t i = 0; i < tape->count; i++)

@@ -19,8 +19,8 @@
 #include "compiler/graph/graph.h"
 #include "compiler/graph/range.h"
 
-/* The distance `root` of a solid in `box` without what its CSG nodes do not need; `root` itself where all
-   is needed, or where it depends on the frame. */
+/* Returns the distance `root` of a solid in `box` without what its CSG nodes do not need; `root`
+   itself where all is needed, or where it depends on the frame. */
 Node csg_nodes_prune(Graph *graph, Node root, Box box, Arena *scratch);
 
 #endif

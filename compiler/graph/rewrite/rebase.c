@@ -46,7 +46,7 @@ static Node zero_like(Graph *g, Node node)
     return graph_constant(g, (GraphType)g->items[node].type, zeros);
 }
 
-/* a + b and a - b: what does not depend on the point joins the base. */
+/* Splits a + b and a - b: what does not depend on the point joins the base. */
 static SplitValue add_values(Graph *g, Op op, SplitValue a, SplitValue b)
 {
     SplitValue sum  = {NODE_NONE, NODE_NONE};
@@ -64,7 +64,7 @@ static SplitValue add_values(Graph *g, Op op, SplitValue a, SplitValue b)
     return sum;
 }
 
-/* The same linear operation on both; other operands stand still. */
+/* Returns the same linear operation on both; other operands stand still. */
 static SplitValue map_value(Graph *g, const Expr *e, SplitValue a, int index)
 {
     Node operands[MAX_OPERANDS];
@@ -91,7 +91,7 @@ static SplitValue make_vector(Graph *g, const Expr *e, const SplitValue *compone
     return (SplitValue){graph_op(g, e->op, bases), graph_op(g, e->op, rests)};
 }
 
-/* w - dot(u, base): the offset of a mirror as the rest sees it. */
+/* Returns w - dot(u, base): the offset of a mirror as the rest sees it. */
 static Node offset_seen(Graph *g, const Expr *e, SplitValue a)
 {
     Node depth = graph_op2(g, OP_dot, e->operands[1], a.base);
@@ -113,7 +113,8 @@ static SplitValue fold_value(Graph *g, const Expr *e, SplitValue a)
     return folded;
 }
 
-/* round, floor and ceil: that of the base, and that of what is relative and the base's excess. */
+/* Splits round, floor and ceil: that of the base, and that of what is relative and the base's
+   excess. */
 static SplitValue round_value(Graph *g, const Expr *e, SplitValue a)
 {
     SplitValue rounded  = {graph_op1(g, e->op, a.base), NODE_NONE};
@@ -123,7 +124,7 @@ static SplitValue round_value(Graph *g, const Expr *e, SplitValue a)
     return rounded;
 }
 
-/* min, max and clamp by limits that stand still. */
+/* Splits min, max and clamp by limits that stand still. */
 static SplitValue limit_value(Graph *g, const Expr *e, SplitValue a)
 {
     Node operands[MAX_OPERANDS] = {a.relative};
@@ -134,7 +135,7 @@ static SplitValue limit_value(Graph *g, const Expr *e, SplitValue a)
     return (SplitValue){a.base, graph_op(g, e->op, operands)};
 }
 
-/* a < b as rest a - rest b < base b - base a. */
+/* Compares a < b as rest a - rest b < base b - base a. */
 static Node compare_values(Graph *g, const Expr *e, SplitValue a, SplitValue b)
 {
     SplitValue difference = add_values(g, OP_sub, a, b);
@@ -156,7 +157,7 @@ static bool others_are_held_constant(const Graph *g, const Expr *e, const SplitV
     return true;
 }
 
-/* An operation of which nothing is known but its value. */
+/* Returns an operation of which nothing is known but its value. */
 static SplitValue plain_value(Graph *g, const Expr *e, const SplitValue *values)
 {
     Node operands[MAX_OPERANDS];
@@ -186,13 +187,13 @@ static SplitValue rebase_sum(Graph *g, const Expr *e, const SplitValue *p)
     return add_values(g, (Op)e->op, p[0], p[1]);
 }
 
-/* Linear in the first operand. */
+/* Splits what is linear in the first operand. */
 static SplitValue rebase_linear(Graph *g, const Expr *e, const SplitValue *p)
 {
     return others_are_held_constant(g, e, p, 0) ? map_value(g, e, p[0], 0) : plain_value(g, e, p);
 }
 
-/* Linear in each operand. */
+/* Splits what is linear in each operand. */
 static SplitValue rebase_product(Graph *g, const Expr *e, const SplitValue *p)
 {
     int first = p[0].base != NODE_NONE ? 0 : 1;
@@ -252,8 +253,8 @@ static SplitValue rebase_node(Graph *g, const Expr *e, const SplitValue *p)
 
 /* ---- instance groups ---- */
 
-/* What is relative in a table, and the points of its calls.  So rows and grids are small numbers near the
-   camera, which the host finds. */
+/* The columns of a table that are relative, and the points of its calls.  So rows and grids are
+   small numbers near the camera, which the host finds. */
 typedef struct Relocated {
     Node base; /* of the points; NODE_NONE: they are as they are */
     bool stays;
@@ -270,7 +271,7 @@ static uint32_t table_of_call(const Graph *g, const Expr *call)
     return g->instances->functions.items[function].table_number;
 }
 
-/* Which tables stay as they are: also those that instances of others call. */
+/* Notes which tables stay as they are: also those that instances of others call. */
 static Relocated *new_relocated(const Graph *g, Arena *scratch)
 {
     const Instances *instances = g->instances;
@@ -289,7 +290,7 @@ static Relocated *new_relocated(const Graph *g, Arena *scratch)
     return tables;
 }
 
-/* All calls of a table have the same base, or it stays. */
+/* Notes the base of a call.  All calls of a table have the same base, or it stays. */
 static void note_call(const Graph *g, const Expr *call, Node base, Relocated *tables)
 {
     Relocated *table = &tables[table_of_call(g, call)];
@@ -312,7 +313,7 @@ static void keep_bases(Graph *g, Relocated *tables)
     }
 }
 
-/* What a call has in the place of its point: along axes without a column all of it. */
+/* Returns what a call has in the place of its point: along axes without a column all of it. */
 static SplitValue point_of_call(Graph *g, const InstanceTable *table, SplitValue point)
 {
     Node parts[MAX_OPERANDS], zero = graph_number(g, 0);
@@ -326,7 +327,7 @@ static SplitValue point_of_call(Graph *g, const InstanceTable *table, SplitValue
                      : sum_of(g, (SplitValue){graph_op(g, OP_vec3, parts), point.relative}));
 }
 
-/* A number of a row, which is relative to the base of its table. */
+/* Returns a number of a row, which is relative to the base of its table. */
 static SplitValue row_value(Graph *g, const Expr *row, const SplitValue *operands,
                             const Relocated *tables)
 {
@@ -341,7 +342,7 @@ static SplitValue row_value(Graph *g, const Expr *row, const SplitValue *operand
 
 /* ---- all ---- */
 
-/* First without the bases of tables, which are found, then with them. */
+/* Rebases a tape: first without the bases of tables, which are found, then with them. */
 static void rebase_tape(Graph *g, const Tape *tape, Node rebase_origin, Relocated *tables,
                         bool finds, SplitValue *values)
 {

@@ -59,8 +59,8 @@ static Node zero(const Rewrite *s)
 
 static Node op2(const Rewrite *s, Op op, Node a, Node b) { return graph_op2(s->graph, op, a, b); }
 
-/* The constant that `op` makes of two, or NODE_NONE where it is not finite or the digits of a
-   subnormal would be lost. */
+/* Returns the constant that `op` makes of two, or NODE_NONE where it is not finite or the digits of
+   a subnormal would be lost. */
 static Node gathered(const Rewrite *s, Op op, Node a, Node b)
 {
     Node node = op2(s, op, a, b);
@@ -72,7 +72,7 @@ static Node gathered(const Rewrite *s, Op op, Node a, Node b)
     return node;
 }
 
-/* x `op` (c `join` d) for (x `op` c) ... d, where the constants gather. */
+/* Makes x `op` (c `join` d) of (x `op` c) ... d, where the constants gather. */
 static Node gather(const Rewrite *s, Op op, Node x, Op join, Node c, Node d)
 {
     Node both = gathered(s, join, c, d);
@@ -264,7 +264,7 @@ static Node simplify_component(const Rewrite *s)
     return operand(s, a, expr(s, a)->operand_count > 1 ? (int)s->index : 0);
 }
 
-/* [v.x, v.y, v.z] is v, and [x, x, x] a splat. */
+/* Simplifies a vector: [v.x, v.y, v.z] is v, and [x, x, x] a splat. */
 static Node simplify_vector(const Rewrite *s)
 {
     static const Op splats[] = {OP_splat2, OP_splat3, OP_splat4};
@@ -328,14 +328,14 @@ static Node simplify_smin(const Rewrite *s)
     return NODE_NONE;
 }
 
-/* What is left of it when materials have been lowered is of distances. */
+/* Simplifies a footprint to 0: when materials have been lowered, the rest is of distances. */
 static Node simplify_footprint(const Rewrite *s)
 {
     const double nothing[4] = {0};
     return graph_constant(s->graph, s->type, nothing);
 }
 
-/* There is no rule. */
+/* Keeps a node without a rule. */
 static Node simplify_none(const Rewrite *s)
 {
     (void)s;
@@ -384,7 +384,7 @@ static Node rebuild(Simplifier *simplifier, const Expr *e, bool with_rules)
                                  : graph_op(graph, e->op, step.o);
 }
 
-/* What the roots need of `old`, by the rules or as it is, in a new graph. */
+/* Copies what the roots need of `old`, by the rules or as it is, into a new graph. */
 static Graph *rebuild_all(const Graph *old, Node *roots, size_t root_count, bool with_rules,
                           Arena *arena)
 {
@@ -417,7 +417,7 @@ static bool is_small_part(const Graph *graph, const Node *roots, size_t root_cou
     return tape_new(graph, roots, root_count, arena).count < graph->count / 8;
 }
 
-/* What one rule makes may fit another, so it is done again while it helps. */
+/* Simplifies again while it helps: what one rule makes may fit another. */
 static Graph *simplify_all(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
 {
     if (is_small_part(graph, roots, root_count, arena))

@@ -33,7 +33,7 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
     return rules[e.op](d, &e, node, inner);
 }
 
-/* The derivatives along one axis of all nodes on the tape; NODE_NONE: reached one without. */
+/* Returns the derivatives along one axis of all nodes on the tape; NODE_NONE: reached one without. */
 static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, Node *blame)
 {
     Graph *g = d->graph;

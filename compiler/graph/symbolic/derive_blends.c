@@ -16,7 +16,7 @@ typedef struct Blending {
     Node        sharp[2];
 } Blending;
 
-/* What the derivatives of a and b are multiplied by. */
+/* The factors of the derivatives of a and b. */
 typedef struct Weights {
     Node of_a, of_b;
 } Weights;
@@ -25,7 +25,7 @@ typedef struct Weights {
 
 static Node width_above_zero(Blending *x) { return not_zero(x->derivation, x->width); }
 
-/* |a - b| / k */
+/* Returns |a - b| / k. */
 static Node widths_between(Blending *x)
 {
     Graph *g          = x->graph;
@@ -33,7 +33,7 @@ static Node widths_between(Blending *x)
     return over(g, difference, width_above_zero(x));
 }
 
-/* max(1 - |a - b| / k, 0) */
+/* Returns max(1 - |a - b| / k, 0). */
 static Node nearness(Blending *x)
 {
     Graph *g     = x->graph;
@@ -56,7 +56,7 @@ static Node power(Blending *x, Node number, uint32_t exponent)
     return mul(x->graph, power(x, number, exponent - 1), number);
 }
 
-/* 1 / (1 + e^t) = e^-t / (1 + e^-t), which never overflows where t is at least 0 */
+/* Returns 1 / (1 + e^t) = e^-t / (1 + e^-t), which never overflows where t is at least 0. */
 static Node logistic(Blending *x, Node t)
 {
     Graph *g       = x->graph;
@@ -77,7 +77,8 @@ static Weights by_farther(Blending *x, Node far)
     return weights;
 }
 
-/* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)): along the arc, as deep as each is. */
+/* Weights max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)): along the arc, as deep as each
+   is. */
 static Weights by_arc(Blending *x)
 {
     Graph *g    = x->graph;
@@ -92,7 +93,7 @@ static Weights by_arc(Blending *x)
     return (Weights){weight[0], weight[1]};
 }
 
-/* min(a, b, (a + b - k) / sqrt(2)) */
+/* Weights min(a, b, (a + b - k) / sqrt(2)). */
 static Weights by_cut(Blending *x)
 {
     Graph *g     = x->graph;
@@ -105,7 +106,7 @@ static Weights by_cut(Blending *x)
     return (Weights){weight[0], weight[1]};
 }
 
-/* min(a, b, (b - k + a + |mod(b - k - a + s, 2 s) - s|) / 2), s the width of a step */
+/* Weights min(a, b, (b - k + a + |mod(b - k - a + s, 2 s) - s|) / 2), s the width of a step. */
 static Weights by_steps(Blending *x)
 {
     Graph *g       = x->graph;
@@ -177,7 +178,7 @@ typedef struct Sharing {
 
 static Node share_linear(const Sharing *x) { return x->below; }
 
-/* 2 v^2, or 1 - 2 (1 - v)^2 above a half: 1/2 + 2 u - 2 u |u| with u = v - 1/2 */
+/* Returns 2 v^2, or 1 - 2 (1 - v)^2 above a half: 1/2 + 2 u - 2 u |u| with u = v - 1/2. */
 static Node share_curved(const Sharing *x)
 {
     Graph *g      = x->graph;
@@ -224,7 +225,7 @@ Node derive_shares(Derivation *d, const Expr *e, Node node, const Node *inner)
     return between_jumps(d, sum);
 }
 
-/* clamp(1/2 + (b - a) / 2k, 0, 1) */
+/* Derives clamp(1/2 + (b - a) / 2k, 0, 1). */
 Node derive_blend_weight(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     (void)node;

@@ -18,7 +18,7 @@ Node between_jumps(Derivation *d, Node derivative)
     return derivative;
 }
 
-/* 1 where a < b, else 0, component by component. */
+/* Returns 1 where a < b, else 0, component by component. */
 static Node is_less(Derivation *d, Node a, Node b)
 {
     Graph *g        = d->graph;
@@ -35,7 +35,7 @@ static Node join(Derivation *d, Op op, Node operand)
     return graph_op2(d->graph, op, operand, d->kept[--d->kept_count]);
 }
 
-/* -1/2 a^(-3/2), with r = a^(-1/2). */
+/* Returns -1/2 a^(-3/2), with r = a^(-1/2). */
 static Node inversesqrt_slope(Derivation *d, Node r)
 {
     Graph *g    = d->graph;
@@ -43,7 +43,7 @@ static Node inversesqrt_slope(Derivation *d, Node r)
     return mul(g, graph_number(g, -0.5), cube);
 }
 
-/* 1 + sign * a^2 */
+/* Returns 1 + sign * a^2. */
 static Node one_and_square(Derivation *d, Node a, Op sign)
 {
     Graph *g      = d->graph;
@@ -51,7 +51,8 @@ static Node one_and_square(Derivation *d, Node a, Op sign)
     return graph_op2(g, sign, graph_number(g, 1), square);
 }
 
-/* asin and acos take what is beyond 1 for 1: there they do not change. */
+/* Returns the derivative of asin, which like acos takes what is beyond 1 for 1: there they do not
+   change. */
 static Node asin_slope(Derivation *d, Node a)
 {
     Graph *g      = d->graph;
@@ -163,7 +164,7 @@ static Partial *const partials[OP_COUNT] = {
 
 /* ---- rules ---- */
 
-/* There is no formula. */
+/* Refuses an operation without a formula. */
 Node derive_none(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     (void)d, (void)e, (void)node, (void)inner;
@@ -191,7 +192,7 @@ Node not_zero(Derivation *d, Node length)
     return graph_op2(g, OP_max, length, graph_number(g, 1e-30));
 }
 
-/* Sum over the operands of the row's derivative times the operand's own. */
+/* Derives by the sum over the operands of the row's derivative times the operand's own. */
 Node derive_by_partials(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     Graph *g = d->graph;
@@ -209,9 +210,9 @@ Node derive_by_partials(Derivation *d, const Expr *e, Node node, const Node *inn
     return sum;
 }
 
-/* min and max of numbers choose: 0 times the derivative of what is not chosen need not be 0.  Of
-   two that are equal the one that changes is chosen: min(x, 0) joins the inside of a solid to its
-   outside. */
+/* Derives min and max of numbers, which choose: 0 times the derivative of what is not chosen need
+   not be 0.  Of two that are equal the one that changes is chosen: min(x, 0) joins the inside of a
+   solid to its outside. */
 Node derive_choice(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     if (e->type != TYPE_FLOAT)
@@ -234,7 +235,7 @@ Node derive_vector(Derivation *d, const Expr *e, Node node, const Node *inner)
     return graph_op(d->graph, (Op)e->op, inner);
 }
 
-/* op(da, b) + op(a, db): what is linear in both of its operands. */
+/* Derives what is linear in both of its operands: op(da, b) + op(a, db). */
 Node derive_bilinear(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     (void)node;
@@ -257,7 +258,7 @@ Node derive_length(Derivation *d, const Expr *e, Node node, const Node *inner)
     return over(g, along, not_zero(d, node));
 }
 
-/* (a' - n (n.a')) / |a| */
+/* Derives normalize: (a' - n (n.a')) / |a|. */
 Node derive_normalize(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     Graph *g      = d->graph;
@@ -277,7 +278,7 @@ bool others_are_constant(const Graph *g, const Node *inner, int from, int count)
     return true;
 }
 
-/* rows a' + rows' a */
+/* Derives a rotation: rows a' + rows' a. */
 Node derive_rotate(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     (void)node;
@@ -307,8 +308,8 @@ Node derive_fold(Derivation *d, const Expr *e, Node node, const Node *inner)
     return between_jumps(d, graph_op3(g, OP_select, front, mirrored, inner[0]));
 }
 
-/* A rotation about y by an angle that stays the same within its sector; its sine and cosine are
-   told by what it has made of the point. */
+/* Returns a rotation about y by an angle that stays the same within its sector; its sine and cosine
+   are told by what it has made of the point. */
 Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     if (!is_zero(d->graph, inner[1]))

@@ -26,9 +26,9 @@ typedef Node DeriveRule(Derivation *d, const Expr *e, Node node, const Node *inn
 
 /* ---- what the rules share ---- */
 
-/* A derivative that holds only where nothing jumps or breaks off. */
+/* Returns a derivative that holds only where nothing jumps or breaks off. */
 Node between_jumps(Derivation *d, Node derivative);
-/* What a length is divided by: below it, what is divided is 0. */
+/* Returns what a length is divided by: below it, what is divided is 0. */
 Node not_zero(Derivation *d, Node length);
 bool is_zero(const Graph *graph, Node node);
 Node zero_of(Graph *graph, GraphType type);

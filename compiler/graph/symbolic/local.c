@@ -84,7 +84,7 @@ static Node choose(const BallContext *x, Node which, Node a, Node b)
     return a == b ? a : graph_op3(x->graph, OP_select, which, a, b);
 }
 
-/* min and max. */
+/* Makes the term of min and max. */
 static BallTerm choice_term(const BallContext *x, Op op, Node value, BallTerm a, BallTerm b)
 {
     Graph   *g          = x->graph;
@@ -106,13 +106,14 @@ static BallTerms new_terms(const BallContext *x, uint32_t count)
     return (BallTerms){count, arena_new_array(x->scratch, BallTerm, count)};
 }
 
-/* Component i of an operand; a number counts for all components. */
+/* Returns component i of an operand; a number counts for all components. */
 static BallTerm term_of(const BallTerms *terms, uint32_t i)
 {
     return terms->items[terms->count > i ? i : 0];
 }
 
-/* The square of a vector's slope in the ball; that of one whose components are linear is known. */
+/* Returns the square of a vector's slope in the ball; that of one whose components are linear is
+   known. */
 static Node steepness_squared(const BallContext *x, Node vector, const BallTerms *terms)
 {
     Graph *g      = x->graph;
@@ -151,7 +152,8 @@ static BallTerm dot_term(const BallContext *x, Node node, const BallTerms *a, co
     return sum;
 }
 
-/* |v + h| is between |v| + n.h and that and |h|^2 / (2 |v|), n = v / |v|. */
+/* Makes the term of a length: |v + h| is between |v| + n.h and that and |h|^2 / (2 |v|), n = v /
+   |v|. */
 static BallTerm length_term(const BallContext *x, Node node, const BallTerms *a)
 {
     Graph     *g     = x->graph;
@@ -295,7 +297,7 @@ static BallTerm local_component(BallContext *x, const OpComponent *p)
     return term_of(&p->operands[0], p->e.index);
 }
 
-/* What builds a vector. */
+/* Makes the term of a component of a built vector. */
 static BallTerm local_vector(BallContext *x, const OpComponent *p)
 {
     (void)x;
@@ -330,7 +332,7 @@ static bool is_even(const Graph *g, const Expr *e)
     return power->op == OP_CONSTANT && power->number[0] >= 2;
 }
 
-/* A node whose operands are known. */
+/* Returns a node whose operands are known. */
 static BallTerms find_node(BallContext *x, Node node, const Tape *tape, const BallTerms *all)
 {
     Expr      e     = x->graph->items[node];
@@ -380,7 +382,7 @@ bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBoun
     return x.bounded;
 }
 
-/* |f| = first r + second r^2. */
+/* Returns the radius r where |f| = first r + second r^2. */
 Node local_radius(Graph *graph, Node root, const LocalBound *bound)
 {
     Node size    = graph_op1(graph, OP_abs, root);

@@ -10,7 +10,7 @@
 
 #include "compiler/graph/bounds/facts.h"
 
-/* For p and p + r v in the box, v of length 1, and 0 <= r <= radius
+/* A bound for p and p + r v in the box, v of length 1, and 0 <= r <= radius:
        |root(p + r v) - root(p)| <= first r + second r^2.
    All three are FLOAT nodes of the point. */
 typedef struct LocalBound {
@@ -22,7 +22,7 @@ typedef struct LocalBound {
 bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBound *bound,
                        Arena *scratch);
 
-/* The r <= radius within which |root| cannot become 0, or a little less. */
+/* Returns the r <= radius within which |root| cannot become 0, or a little less. */
 Node local_radius(Graph *graph, Node root, const LocalBound *bound);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include "compiler/graph/build.h"
 
-/* |u|, from which the poles at 0 are no more than half as far away as the ball may reach. */
+/* Returns |u|, from which the poles at 0 are no more than half as far away as the ball may reach. */
 static Node clear_of_zero(BallContext *x, BallTerm u, Node *reach)
 {
     Graph *g    = x->graph;
@@ -20,7 +20,7 @@ static Node clear_of_zero(BallContext *x, BallTerm u, Node *reach)
     return sub(g, size, *reach);
 }
 
-/* e^reach - 1 over the ball, of which no more is used than reaches by 1. */
+/* Returns e^reach - 1 over the ball, of which no more is used than reaches by 1. */
 static Node growth(BallContext *x, BallTerm u, Node reach)
 {
     Graph *g      = x->graph;
@@ -184,7 +184,8 @@ BallTerm curved_term(BallContext *x, CurveOf *curve_of, Node value, BallTerm u)
     return bend_term(x, value, u, curve_of(x, u, value, reach));
 }
 
-/* |u|^n for a constant n >= 2, which has no kink at 0: M = n (n - 1) (|u| + reach)^(n - 2). */
+/* Makes the term of |u|^n for a constant n >= 2, which has no kink at 0: M = n (n - 1) (|u| +
+   reach)^(n - 2). */
 BallTerm even_power_term(BallContext *x, Node value, BallTerm u, double n)
 {
     Graph *g     = x->graph;
@@ -201,9 +202,9 @@ BallTerm even_power_term(BallContext *x, Node value, BallTerm u, double n)
 }
 
 /*
- * u^n for another constant n, u >= 0.  For n between 1
- * and 2 it is that of u - reach, while this is more than u / 2; nearer to 0 the derivative is
- * within n |h|^(n - 1) of what it is at u, and the tail at most |h|^n <= reach^(n - 1) |h|.
+ * Makes the term of u^n for another constant n, u >= 0.  For n between 1 and 2 it is that of u -
+ * reach, while this is more than u / 2; nearer to 0 the derivative is within n |h|^(n - 1) of what
+ * it is at u, and the tail at most |h|^n <= reach^(n - 1) |h|.
  */
 BallTerm power_term(BallContext *x, Node value, BallTerm u, double n)
 {

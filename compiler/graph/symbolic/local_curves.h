@@ -20,13 +20,13 @@ CurveOf curve_square, curve_sin, curve_cos, curve_atan, curve_tanh, curve_exp, c
 /* 1 / u */
 CurveOf curve_inverse;
 
-/* The term of `value`, which is f(u). */
+/* Returns the term of `value`, which is f(u). */
 BallTerm curved_term(BallContext *x, CurveOf *curve_of, Node value, BallTerm u);
-/* The same for a curve that is known. */
+/* Returns the same for a curve that is known. */
 BallTerm bend_term(const BallContext *x, Node value, BallTerm u, Curve curve);
-/* |u|^n for a constant n >= 2, */
+/* Makes the term of |u|^n for a constant n >= 2. */
 BallTerm even_power_term(BallContext *x, Node value, BallTerm u, double n);
-/* and u^n for another constant n, u >= 0. */
+/* Makes the term of u^n for another constant n, u >= 0. */
 BallTerm power_term(BallContext *x, Node value, BallTerm u, double n);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include "compiler/graph/build.h"
 
-/* How many cells the box is cut into for what has no rule. */
+/* The cells into which the box is cut for what has no rule. */
 enum { CELLS = 256 };
 
 bool has_radius(const BallContext *x) { return x->radius != NODE_NONE; }

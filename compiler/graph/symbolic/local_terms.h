@@ -25,18 +25,18 @@ typedef struct BallContext {
 static const double TINY = 1e-30, SMALL = 1e-6;
 
 bool has_radius(const BallContext *x);
-/* Slope at the point. */
+/* Returns the slope at the point. */
 Node slope_here(const BallContext *x, const BallTerm *a);
-/* Slope in the ball. */
+/* Returns the slope in the ball. */
 Node steepness(const BallContext *x, const BallTerm *a);
 
 /* Make the term of a node `value`: as a number which is the same all over the ball, */
 BallTerm constant_term(const BallContext *x, Node value);
-/* and of one of which nothing is known but its slope over the box. */
+/* Makes the term of a value of which nothing is known but its slope over the box. */
 BallTerm opaque_term(BallContext *x, Node value);
 BallTerm add_terms(const BallContext *x, Node value, BallTerm a, BallTerm b);
 BallTerm negate_term(const BallContext *x, Node value, BallTerm a);
-/* `factor` times the term, for a rule that adds the rest. */
+/* Returns `factor` times the term, for a rule that adds the rest. */
 BallTerm scale_term(const BallContext *x, Node value, BallTerm a, Node factor);
 BallTerm multiply_terms(const BallContext *x, Node value, BallTerm a, BallTerm b);
 

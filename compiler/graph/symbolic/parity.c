@@ -26,7 +26,7 @@ static uint8_t product(uint8_t a, uint8_t b)
     return a == b ? EVEN : ODD;
 }
 
-/* abs, square and the like: what changes its sign does not show. */
+/* Returns the parity of abs, square and the like, in which a change of sign does not show. */
 static uint8_t unsign(uint8_t a) { return a == NEITHER ? NEITHER : EVEN; }
 
 static bool all_even(const Expr *e, const Parity *const *operands, const Graph *graph)
@@ -38,7 +38,7 @@ static bool all_even(const Expr *e, const Parity *const *operands, const Graph *
     return true;
 }
 
-/* The parity of a sum over components of a[k] * b[k]. */
+/* Returns the parity of a sum over components of a[k] * b[k]. */
 static uint8_t sum_of_products(const Parity *a, const Parity *b, uint32_t size)
 {
     uint8_t sum = ZERO;
@@ -77,7 +77,8 @@ static uint8_t length_parity(const Parity *vector, uint32_t size)
     return parity;
 }
 
-/* Component k of a node by its rule; o: its operands, the first of `first` components. */
+/* Returns the parity of component k of a node by its rule; o: its operands, the first of `first`
+   components. */
 static uint8_t component_parity(const Expr *e, const Parity *const *o, uint32_t first, uint32_t k)
 {
     switch (op_parity((Op)e->op)) {
@@ -95,7 +96,8 @@ static uint8_t component_parity(const Expr *e, const Parity *const *o, uint32_t 
     return NEITHER;
 }
 
-/* What makes other numbers of numbers, and does not only arrange or sum them up. */
+/* Tells whether an operation makes other numbers of numbers, and does not only arrange or sum them
+   up. */
 static bool is_arithmetic(const Expr *e) { return op_parity((Op)e->op) <= PARITY_PRODUCT; }
 
 static Parity node_parity(const Graph *graph, const Expr *e, const Parity *const *operands,

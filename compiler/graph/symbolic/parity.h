@@ -6,7 +6,7 @@
 
 #include "compiler/graph/graph.h"
 
-/* What an operation makes of even and odd operands: a column of ops.def.  Where all of them are
+/* The parity of an operation by those of its operands: a column of ops.def.  If all of them are
    even, so is any result. */
 typedef enum ParityRule {
     PARITY_NONE,

@@ -40,7 +40,7 @@ typedef struct Expansion {
 
 static bool in_ball(const Expansion *x) { return x->direction == NODE_NONE; }
 
-/* Order k of a series, as a size in balls. */
+/* Returns order k of a series, as a size in balls. */
 static Node order(const Expansion *x, const Series *series, uint32_t k)
 {
     return k == 0 && in_ball(x) ? graph_op1(x->graph, OP_abs, series->c[0]) : series->c[k];
@@ -53,7 +53,7 @@ static void set_gradient(const Expansion *x, SeriesElement *element, Node gradie
         element->series.c[1] = graph_op1(x->graph, OP_length, gradient);
 }
 
-/* The largest size of an eigenvalue of a symmetric matrix: how fast what has these second
+/* Returns the largest size of an eigenvalue of a symmetric matrix: how fast what has these second
    derivatives can bend in any direction. */
 static double largest_bend(double a[3][3])
 {
@@ -99,7 +99,7 @@ static SeriesElement constant_element(const Expansion *x, Node node)
     return element;
 }
 
-/* Coordinate i of the point. */
+/* Returns coordinate i of the point. */
 static SeriesElement coordinate_element(const Expansion *x, uint32_t i)
 {
     SeriesElement element = {.series = {.degree = 1}, .quadric = in_ball(x)};
@@ -143,8 +143,8 @@ static SeriesElement negate_element(const Expansion *x, SeriesElement a)
     return a;
 }
 
-/* The second derivatives of a product of two known linear numbers, or of a quadric and a known
-   constant. */
+/* Multiplies the second derivatives of a product of two known linear numbers, or of a quadric and a
+   known constant. */
 static void multiply_quadrics(const Expansion *x, const SeriesElement *a, const SeriesElement *b,
                               SeriesElement *product)
 {
@@ -202,7 +202,7 @@ static SeriesElements new_elements(const Expansion *x, uint32_t count)
     return (SeriesElements){count, arena_new_array(x->scratch, SeriesElement, count)};
 }
 
-/* Component i of an operand; a number counts for all components. */
+/* Returns component i of an operand; a number counts for all components. */
 static SeriesElement element_of(const SeriesElements *elements, uint32_t i)
 {
     return elements->items[elements->count > i ? i : 0];
@@ -333,7 +333,7 @@ static bool series_component(Expansion *x, Node node, const SeriesElements *oper
     return true;
 }
 
-/* What builds a vector. */
+/* Makes the series of a built vector. */
 static bool series_vector(Expansion *x, Node node, const SeriesElements *operands,
                           SeriesElements *result)
 {
@@ -369,7 +369,7 @@ static Rule *const rules[OP_COUNT] = {
 #include "compiler/graph/ops.def"
 };
 
-/* A node of point time whose operands are expanded. */
+/* Expands a node of point time whose operands are expanded. */
 static bool expand_node(Expansion *x, Node node, const Tape *tape, const SeriesElements *all,
                         SeriesElements *result)
 {
@@ -431,7 +431,7 @@ enum { NEWTON_STEPS = 3 };
 /* Keeps quotients finite; below every coefficient that counts in single precision. */
 static const double TINY = 1e-30;
 
-/* The least root of one term alone: at least r*, and at most twice that. */
+/* Returns the least root of one term alone: at least r*, and at most twice that. */
 static Node first_guess(Graph *g, const Series *s, Node size)
 {
     Node least = NODE_NONE;
@@ -445,7 +445,7 @@ static Node first_guess(Graph *g, const Series *s, Node size)
     return least;
 }
 
-/* S(r) and, beside it, its derivative, by Horner's rule. */
+/* Returns S(r) and, beside it, its derivative, by Horner's rule. */
 static Node series_sum(Graph *g, const Series *s, Node r, Node *derivative)
 {
     Node sum = s->c[s->degree], slope = sum;
@@ -460,8 +460,8 @@ static Node series_sum(Graph *g, const Series *s, Node r, Node *derivative)
     return sum;
 }
 
-/* Newton's steps come down to the root from above, as the sum is convex; the chord from 0 ends
-   below it. */
+/* Returns the radius of a series by Newton's steps, which come down to the root from above, as the
+   sum is convex; the chord from 0 ends below it. */
 Node series_radius(Graph *g, const Series *s)
 {
     Node size = graph_op1(g, OP_abs, s->c[0]);

@@ -17,28 +17,28 @@ typedef struct Series {
     Node     c[MAX_DEGREE + 1];
 } Series;
 
-/* What graph_series could not make, and why. */
+/* The reason why graph_series could not make a series, and where. */
 typedef struct SeriesFault {
     Node     blame;  /* an operation that no polynomial has, or */
     uint32_t degree; /* one whose degree is more than MAX_DEGREE; else 0 */
 } SeriesFault;
 
-/* `root` (FLOAT) along the line origin + t direction (VEC3 nodes).  False when it is not a
+/* Expands `root` (FLOAT) along the line origin + t direction (VEC3 nodes).  False when it is not a
    polynomial of the point, or one of too high a degree. */
 bool graph_line_series(Graph *graph, Node root, Node origin, Node direction, Series *series,
                        SeriesFault *fault, Arena *scratch);
 
 /*
- * `root` in the balls around `point` (a VEC3 node): c[0] is its value there, c[1] the length of its
- * gradient, and the others are so large that for every direction v of length 1
+ * Expands `root` in the balls around `point` (a VEC3 node): c[0] is its value there, c[1] the length
+ * of its gradient, and the others are so large that for every direction v of length 1
  *     |root(point + r v) - c[0]| <= c[1] r + c[2] r^2 + ... + c[degree] r^degree.
  * So there is no zero within the r where the right side reaches |c[0]|.
  */
 bool graph_ball_series(Graph *graph, Node root, Node point, Series *series, SeriesFault *fault,
                        Arena *scratch);
 
-/* The r > 0 with |c[0]| = c[1] r + c[2] r^2 + ..., or a little less, of a series whose c[1], c[2]
-   ... are not negative. */
+/* Returns the r > 0 with |c[0]| = c[1] r + c[2] r^2 + ..., or a little less, of a series whose
+   c[1], c[2] ... are not negative. */
 Node series_radius(Graph *graph, const Series *series);
 
 #endif

@@ -18,7 +18,7 @@
 #include "compiler/graph/symbolic/series.h"
 #include "compiler/graph/range.h"
 
-/* How much is tried, in operations over boxes. */
+/* The work that is tried, in operations over boxes. */
 static const double MAX_WORK = 1e5;
 
 enum { MAX_DEPTH = 6, MIN_DEPTH = 2, SLAB_DEPTH = 5, MAX_ROUNDS = 40 };
@@ -44,7 +44,8 @@ static int sign_of(Range a) { return a.low > 0 ? 1 : a.high < 0 ? -1 : 0; }
 
 /* ---- by the leading form ---- */
 
-/* The t beyond which c_n t^n outweighs what the other terms may take away, over the last box. */
+/* Returns the t beyond which c_n t^n outweighs what the other terms may take away, over the last
+   box. */
 static double outweighed_until(const ZeroSearch *search)
 {
     uint32_t n = search->forms.degree;
@@ -233,7 +234,7 @@ static bool is_endless(Box box)
     return endless;
 }
 
-/* What ranges round, and what single precision makes of the box, stays outside of the zeros. */
+/* Adds what ranges lose by rounding, and what single precision makes of the box. */
 static void add_margin(Box *box)
 {
     for (int i = 0; i < 3; i++) {

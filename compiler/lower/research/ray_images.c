@@ -52,7 +52,7 @@ static Node larger(Lowering *l, Node a, Node b)
     return graph_op2(l->graph, OP_max, a, b);
 }
 
-/* a - axis * along. */
+/* Returns a - axis * along. */
 static Node subtract_along(Lowering *l, Node a, Node axis, Node along)
 {
     Node parallel = graph_op2(l->graph, OP_scale, axis, along);
@@ -66,7 +66,7 @@ static Node reflected(Lowering *l, Node a, Node axis)
     return subtract_along(l, a, axis, mul(g, along, graph_number(g, 2)));
 }
 
-/* A: the length of the image of a short piece of the ray, relative to the piece. */
+/* Returns A: the length of the image of a short piece of the ray, relative to the piece. */
 static Node shrink_of(Lowering *l, const RayImage *image)
 {
     Graph          *g     = l->graph;
@@ -78,7 +78,7 @@ static Node shrink_of(Lowering *l, const RayImage *image)
 
 /* ---- leaves ---- */
 
-/* The t at which the image of the ray leaves the ball of radius |d| around the point. */
+/* Returns the t at which the image of the ray leaves the ball of radius |d| around the point. */
 static Node exit_of(Lowering *l, const RayImage *image, Node d)
 {
     Graph *g = l->graph;
@@ -179,9 +179,9 @@ static Node map_image(Lowering *l, RayImage *image, const Map *map)
     return NODE_NONE;
 }
 
-/* 1 / t where the image of the ray crosses a mirror.  `distance` is that to the mirror, and `speed`
-   the rate at which the ray approaches it.  The result is the larger root y of
-   distance y^2 + (2 distance h.w - speed) y + distance h.h - A h.axis = 0. */
+/* Returns 1 / t where the image of the ray crosses a mirror.  `distance` is that to the mirror, and
+   `speed` the rate at which the ray approaches it.  The result is the larger root y of distance y^2
+   + (2 distance h.w - speed) y + distance h.h - A h.axis = 0. */
 static Node crossing_of(Lowering *l, const RayImage *image, Node axis, Node distance, Node speed)
 {
     Graph *g    = l->graph;
@@ -239,7 +239,8 @@ static Node image_none(Lowering *l, const Shape *shape, RayImage image)
     return length_outside(l, &image, divide_by_slope(l->graph, ball.distance, shape->slope));
 }
 
-/* A bound, by the hull around what an inversion is applied to, converted into a length outside. */
+/* Returns a bound, by the hull around what an inversion is applied to, converted into a length
+   outside. */
 static Node hull_length(Lowering *l, const RayImage *image, const Map *map, Ball ball)
 {
     MapChain here = map_chain_new(l->graph, image->chain.point);

@@ -23,7 +23,7 @@ typedef enum ResearchMethod {
     RESEARCH_COUNT
 } ResearchMethod;
 
-/* lower_along by another method; `plain` where it does not apply. */
+/* Lowers the step along a ray by another method; `plain` if it does not apply. */
 Node lower_research(Graph *graph, const Shape *shape, Node plain, ResearchMethod method,
                     struct LoweredGroups *groups, Arena *scratch);
 

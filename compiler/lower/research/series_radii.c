@@ -19,8 +19,9 @@ Node series_step_of_root_free(Graph *graph, Series *series)
     return series_radius(graph, series);
 }
 
-/* The r with r sum n |P_n| r^(n-1) = |P_0|: the fixed point of Ban and Valasek.  It is found as a
-   root, since their iteration diverges where terms of high order are large (math.md, section 3). */
+/* Returns the r with r sum n |P_n| r^(n-1) = |P_0|: the fixed point of Ban and Valasek.  It is
+   found as a root, since their iteration diverges where terms of high order are large (math.md,
+   section 3). */
 Node series_step_of_taylor(Graph *graph, Series *series)
 {
     drop_signs(graph, series);

@@ -66,7 +66,7 @@ static Part trimmed(Part p)
     return p;
 }
 
-/* The first of these characters that stands in no parentheses, or the end. */
+/* Returns the first of these characters that stands in no parentheses, or the end. */
 static const char *find(Part p, const char *characters)
 {
     int depth = 0;
@@ -79,7 +79,7 @@ static const char *find(Part p, const char *characters)
     return p.end;
 }
 
-/* What is in the parentheses, brackets or braces that begin here. */
+/* Returns what is in the parentheses, brackets or braces that begin here. */
 static Part inside(const char *open, const char *end)
 {
     return part(open + 1, find(part(open + 1, end), ")]}"));
@@ -87,7 +87,7 @@ static Part inside(const char *open, const char *end)
 
 static void add(Speller *s, Part p) { text_add_bytes(s->out, p.from, (size_t)(p.end - p.from)); }
 
-/* The part before a separator; p is what is behind it then. */
+/* Returns the part before a separator; p is what is behind it then. */
 static Part take(Part *p, const char *separator)
 {
     const char *end   = find(*p, separator);
@@ -121,7 +121,8 @@ static void remember(Speller *s, Part name, Part type)
     s->variables[s->count++] = (Variable){name, type};
 }
 
-/* The type of a variable, or the function that is called; nothing: no more is known of an expression. */
+/* Returns the type of a variable, or the function that is called; nothing: no more is known of an
+   expression. */
 static Part type_of(const Speller *s, Part p)
 {
     p               = trimmed(p);
@@ -137,7 +138,7 @@ static Part type_of(const Speller *s, Part p)
     return part(p.from, p.from);
 }
 
-/* How many components it has, as far as that is known. */
+/* Returns how many components a part has, as far as that is known. */
 static int size_of(const Speller *s, Part p)
 {
     const Part  type = type_of(s, p);
@@ -164,7 +165,7 @@ static bool is_number(Part p)
 
 static void spell_expression(Speller *s, Part p);
 
-/* The text of a part by itself. */
+/* Returns the text of a part by itself. */
 static const char *spelled(Speller *s, Part p)
 {
     Text text = {.arena = s->out->arena}, *out = s->out;
@@ -175,7 +176,7 @@ static const char *spelled(Speller *s, Part p)
     return text.bytes;
 }
 
-/* Expressions with commas between. */
+/* Spells expressions with commas between. */
 static void spell_list(Speller *s, Part p)
 {
     while (p.from < p.end) {
@@ -224,7 +225,7 @@ static void fill(Speller *s, const char *words, const Part operands[3])
     }
 }
 
-/* Operands of these have one type: a number beside a vector becomes one. */
+/* Tells whether operands have one type: a number beside a vector becomes one. */
 static bool has_one_type(Part name)
 {
     return is(name, "min") || is(name, "max") || is(name, "clamp");
@@ -275,7 +276,7 @@ static void spell_terms(Speller *s, Part p)
     }
 }
 
-/* The colon of a choice, whose first part may be another one. */
+/* Returns the colon of a choice, whose first part may be another one. */
 static const char *find_colon(Part p)
 {
     for (int choices = 0;; p.from++) {
@@ -321,7 +322,7 @@ static void pass_blanks(Speller *s)
 
 static Part next_word(const Speller *s) { return word_at(s->at, s->end); }
 
-/* The blanks that the line at hand begins with. */
+/* Returns the blanks that the line at hand begins with. */
 static Part indentation(const Speller *s)
 {
     const char *line = s->at;
@@ -330,7 +331,7 @@ static Part indentation(const Speller *s)
     return part(line, line + strspn(line, " "));
 }
 
-/* What belongs to a head, in braces. */
+/* Spells what belongs to a head, in braces. */
 static void spell_body(Speller *s, Part indent)
 {
     const bool block = s->at[strspn(s->at, " \n")] == '{';
@@ -344,7 +345,7 @@ static void spell_body(Speller *s, Part indent)
     text_add(s->out, "}");
 }
 
-/* "vec3 a = b, c, d[4]" */
+/* Spells "vec3 a = b, c, d[4]". */
 static void spell_declaration(Speller *s, Part p)
 {
     const Part  type = word_at(p.from, p.end), indent = indentation(s);
@@ -372,7 +373,7 @@ static void spell_declaration(Speller *s, Part p)
     }
 }
 
-/* What may stand before a semicolon: a declaration, an assignment, an expression. */
+/* Spells what may stand before a semicolon: a declaration, an assignment, an expression. */
 static void spell_simple(Speller *s, Part p)
 {
     const Part word = word_at(p.from, p.end);
@@ -394,7 +395,7 @@ static void spell_simple(Speller *s, Part p)
     spell_expression(s, p);
 }
 
-/* "(int i = 0; i < 4; i++)", or a condition. */
+/* Spells "(int i = 0; i < 4; i++)", or a condition. */
 static void spell_head(Speller *s)
 {
     pass_blanks(s);
@@ -420,7 +421,7 @@ static void spell_block(Speller *s)
     s->at = end + 1;
 }
 
-/* "vec3 krs_cell(vec3 p, float count)", and the block behind it. */
+/* Spells "vec3 krs_cell(vec3 p, float count)", and the block behind it. */
 static void spell_function(Speller *s, Part type, Part name)
 {
     Part        parameters = inside(name.end, s->end);

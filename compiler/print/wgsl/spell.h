@@ -6,8 +6,8 @@
 
 #include "compiler/print/printer.h"
 
-/* A function, or an expression of operands of this type, perhaps with a statement before it; the type
-   does not matter in a function. */
+/* Spells a function, or an expression of operands of this type, perhaps with a statement before it;
+   the type does not matter in a function. */
 void wgsl_spell(const char *text, size_t length, GraphType type, Text *out);
 
 #endif

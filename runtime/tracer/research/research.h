@@ -19,7 +19,7 @@ typedef struct ResearchTrace {
         from_inside; /* what does instead for paths, and for rays that may begin in solids */
 } ResearchTrace;
 
-/* NULL: it is none of these methods. */
+/* Returns the research method of a trace; NULL: it is none of these. */
 const ResearchTrace *research_trace(KrsTrace trace);
 /* Tells whether a scene has what the method is for; else rays step by the distance. */
 bool research_applies(const KrsProgram *program, const ResearchTrace *research);
@@ -31,11 +31,11 @@ typedef struct ResearchPass {
     uint32_t    value;    /* its control.value */
 } ResearchPass;
 
-/* False: there is none.  Open surfaces have no hits to even out: their distance is that of a shell around
-   them. */
+/* Finds the pass of a research method; false: there is none.  Open surfaces have no hits to even
+   out: their distance is that of a shell around them. */
 bool research_pass(const KrsRenderOptions *options, const KrsProgram *program, ResearchPass *pass);
 
-/* What scatter.comp is compiled with. */
+/* Returns what scatter.comp is compiled with. */
 const char *research_starts(KrsStarts starts);
 
 #endif
