@@ -43,16 +43,16 @@ static void compile(Bench *bench, BenchShader *shader, const char *path, const c
     bench_shader_create(bench, shader, text, path, picture);
 }
 
-static VkDeviceSize picture_bytes(const Bench *bench)
+static uint64_t picture_bytes(const Bench *bench)
 {
-    return (VkDeviceSize)bench->width * bench->height * sizeof(float[4]);
+    return (uint64_t)bench->width * bench->height * sizeof(float[4]);
 }
 
 void handwritten_create(Bench *bench, Handwritten *written, const char *path, const KrsView *view,
                         double error)
 {
-    *written           = (Handwritten){.error = error};
-    VkDeviceSize bytes = picture_bytes(bench);
+    *written       = (Handwritten){.error = error};
+    uint64_t bytes = picture_bytes(bench);
     if (!buffer_create(&bench->gpu, &written->picture, bytes, ON_DEVICE, "picture") ||
         !buffer_create(&bench->gpu, &written->fetched, bytes, SHARED, "picture to read"))
         fail("%s", bench->gpu.message);
@@ -72,8 +72,7 @@ static const float (*fetch(Bench *bench, const Handwritten *written))[4]
     double ms = 0; /* as with ours, copying is no phase */
     if (!gpu_begin(&bench->gpu))
         fail("%s", bench->gpu.message);
-    vkCmdCopyBuffer(bench->gpu.commands, written->picture.buffer, written->fetched.buffer, 1,
-                    &(VkBufferCopy){.size = picture_bytes(bench)});
+    gpu_copy(&bench->gpu, &written->picture, 0, &written->fetched, 0, picture_bytes(bench));
     if (!gpu_finish(&bench->gpu, &ms))
         fail("%s", bench->gpu.message);
     return written->fetched.bytes;

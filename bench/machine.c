@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "bench/sheet.h"
+#include "runtime/device/driver.h"
 
 #ifdef __clang__
 #define COMPILER "clang " __clang_version__
@@ -76,7 +77,7 @@ static const char *describe_driver(Bench *bench)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
     VkPhysicalDeviceProperties2 properties = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
-    vkGetPhysicalDeviceProperties2(bench->gpu.physical, &properties);
+    vkGetPhysicalDeviceProperties2(bench->gpu.driver->physical, &properties);
     uint32_t version = properties.properties.apiVersion;
     Text     text    = {.arena = bench->arena};
     text_format(&text, "%s %s, Vulkan %u.%u.%u", driver.driverName, driver.driverInfo,
@@ -115,7 +116,7 @@ static const char *make_slug(Bench *bench, const char *device)
 
 void machine_describe(Bench *bench, Machine *machine)
 {
-    const char *device = bench->gpu.properties.deviceName;
+    const char *device = bench->gpu.driver->properties.deviceName;
     *machine           = (Machine){.slug = make_slug(bench, device)};
     add_fact(machine, "device", device);
     add_fact(machine, "driver", describe_driver(bench));

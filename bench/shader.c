@@ -87,7 +87,7 @@ static bool layout_create(Gpu *gpu, BenchShader *shader)
     };
     TRY(gpu, "prepare a shader",
         vkCreateDescriptorSetLayout(
-            gpu->device,
+            gpu->driver->device,
             &(VkDescriptorSetLayoutCreateInfo){
                 .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                 .bindingCount = 1,
@@ -96,7 +96,7 @@ static bool layout_create(Gpu *gpu, BenchShader *shader)
             NULL, &shader->set_layout));
     TRY(gpu, "prepare a shader",
         vkCreatePipelineLayout(
-            gpu->device,
+            gpu->driver->device,
             &(VkPipelineLayoutCreateInfo){
                 .sType                  = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                 .setLayoutCount         = 1,
@@ -116,7 +116,7 @@ static bool set_create(Gpu *gpu, BenchShader *shader, const Buffer *buffer)
 {
     TRY(gpu, "prepare a shader",
         vkCreateDescriptorPool(
-            gpu->device,
+            gpu->driver->device,
             &(VkDescriptorPoolCreateInfo){
                 .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                 .maxSets       = 1,
@@ -125,7 +125,7 @@ static bool set_create(Gpu *gpu, BenchShader *shader, const Buffer *buffer)
             },
             NULL, &shader->pool));
     TRY(gpu, "prepare a shader",
-        vkAllocateDescriptorSets(gpu->device,
+        vkAllocateDescriptorSets(gpu->driver->device,
                                  &(VkDescriptorSetAllocateInfo){
                                      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                      .descriptorPool     = shader->pool,
@@ -134,14 +134,15 @@ static bool set_create(Gpu *gpu, BenchShader *shader, const Buffer *buffer)
                                  },
                                  &shader->set));
     vkUpdateDescriptorSets(
-        gpu->device, 1,
+        gpu->driver->device, 1,
         &(VkWriteDescriptorSet){
             .sType           = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
             .dstSet          = shader->set,
             .dstBinding      = BUFFER_BINDING,
             .descriptorCount = 1,
             .descriptorType  = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-            .pBufferInfo     = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
+            .pBufferInfo     = &(VkDescriptorBufferInfo){FROM_HANDLE(VkBuffer, buffer->buffer), 0,
+                                                         buffer->size},
         },
         0, NULL);
     return true;
@@ -155,7 +156,7 @@ static bool pipeline_create(Gpu *gpu, BenchShader *shader, const uint32_t *words
     bool           ready  = false;
     VkShaderModule module = VK_NULL_HANDLE;
     TRY(gpu, "load a shader",
-        vkCreateShaderModule(gpu->device,
+        vkCreateShaderModule(gpu->driver->device,
                              &(VkShaderModuleCreateInfo){
                                  .sType    = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                  .codeSize = count * sizeof *words,
@@ -164,7 +165,7 @@ static bool pipeline_create(Gpu *gpu, BenchShader *shader, const uint32_t *words
                              NULL, &module));
     TRY(gpu, "prepare a shader",
         vkCreateComputePipelines(
-            gpu->device, VK_NULL_HANDLE, 1,
+            gpu->driver->device, VK_NULL_HANDLE, 1,
             &(VkComputePipelineCreateInfo){
                 .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                 .stage =
@@ -180,7 +181,7 @@ static bool pipeline_create(Gpu *gpu, BenchShader *shader, const uint32_t *words
     ready = true;
 
 failed:
-    vkDestroyShaderModule(gpu->device, module, NULL);
+    vkDestroyShaderModule(gpu->driver->device, module, NULL);
     return ready;
 }
 
@@ -209,7 +210,7 @@ void bench_shader_create(Bench *bench, BenchShader *shader, const char *text, co
 
 void bench_shader_destroy(Bench *bench, BenchShader *shader)
 {
-    VkDevice device = bench->gpu.device;
+    VkDevice device = bench->gpu.driver->device;
     vkDestroyPipeline(device, shader->pipeline, NULL);
     vkDestroyDescriptorPool(device, shader->pool, NULL);
     vkDestroyPipelineLayout(device, shader->layout, NULL);
@@ -224,12 +225,12 @@ double bench_shader_run(Bench *bench, const BenchShader *shader, uint32_t groups
     double        ms   = 0;
     if (!gpu_begin(gpu))
         fail("%s", gpu->message);
-    vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader->pipeline);
-    vkCmdBindDescriptorSets(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader->layout, 0, 1,
-                            &shader->set, 0, NULL);
-    vkCmdPushConstants(gpu->commands, shader->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof zero,
-                       &zero);
-    vkCmdDispatch(gpu->commands, groups, 1, 1);
+    vkCmdBindPipeline(gpu->driver->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader->pipeline);
+    vkCmdBindDescriptorSets(gpu->driver->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader->layout,
+                            0, 1, &shader->set, 0, NULL);
+    vkCmdPushConstants(gpu->driver->commands, shader->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                       sizeof zero, &zero);
+    vkCmdDispatch(gpu->driver->commands, groups, 1, 1);
     if (!gpu_finish(gpu, &ms))
         fail("%s", gpu->message);
     return ms;

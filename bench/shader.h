@@ -6,6 +6,7 @@
 
 #include "bench/bench.h"
 #include "runtime/device/buffer.h"
+#include "runtime/device/driver.h"
 
 typedef struct BenchShader {
     VkDescriptorSetLayout set_layout;

@@ -38,7 +38,7 @@ allowed() { # header, files and folders
     return 1
 }
 
-echo "1..$(echo "$layers public circles pages" | wc -w)"
+echo "1..$(echo "$layers public driver circles pages" | wc -w)"
 places=$public number=0 bad=0
 
 result() { # what is wrong, or nothing; what was looked at
@@ -80,6 +80,14 @@ done
 # ---- public headers ----
 
 result "$(grep '^include/' "$work/includes" | grep -v ' include/krs/')" "public headers include each other alone"
+
+# ---- driver ----
+
+# Who includes Vulkan, or a header of runtime/device that does.  The command prints the loader's version.
+result "$(for layer in $layers; do
+    case $layer in runtime/device | cli) continue ;; esac
+    grep -HE '^ *# *include *(<vulkan/|"runtime/device/(driver|instance|pipelines)\.h")' "$layer"/*.[ch] 2>/dev/null
+done)" "runtime/device alone knows Vulkan"
 
 # ---- circles ----
 

@@ -13,6 +13,7 @@
 #include "bench/device/device.h"
 #include "compiler/print/printer.h"
 #include "compiler/target/spirv.h"
+#include "runtime/device/driver.h"
 
 enum { LANES = 64, GROUPS = 1024, COUNT = LANES * GROUPS };
 
@@ -142,7 +143,7 @@ static bool prepare(Gpu *gpu, const Buffer *buffer)
     const char *attempt = "prepare the operations";
     TRY(gpu, attempt,
         vkCreateDescriptorSetLayout(
-            gpu->device,
+            gpu->driver->device,
             &(VkDescriptorSetLayoutCreateInfo){
                 .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                 .bindingCount = 1,
@@ -155,7 +156,7 @@ static bool prepare(Gpu *gpu, const Buffer *buffer)
             },
             NULL, &set_layout));
     TRY(gpu, attempt,
-        vkCreatePipelineLayout(gpu->device,
+        vkCreatePipelineLayout(gpu->driver->device,
                                &(VkPipelineLayoutCreateInfo){
                                    .sType          = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                    .setLayoutCount = 1,
@@ -164,7 +165,7 @@ static bool prepare(Gpu *gpu, const Buffer *buffer)
                                NULL, &layout));
     TRY(gpu, attempt,
         vkCreateDescriptorPool(
-            gpu->device,
+            gpu->driver->device,
             &(VkDescriptorPoolCreateInfo){
                 .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                 .maxSets       = 1,
@@ -173,7 +174,7 @@ static bool prepare(Gpu *gpu, const Buffer *buffer)
             },
             NULL, &pool));
     TRY(gpu, attempt,
-        vkAllocateDescriptorSets(gpu->device,
+        vkAllocateDescriptorSets(gpu->driver->device,
                                  &(VkDescriptorSetAllocateInfo){
                                      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                      .descriptorPool     = pool,
@@ -182,13 +183,14 @@ static bool prepare(Gpu *gpu, const Buffer *buffer)
                                  },
                                  &set));
     vkUpdateDescriptorSets(
-        gpu->device, 1,
+        gpu->driver->device, 1,
         &(VkWriteDescriptorSet){
             .sType           = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
             .dstSet          = set,
             .descriptorCount = 1,
             .descriptorType  = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-            .pBufferInfo     = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
+            .pBufferInfo     = &(VkDescriptorBufferInfo){FROM_HANDLE(VkBuffer, buffer->buffer), 0,
+                                                         buffer->size},
         },
         0, NULL);
     return true;
@@ -199,9 +201,9 @@ failed:
 
 static void finish(Gpu *gpu)
 {
-    vkDestroyDescriptorPool(gpu->device, pool, NULL);
-    vkDestroyPipelineLayout(gpu->device, layout, NULL);
-    vkDestroyDescriptorSetLayout(gpu->device, set_layout, NULL);
+    vkDestroyDescriptorPool(gpu->driver->device, pool, NULL);
+    vkDestroyPipelineLayout(gpu->driver->device, layout, NULL);
+    vkDestroyDescriptorSetLayout(gpu->driver->device, set_layout, NULL);
 }
 
 /* Counts the GLSL of a row's text: it ends before a comma and a space that are outside of parentheses. */
@@ -256,12 +258,13 @@ static void run(Gpu *gpu, const Operation *operation)
     if (spirv_compile(text, operation->glsl, &code.words, &words, &log) != KRS_OK)
         give_up(operation->glsl, log ? log : "no memory");
     code.bytes = 4 * words;
-    if (!shader_load(gpu, &shader, &code, layout, &ms) || !gpu_begin(gpu))
+    if (!shader_load(gpu, &shader, &code, TO_HANDLE(layout), &ms) || !gpu_begin(gpu))
         give_up(operation->glsl, gpu->message);
-    vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline);
-    vkCmdBindDescriptorSets(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0,
-                            NULL);
-    vkCmdDispatch(gpu->commands, GROUPS, 1, 1);
+    vkCmdBindPipeline(gpu->driver->commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                      FROM_HANDLE(VkPipeline, shader.pipeline));
+    vkCmdBindDescriptorSets(gpu->driver->commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1,
+                            &set, 0, NULL);
+    vkCmdDispatch(gpu->driver->commands, GROUPS, 1, 1);
     if (!gpu_finish(gpu, &ms))
         give_up(operation->glsl, gpu->message);
     shader_destroy(gpu, &shader);

@@ -2,6 +2,7 @@
  * limits.c: properties, limits and features of a device that the runtime depends on.
  */
 #include "bench/device/device.h"
+#include "runtime/device/driver.h"
 
 #include <stdio.h>
 
@@ -15,7 +16,7 @@ static void print_driver(const Gpu *gpu)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, .pNext = &floats};
     VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
                                        .pNext = &subgroups};
-    vkGetPhysicalDeviceProperties2(gpu->physical, &all);
+    vkGetPhysicalDeviceProperties2(gpu->driver->physical, &all);
     const VkPhysicalDeviceProperties *device = &all.properties;
     printf("| driver | %s %s, %#x |\n", driver.driverName, driver.driverInfo,
            device->driverVersion);
@@ -98,10 +99,10 @@ void print_device_limits(KrsRenderer *renderer)
     const Gpu *gpu = &renderer->gpu;
     puts("| | |\n| --- | --- |");
     print_driver(gpu);
-    print_numbers(&gpu->properties.limits);
-    print_features(gpu->physical);
-    print_memory(&gpu->memory);
-    print_queues(gpu->physical);
+    print_numbers(&gpu->driver->properties.limits);
+    print_features(gpu->driver->physical);
+    print_memory(&gpu->driver->memory);
+    print_queues(gpu->driver->physical);
     printf("| krs: early outs | %s |\n| krs: lanes that refill | %u |\n",
            renderer->early_outs ? "on" : "off", gpu->refill_lanes);
     printf("| krs: reads texels | %s |\n", gpu->texels ? "yes" : "no");

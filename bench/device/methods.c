@@ -33,7 +33,7 @@ static const Method methods[] = {
 /* A band is as large as the buffer of its results may be: 80 bytes a pixel. */
 static void limit_band(KrsRenderer *renderer, uint64_t pixels, uint32_t usual)
 {
-    uint32_t *limit = &renderer->gpu.properties.limits.maxStorageBufferRange;
+    uint32_t *limit = &renderer->gpu.limits.storage_bytes;
     *limit          = pixels > 0 ? (uint32_t)(pixels + 16) * RESULT_ROWS * RESULT_BYTES : usual;
 }
 
@@ -65,7 +65,7 @@ static void print_row(const char *name, bool early_outs, const KrsPicture *pictu
 
 void print_methods(KrsRenderer *renderer, const char *path, Size size, bool early_outs)
 {
-    uint32_t    usual    = renderer->gpu.properties.limits.maxStorageBufferRange;
+    uint32_t    usual    = renderer->gpu.limits.storage_bytes;
     KrsPicture *first    = NULL;
     renderer->early_outs = early_outs;
     Fixture fixture      = fixture_open(renderer, path, NULL, false);

@@ -5,6 +5,8 @@
 
 #include <stdio.h>
 
+#include "runtime/device/driver.h"
+
 /* Finds a permitted memory type with all `needed` properties, if possible one with `liked` ones
    too. */
 static bool find_type(const Gpu *gpu, uint32_t permitted, VkMemoryPropertyFlags needed,
@@ -12,8 +14,8 @@ static bool find_type(const Gpu *gpu, uint32_t permitted, VkMemoryPropertyFlags 
 {
     const VkMemoryPropertyFlags tries[] = {needed | liked, needed};
     for (int i = 0; i < 2; i++)
-        for (uint32_t t = 0; t < gpu->memory.memoryTypeCount; t++) {
-            VkMemoryPropertyFlags has = gpu->memory.memoryTypes[t].propertyFlags;
+        for (uint32_t t = 0; t < gpu->driver->memory.memoryTypeCount; t++) {
+            VkMemoryPropertyFlags has = gpu->driver->memory.memoryTypes[t].propertyFlags;
             if ((permitted >> t & 1) && (has & tries[i]) == tries[i]) {
                 *type = t;
                 return true;
@@ -34,15 +36,18 @@ static bool find_type_for(const Gpu *gpu, uint32_t permitted, Where where, uint3
                      type);
 }
 
-bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, const char *name)
+bool buffer_create(Gpu *gpu, Buffer *buffer, uint64_t size, Where where, const char *name)
 {
-    char attempt[128];
+    const VkDevice device = gpu->driver->device;
+    VkBuffer       made;
+    VkDeviceMemory memory;
+    char           attempt[128];
     snprintf(attempt, sizeof attempt, "make room for the %s", name);
     *buffer = (Buffer){.size = size};
 
     TRY(gpu, attempt,
         vkCreateBuffer(
-            gpu->device,
+            device,
             &(VkBufferCreateInfo){
                 .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                 .size  = size,
@@ -51,32 +56,33 @@ bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, con
                          VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
                          VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
             },
-            NULL, &buffer->buffer));
-    gpu_name(gpu, VK_OBJECT_TYPE_BUFFER, (uint64_t)(uintptr_t)buffer->buffer, name);
+            NULL, &made));
+    buffer->buffer = TO_HANDLE(made);
+    gpu_name(gpu, VK_OBJECT_TYPE_BUFFER, buffer->buffer, name);
 
     VkMemoryRequirements needs;
     uint32_t             type;
-    vkGetBufferMemoryRequirements(gpu->device, buffer->buffer, &needs);
+    vkGetBufferMemoryRequirements(device, made, &needs);
     if (!find_type_for(gpu, needs.memoryTypeBits, where, &type)) {
         gpu_fail(gpu, VK_ERROR_OUT_OF_DEVICE_MEMORY, attempt);
         goto failed;
     }
     TRY(gpu, attempt,
-        vkAllocateMemory(gpu->device,
+        vkAllocateMemory(device,
                          &(VkMemoryAllocateInfo){
                              .sType           = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                              .allocationSize  = needs.size,
                              .memoryTypeIndex = type,
                          },
-                         NULL, &buffer->memory));
-    buffer->held = needs.size;
+                         NULL, &memory));
+    buffer->memory = TO_HANDLE(memory);
+    buffer->held   = needs.size;
     gpu->memory_used += buffer->held;
     if (gpu->memory_used > gpu->memory_peak)
         gpu->memory_peak = gpu->memory_used;
-    TRY(gpu, attempt, vkBindBufferMemory(gpu->device, buffer->buffer, buffer->memory, 0));
+    TRY(gpu, attempt, vkBindBufferMemory(device, made, memory, 0));
     if (where != ON_DEVICE)
-        TRY(gpu, attempt,
-            vkMapMemory(gpu->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->bytes));
+        TRY(gpu, attempt, vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &buffer->bytes));
     return true;
 
 failed:
@@ -84,32 +90,43 @@ failed:
     return false;
 }
 
-VkDeviceSize buffer_texel_bytes(VkDeviceSize bytes)
+uint64_t buffer_texel_bytes(uint64_t bytes)
 {
-    const VkDeviceSize page  = 4096;
-    VkDeviceSize       pages = (bytes + page - 1) / page;
+    const uint64_t page  = 4096;
+    uint64_t       pages = (bytes + page - 1) / page;
     return (pages < 3 ? 3 : pages | 1) * page;
 }
 
-bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes, const char *name)
+bool buffer_view(Gpu *gpu, Buffer *buffer, TexelKind kind, const char *name)
 {
-    char attempt[128];
+    static const struct {
+        VkFormat format;
+        uint32_t bytes;
+    } kinds[TEXEL_KINDS] = {
+        [ONE_NUMBER]   = {VK_FORMAT_R32_UINT, 4},
+        [TWO_NUMBERS]  = {VK_FORMAT_R32G32_UINT, 8},
+        [FOUR_NUMBERS] = {VK_FORMAT_R32G32B32A32_UINT, 16},
+        [FOUR_FLOATS]  = {VK_FORMAT_R32G32B32A32_SFLOAT, 16},
+    };
+    VkBufferView view;
+    char         attempt[128];
     snprintf(attempt, sizeof attempt, "make room for the %s", name);
     if (buffer->texels)
         return true;
-    if (buffer->size / texel_bytes > gpu->properties.limits.maxTexelBufferElements) {
+    if (buffer->size / kinds[kind].bytes > gpu->limits.texels) {
         gpu_fail(gpu, VK_ERROR_OUT_OF_DEVICE_MEMORY, attempt);
         return false;
     }
     TRY(gpu, attempt,
-        vkCreateBufferView(gpu->device,
+        vkCreateBufferView(gpu->driver->device,
                            &(VkBufferViewCreateInfo){
                                .sType  = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                               .buffer = buffer->buffer,
-                               .format = format,
+                               .buffer = FROM_HANDLE(VkBuffer, buffer->buffer),
+                               .format = kinds[kind].format,
                                .range  = VK_WHOLE_SIZE,
                            },
-                           NULL, &buffer->texels));
+                           NULL, &view));
+    buffer->texels = TO_HANDLE(view);
     return true;
 
 failed:
@@ -118,10 +135,12 @@ failed:
 
 void buffer_destroy(Gpu *gpu, Buffer *buffer)
 {
-    if (gpu->device && !gpu->stuck) {
-        vkDestroyBufferView(gpu->device, buffer->texels, NULL);
-        vkDestroyBuffer(gpu->device, buffer->buffer, NULL);
-        vkFreeMemory(gpu->device, buffer->memory, NULL); /* unmaps it, too */
+    if (gpu_is_open(gpu) && !gpu->stuck) {
+        const VkDevice device = gpu->driver->device;
+        vkDestroyBufferView(device, FROM_HANDLE(VkBufferView, buffer->texels), NULL);
+        vkDestroyBuffer(device, FROM_HANDLE(VkBuffer, buffer->buffer), NULL);
+        vkFreeMemory(device, FROM_HANDLE(VkDeviceMemory, buffer->memory),
+                     NULL); /* unmaps it, too */
     }
     gpu->memory_used -= buffer->held;
     *buffer = (Buffer){0};

@@ -6,7 +6,8 @@
 
 #include "compiler/base/minmax.h"
 #include "compiler/base/watchdog.h"
-#include "runtime/device/gpu.h"
+#include "runtime/device/buffer.h"
+#include "runtime/device/driver.h"
 
 static const VkPipelineStageFlags WORK = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT |
                                          VK_PIPELINE_STAGE_TRANSFER_BIT;
@@ -33,23 +34,24 @@ static void barrier(VkCommandBuffer commands)
                        VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
-void gpu_barrier(Gpu *gpu) { barrier(gpu->commands); }
+void gpu_barrier(Gpu *gpu) { barrier(gpu->driver->commands); }
 
 bool gpu_begin(Gpu *gpu)
 {
     if (gpu->stuck)
         return false; /* and why has been said */
-    TRY(gpu, "record work", vkResetCommandPool(gpu->device, gpu->pool, 0));
+    TRY(gpu, "record work", vkResetCommandPool(gpu->driver->device, gpu->driver->pool, 0));
     TRY(gpu, "record work",
-        vkBeginCommandBuffer(gpu->commands,
+        vkBeginCommandBuffer(gpu->driver->commands,
                              &(VkCommandBufferBeginInfo){
                                  .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                  .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
                              }));
     gpu->marks = 0;
-    if (gpu->times) {
-        vkCmdResetQueryPool(gpu->commands, gpu->times, 0, 2 + MAX_MARKS);
-        vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, gpu->times, 0);
+    if (gpu->driver->times) {
+        vkCmdResetQueryPool(gpu->driver->commands, gpu->driver->times, 0, 2 + MAX_MARKS);
+        vkCmdWriteTimestamp(gpu->driver->commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+                            gpu->driver->times, 0);
     }
     gpu_barrier(gpu);
     return true;
@@ -62,16 +64,17 @@ failed:
 void gpu_mark(Gpu *gpu)
 {
     gpu->marks++;
-    if (gpu->times)
-        vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, gpu->times,
-                            gpu->marks);
+    if (gpu->driver->times)
+        vkCmdWriteTimestamp(gpu->driver->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
+                            gpu->driver->times, gpu->marks);
 }
 
 static bool read_clock(Gpu *gpu, uint32_t query, uint64_t *ticks)
 {
     TRY(gpu, "read the device's clock",
-        vkGetQueryPoolResults(gpu->device, gpu->times, query, 1, sizeof *ticks, ticks,
-                              sizeof *ticks, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+        vkGetQueryPoolResults(gpu->driver->device, gpu->driver->times, query, 1, sizeof *ticks,
+                              ticks, sizeof *ticks,
+                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
     return true;
 
 failed:
@@ -84,20 +87,65 @@ static bool measure(Gpu *gpu, uint32_t from, uint32_t to, double *ms)
     uint64_t start, end;
     if (!read_clock(gpu, from, &start) || !read_clock(gpu, to, &end))
         return false;
-    uint64_t passed = (end - start) & gpu->time_mask;
-    *ms += (double)passed * (double)gpu->properties.limits.timestampPeriod / 1e6;
+    uint64_t passed = (end - start) & gpu->driver->time_mask;
+    *ms += (double)passed * (double)gpu->driver->properties.limits.timestampPeriod / 1e6;
     return true;
 }
 
 bool gpu_marked(Gpu *gpu, uint32_t mark, double *ms)
 {
     *ms = 0;
-    return !gpu->times || measure(gpu, mark, mark + 1, ms);
+    return !gpu->driver->times || measure(gpu, mark, mark + 1, ms);
+}
+
+void gpu_copy(Gpu *gpu, const Buffer *from, uint64_t from_at, const Buffer *to, uint64_t to_at,
+              uint64_t bytes)
+{
+    vkCmdCopyBuffer(gpu->driver->commands, FROM_HANDLE(VkBuffer, from->buffer),
+                    FROM_HANDLE(VkBuffer, to->buffer), 1, &(VkBufferCopy){from_at, to_at, bytes});
+}
+
+void gpu_fill(Gpu *gpu, const Buffer *buffer, uint64_t at, uint64_t bytes, uint32_t word)
+{
+    vkCmdFillBuffer(gpu->driver->commands, FROM_HANDLE(VkBuffer, buffer->buffer), at, bytes, word);
+}
+
+void gpu_write(Gpu *gpu, const Buffer *buffer, uint64_t at, const void *bytes, uint32_t length)
+{
+    vkCmdUpdateBuffer(gpu->driver->commands, FROM_HANDLE(VkBuffer, buffer->buffer), at, length,
+                      bytes);
+}
+
+static void bind(VkCommandBuffer commands, const Run *run)
+{
+    const VkPipelineLayout layout  = FROM_HANDLE(VkPipelineLayout, run->layout);
+    const VkDescriptorSet  sets[2] = {FROM_HANDLE(VkDescriptorSet, run->sets[0]),
+                                      FROM_HANDLE(VkDescriptorSet, run->sets[1])};
+    const uint32_t         first   = run->sets[0] == 0;
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                      FROM_HANDLE(VkPipeline, run->pipeline));
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, first, 2 - first,
+                            sets + first, 0, NULL);
+    vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, run->work_bytes,
+                       run->work);
+}
+
+void gpu_dispatch(Gpu *gpu, const Run *run, uint32_t groups)
+{
+    bind(gpu->driver->commands, run);
+    vkCmdDispatch(gpu->driver->commands, groups, 1, 1);
+}
+
+void gpu_dispatch_counted(Gpu *gpu, const Run *run, const Buffer *counts, uint64_t at)
+{
+    bind(gpu->driver->commands, run);
+    vkCmdDispatchIndirect(gpu->driver->commands, FROM_HANDLE(VkBuffer, counts->buffer), at);
 }
 
 static VkResult wait_for(Gpu *gpu, double seconds)
 {
-    return vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE, (uint64_t)(seconds * 1e9));
+    return vkWaitForFences(gpu->driver->device, 1, &gpu->driver->fence, VK_TRUE,
+                           (uint64_t)(seconds * 1e9));
 }
 
 /* Waits for a device.  Most steps take no longer than the first slice; what the process does during
@@ -128,7 +176,7 @@ static bool wait_for_fence(Gpu *gpu)
         return false;
     }
     TRY(gpu, attempt, result);
-    TRY(gpu, attempt, vkResetFences(gpu->device, 1, &gpu->fence));
+    TRY(gpu, attempt, vkResetFences(gpu->driver->device, 1, &gpu->driver->fence));
     return true;
 
 failed:
@@ -137,25 +185,25 @@ failed:
 
 bool gpu_finish(Gpu *gpu, double *ms)
 {
-    if (gpu->times)
-        vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, gpu->times,
-                            1 + gpu->marks);
-    memory_barrier(gpu->commands, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
-    TRY(gpu, "record work", vkEndCommandBuffer(gpu->commands));
+    if (gpu->driver->times)
+        vkCmdWriteTimestamp(gpu->driver->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
+                            gpu->driver->times, 1 + gpu->marks);
+    memory_barrier(gpu->driver->commands, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    TRY(gpu, "record work", vkEndCommandBuffer(gpu->driver->commands));
 
     double start = clock_ms();
     gpu->submissions++;
     TRY(gpu, "submit work",
-        vkQueueSubmit(gpu->queue, 1,
+        vkQueueSubmit(gpu->driver->queue, 1,
                       &(VkSubmitInfo){
                           .sType              = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                           .commandBufferCount = 1,
-                          .pCommandBuffers    = &gpu->commands,
+                          .pCommandBuffers    = &gpu->driver->commands,
                       },
-                      gpu->fence));
+                      gpu->driver->fence));
     if (!wait_for_fence(gpu))
         return false;
-    if (gpu->times)
+    if (gpu->driver->times)
         return measure(gpu, 0, 1 + gpu->marks, ms);
     *ms += clock_ms() - start;
     return true;
@@ -168,37 +216,36 @@ failed:
 static void time_prewarm(const Gpu *gpu, VkCommandBuffer commands, bool end)
 {
     const uint32_t first = 2 * gpu->prewarms;
-    if (!gpu->prewarm_times || gpu->prewarms >= MAX_TIMED_PREWARMS)
+    if (!gpu->driver->prewarm_times || gpu->prewarms >= MAX_TIMED_PREWARMS)
         return;
     if (!end)
-        vkCmdResetQueryPool(commands, gpu->prewarm_times, first, 2);
+        vkCmdResetQueryPool(commands, gpu->driver->prewarm_times, first, 2);
     vkCmdWriteTimestamp(
         commands, end ? VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT : VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
-        gpu->prewarm_times, first + end);
+        gpu->driver->prewarm_times, first + end);
 }
 
 double gpu_prewarm_ms(const Gpu *gpu, uint32_t number)
 {
     uint64_t ticks[2];
-    if (!gpu->prewarm_times || number >= gpu->prewarms || number >= MAX_TIMED_PREWARMS ||
-        vkGetQueryPoolResults(gpu->device, gpu->prewarm_times, 2 * number, 2, sizeof ticks, ticks,
-                              sizeof *ticks, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
+    if (!gpu->driver->prewarm_times || number >= gpu->prewarms || number >= MAX_TIMED_PREWARMS ||
+        vkGetQueryPoolResults(gpu->driver->device, gpu->driver->prewarm_times, 2 * number, 2,
+                              sizeof ticks, ticks, sizeof *ticks,
+                              VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
         return 0;
-    const uint64_t passed = (ticks[1] - ticks[0]) & gpu->time_mask;
-    return (double)passed * (double)gpu->properties.limits.timestampPeriod / 1e6;
+    const uint64_t passed = (ticks[1] - ticks[0]) & gpu->driver->time_mask;
+    return (double)passed * (double)gpu->driver->properties.limits.timestampPeriod / 1e6;
 }
 
-bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
-                 const VkDescriptorSet sets[2], const void *constants, uint32_t bytes,
-                 uint32_t *number)
+bool gpu_prewarm(Gpu *gpu, const Run *run, uint32_t *number)
 {
     const char     *attempt = "try a shader out";
     VkCommandBuffer commands; /* the pool's, until it is destroyed */
     TRY(gpu, attempt,
-        vkAllocateCommandBuffers(gpu->device,
+        vkAllocateCommandBuffers(gpu->driver->device,
                                  &(VkCommandBufferAllocateInfo){
                                      .sType       = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                     .commandPool = gpu->prewarm_pool,
+                                     .commandPool = gpu->driver->prewarm_pool,
                                      .level       = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                      .commandBufferCount = 1,
                                  },
@@ -210,17 +257,13 @@ bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                                        }));
     barrier(commands); /* all shaders are prewarmed with the same buffers */
     time_prewarm(gpu, commands, false);
-    uint32_t first = sets[0] == VK_NULL_HANDLE;
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, first, 2 - first,
-                            sets + first, 0, NULL);
-    vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes, constants);
+    bind(commands, run);
     vkCmdDispatch(commands, 1, 1, 1);
     time_prewarm(gpu, commands, true);
     *number = gpu->prewarms++;
     TRY(gpu, attempt, vkEndCommandBuffer(commands));
     TRY(gpu, attempt,
-        vkQueueSubmit(gpu->queue, 1,
+        vkQueueSubmit(gpu->driver->queue, 1,
                       &(VkSubmitInfo){
                           .sType              = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                           .commandBufferCount = 1,
@@ -237,7 +280,7 @@ bool gpu_wait(Gpu *gpu)
 {
     if (gpu->stuck)
         return false;
-    TRY(gpu, "wait for the device", vkQueueSubmit(gpu->queue, 0, NULL, gpu->fence));
+    TRY(gpu, "wait for the device", vkQueueSubmit(gpu->driver->queue, 0, NULL, gpu->driver->fence));
     return wait_for_fence(gpu);
 
 failed:

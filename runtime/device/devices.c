@@ -9,20 +9,19 @@
 #include <string.h>
 #include <strings.h>
 
+#include "runtime/device/driver.h"
 #include "runtime/device/instance.h"
 
 /* The texels below which buffers are read in their place: the lowest band of the widest picture has
    so many (band.c). */
 #define MIN_TEXELS (1u << 22)
 
-bool devices_read_texels(const VkPhysicalDeviceLimits *limits)
-{
-    return limits->maxTexelBufferElements >= MIN_TEXELS;
-}
+bool devices_read_texels(uint32_t texels) { return texels >= MIN_TEXELS; }
 
 static uint32_t needed_buffers(const VkPhysicalDeviceLimits *limits)
 {
-    return STORAGE_BUFFERS + (devices_read_texels(limits) ? 0 : STORAGE_BUFFERS_FOR_TEXELS);
+    return STORAGE_BUFFERS +
+           (devices_read_texels(limits->maxTexelBufferElements) ? 0 : STORAGE_BUFFERS_FOR_TEXELS);
 }
 
 /* Tells whether the device has what all shaders need. */
@@ -49,7 +48,7 @@ static bool find_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *c
     return false;
 }
 
-KrsDevice gpu_describe(VkPhysicalDevice physical)
+static KrsDevice describe(VkPhysicalDevice physical)
 {
     VkPhysicalDeviceProperties properties;
     uint32_t                   family, clock_bits;
@@ -69,6 +68,8 @@ KrsDevice gpu_describe(VkPhysicalDevice physical)
     return device;
 }
 
+KrsDevice gpu_describe(const Gpu *gpu) { return describe(gpu->driver->physical); }
+
 /* Returns all physical devices, in memory of the host; NULL with the failure noted. */
 static VkPhysicalDevice *find_devices(Gpu *gpu, uint32_t *count)
 {
@@ -77,11 +78,12 @@ static VkPhysicalDevice *find_devices(Gpu *gpu, uint32_t *count)
     do { /* a device may come while we ask */
         gpu_release(gpu, devices);
         devices = NULL;
-        TRY(gpu, "list the Vulkan devices", vkEnumeratePhysicalDevices(gpu->instance, count, NULL));
+        TRY(gpu, "list the Vulkan devices",
+            vkEnumeratePhysicalDevices(gpu->driver->instance, count, NULL));
         devices = gpu_alloc(gpu, *count, sizeof *devices, "list the Vulkan devices");
         if (!devices)
             return NULL;
-        result = vkEnumeratePhysicalDevices(gpu->instance, count, devices);
+        result = vkEnumeratePhysicalDevices(gpu->driver->instance, count, devices);
     } while (result == VK_INCOMPLETE);
     TRY(gpu, "list the Vulkan devices", result);
     if (*count > 0)
@@ -119,7 +121,7 @@ static uint32_t choose(const VkPhysicalDevice *devices, uint32_t count, const ch
     uint32_t      best      = count;
     KrsDeviceKind best_kind = KRS_DEVICE_OTHER;
     for (uint32_t i = 0; i < count; i++) {
-        KrsDevice device = gpu_describe(devices[i]);
+        KrsDevice device = describe(devices[i]);
         if (!device.usable || !wanted(&device, i, words))
             continue;
         if (words && *words)
@@ -135,15 +137,17 @@ static uint32_t choose(const VkPhysicalDevice *devices, uint32_t count, const ch
 bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count)
 {
     *count = 0;
-    if (!instance_create(gpu, false))
+    if (!instance_create(gpu, false)) {
+        instance_destroy(gpu);
         return false;
+    }
     uint32_t          found    = 0;
     VkPhysicalDevice *physical = find_devices(gpu, &found);
     if (physical) {
         uint32_t preferred = choose(physical, found, NULL);
         *count             = found;
         for (uint32_t i = 0; i < found && i < capacity; i++) {
-            devices[i]           = gpu_describe(physical[i]);
+            devices[i]           = describe(physical[i]);
             devices[i].preferred = i == preferred;
         }
     }
@@ -158,7 +162,7 @@ static void refuse_devices(Gpu *gpu, const VkPhysicalDevice *devices, uint32_t c
 {
     for (uint32_t i = 0; i < count; i++) {
         VkPhysicalDeviceProperties properties;
-        KrsDevice                  device = gpu_describe(devices[i]);
+        KrsDevice                  device = describe(devices[i]);
         vkGetPhysicalDeviceProperties(devices[i], &properties);
         uint32_t buffers = properties.limits.maxPerStageDescriptorStorageBuffers;
         uint32_t needed  = needed_buffers(&properties.limits);
@@ -184,10 +188,10 @@ bool choose_device(Gpu *gpu, const char *words)
         return false;
     uint32_t chosen = choose(devices, count, words);
     uint32_t bits   = 0;
-    bool     found  = chosen < count && find_family(devices[chosen], &gpu->family, &bits);
+    bool     found  = chosen < count && find_family(devices[chosen], &gpu->driver->family, &bits);
     if (found) {
-        gpu->physical  = devices[chosen];
-        gpu->time_mask = bits >= 64 ? UINT64_MAX : (UINT64_C(1) << bits) - 1;
+        gpu->driver->physical  = devices[chosen];
+        gpu->driver->time_mask = bits >= 64 ? UINT64_MAX : (UINT64_C(1) << bits) - 1;
     } else {
         refuse_devices(gpu, devices, count, words);
     }

@@ -4,6 +4,7 @@
 #include "runtime/device/gpu.h"
 
 #include "runtime/device/devices.h"
+#include "runtime/device/driver.h"
 #include "runtime/device/instance.h"
 #include "runtime/device/pipelines.h"
 #include "runtime/device/resources.h"
@@ -22,15 +23,17 @@ static void read_properties(Gpu *gpu, unsigned emulation)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
         .pNext = &subgroups,
     };
-    vkGetPhysicalDeviceProperties2(gpu->physical, &properties);
-    gpu->properties                = properties.properties;
-    VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
-    if (emulation & EMULATE_MIN_LIMITS) {
-        limits->maxTexelBufferElements = MIN_TEXEL_LIMIT;
-        limits->maxStorageBufferRange  = MIN_RANGE_LIMIT;
-    }
+    vkGetPhysicalDeviceProperties2(gpu->driver->physical, &properties);
+    gpu->driver->properties              = properties.properties;
+    const VkPhysicalDeviceLimits *limits = &gpu->driver->properties.limits;
+    const bool                    least  = emulation & EMULATE_MIN_LIMITS;
+    gpu->limits                          = (GpuLimits){
+                                 .texels        = least ? MIN_TEXEL_LIMIT : limits->maxTexelBufferElements,
+                                 .storage_bytes = least ? MIN_RANGE_LIMIT : limits->maxStorageBufferRange,
+                                 .uniform_bytes = limits->maxUniformBufferRange,
+    };
     gpu->emulates_card = emulation & EMULATE_CARD;
-    gpu->texels        = devices_read_texels(limits);
+    gpu->texels        = devices_read_texels(gpu->limits.texels);
     bool shuffles      = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
                     subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
     const VkSubgroupFeatureFlags sums = VK_SUBGROUP_FEATURE_BASIC_BIT |
@@ -52,28 +55,28 @@ static bool make_device(Gpu *gpu)
     const char *extensions[] = {PORTABILITY_SUBSET};
     /* Nothing outside of a buffer is read or written: the layers are to see it if it is. */
     VkPhysicalDeviceFeatures offered, taken = {0};
-    vkGetPhysicalDeviceFeatures(gpu->physical, &offered);
-    taken.robustBufferAccess = offered.robustBufferAccess && !gpu->messenger;
+    vkGetPhysicalDeviceFeatures(gpu->driver->physical, &offered);
+    taken.robustBufferAccess = offered.robustBufferAccess && !gpu->validates;
 
     TRY(gpu, OPENING,
-        vkCreateDevice(
-            gpu->physical,
-            &(VkDeviceCreateInfo){
-                .sType                = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                .queueCreateInfoCount = 1,
-                .pQueueCreateInfos =
-                    &(VkDeviceQueueCreateInfo){
-                        .sType            = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                        .queueFamilyIndex = gpu->family,
-                        .queueCount       = 1,
-                        .pQueuePriorities = &(float){1},
-                    },
-                .enabledExtensionCount   = vulkan_offers(gpu, gpu->physical, PORTABILITY_SUBSET),
-                .ppEnabledExtensionNames = extensions,
-                .pEnabledFeatures        = &taken,
-            },
-            NULL, &gpu->device));
-    vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
+        vkCreateDevice(gpu->driver->physical,
+                       &(VkDeviceCreateInfo){
+                           .sType                = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                           .queueCreateInfoCount = 1,
+                           .pQueueCreateInfos =
+                               &(VkDeviceQueueCreateInfo){
+                                   .sType            = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                   .queueFamilyIndex = gpu->driver->family,
+                                   .queueCount       = 1,
+                                   .pQueuePriorities = &(float){1},
+                               },
+                           .enabledExtensionCount   = vulkan_offers(gpu, gpu->driver->physical,
+                                                                    PORTABILITY_SUBSET),
+                           .ppEnabledExtensionNames = extensions,
+                           .pEnabledFeatures        = &taken,
+                       },
+                       NULL, &gpu->driver->device));
+    vkGetDeviceQueue(gpu->driver->device, gpu->driver->family, 0, &gpu->driver->queue);
     return true;
 
 failed:
@@ -86,44 +89,45 @@ static bool make_commands(Gpu *gpu)
     const VkCommandPoolCreateInfo pool = {
         .sType            = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
         .flags            = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-        .queueFamilyIndex = gpu->family,
+        .queueFamilyIndex = gpu->driver->family,
     };
-    TRY(gpu, OPENING, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->pool));
-    TRY(gpu, OPENING, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->prewarm_pool));
+    TRY(gpu, OPENING, vkCreateCommandPool(gpu->driver->device, &pool, NULL, &gpu->driver->pool));
     TRY(gpu, OPENING,
-        vkAllocateCommandBuffers(gpu->device,
+        vkCreateCommandPool(gpu->driver->device, &pool, NULL, &gpu->driver->prewarm_pool));
+    TRY(gpu, OPENING,
+        vkAllocateCommandBuffers(gpu->driver->device,
                                  &(VkCommandBufferAllocateInfo){
                                      .sType       = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                     .commandPool = gpu->pool,
+                                     .commandPool = gpu->driver->pool,
                                      .level       = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                      .commandBufferCount = 1,
                                  },
-                                 &gpu->commands));
+                                 &gpu->driver->commands));
     TRY(gpu, OPENING,
-        vkCreateFence(gpu->device,
+        vkCreateFence(gpu->driver->device,
                       &(VkFenceCreateInfo){
                           .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
                       },
-                      NULL, &gpu->fence));
-    if (gpu->time_mask != 0)
+                      NULL, &gpu->driver->fence));
+    if (gpu->has_clock)
         TRY(gpu, OPENING,
-            vkCreateQueryPool(gpu->device,
+            vkCreateQueryPool(gpu->driver->device,
                               &(VkQueryPoolCreateInfo){
                                   .sType      = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType  = VK_QUERY_TYPE_TIMESTAMP,
                                   .queryCount = 2 + MAX_MARKS,
                               },
-                              NULL, &gpu->times));
-    if (gpu->time_mask != 0)
+                              NULL, &gpu->driver->times));
+    if (gpu->has_clock)
         TRY(gpu, OPENING,
-            vkCreateQueryPool(gpu->device,
+            vkCreateQueryPool(gpu->driver->device,
                               &(VkQueryPoolCreateInfo){
                                   .sType      = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType  = VK_QUERY_TYPE_TIMESTAMP,
                                   .queryCount = 2 * MAX_TIMED_PREWARMS,
                               },
-                              NULL, &gpu->prewarm_times));
-    gpu_name(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, (uint64_t)(uintptr_t)gpu->commands, "slice");
+                              NULL, &gpu->driver->prewarm_times));
+    gpu_name(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, TO_HANDLE(gpu->driver->commands), "slice");
     return true;
 
 failed:
@@ -132,8 +136,9 @@ failed:
 
 static bool device_create(Gpu *gpu, unsigned emulation)
 {
+    gpu->has_clock = gpu->driver->time_mask != 0;
     read_properties(gpu, emulation);
-    vkGetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory);
+    vkGetPhysicalDeviceMemoryProperties(gpu->driver->physical, &gpu->driver->memory);
     return make_device(gpu) && make_commands(gpu);
 }
 
@@ -142,7 +147,7 @@ static const double DEFAULT_TIMEOUT = 300; /* seconds; a first submission also c
 static bool check_threads(Gpu *gpu)
 {
     VkPhysicalDeviceProperties properties;
-    vkGetPhysicalDeviceProperties(gpu->physical, &properties);
+    vkGetPhysicalDeviceProperties(gpu->driver->physical, &properties);
     bool     software = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     unsigned wanted   = software ? threads_of_software_device() : 1,
              count    = threads_available(wanted);
@@ -181,10 +186,13 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options, unsigned emulation)
 
 bool gpu_open_beside(Gpu *gpu, const Gpu *other)
 {
-    *gpu = (Gpu){.physical  = other->physical,
-                 .family    = other->family,
-                 .time_mask = other->time_mask,
-                 .timeout   = other->timeout};
+    *gpu        = (Gpu){.timeout = other->timeout};
+    gpu->driver = gpu_alloc(gpu, 1, sizeof *gpu->driver, OPENING);
+    if (!gpu->driver)
+        return false;
+    gpu->driver->physical  = other->driver->physical;
+    gpu->driver->family    = other->driver->family;
+    gpu->driver->time_mask = other->driver->time_mask;
     if (device_create(gpu, other->texels ? 0 : EMULATE_MIN_LIMITS))
         return true;
     gpu_close(gpu);
@@ -195,19 +203,20 @@ void gpu_close(Gpu *gpu)
 {
     if (gpu->stuck) { /* its driver would wait for it, too: all of it stays until the process ends */
         cache_close(&gpu->cache);
+        gpu_release(gpu, gpu->driver);
+        gpu->driver = NULL;
         return;
     }
     shared_shaders_destroy(gpu);
-    if (gpu->device) {
+    if (gpu_is_open(gpu)) {
         pipelines_close(gpu);
-        vkDestroyQueryPool(gpu->device, gpu->prewarm_times, NULL);
-        vkDestroyQueryPool(gpu->device, gpu->times, NULL);
-        vkDestroyFence(gpu->device, gpu->fence, NULL);
-        vkDestroyCommandPool(gpu->device, gpu->prewarm_pool, NULL);
-        vkDestroyCommandPool(gpu->device, gpu->pool, NULL);
-        vkDestroyDevice(gpu->device, NULL);
+        vkDestroyQueryPool(gpu->driver->device, gpu->driver->prewarm_times, NULL);
+        vkDestroyQueryPool(gpu->driver->device, gpu->driver->times, NULL);
+        vkDestroyFence(gpu->driver->device, gpu->driver->fence, NULL);
+        vkDestroyCommandPool(gpu->driver->device, gpu->driver->prewarm_pool, NULL);
+        vkDestroyCommandPool(gpu->driver->device, gpu->driver->pool, NULL);
+        vkDestroyDevice(gpu->driver->device, NULL);
     }
-    gpu->device = VK_NULL_HANDLE;
     instance_destroy(gpu);
     cache_close(&gpu->cache);
 }

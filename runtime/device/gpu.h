@@ -1,14 +1,13 @@
 /*
- * gpu.h: a Vulkan device with one queue, and what is needed to keep it busy.
- *
- * Only gpu_open knows where the device came from; all else uses the handles, so that they may one
- * day be the caller's.
+ * gpu.h: a device with one queue, and what is needed to keep it busy.
  */
 #ifndef KRS_GPU_H
 #define KRS_GPU_H
 
 #include "runtime/device/devices.h"
 #include "runtime/device/gpu_state.h"
+
+typedef struct Buffer Buffer; /* buffer.h */
 
 /* Bits, for tests: what device a device emulates, as far as the host treats it.  Pictures are the same. */
 enum {
@@ -39,12 +38,29 @@ void gpu_barrier(Gpu *gpu);
    it has one. */
 bool gpu_finish(Gpu *gpu, double *ms);
 
+/* These record that bytes are copied from one buffer to another, that bytes of a buffer become copies of one
+   word, and that they become these: 64 KB at most. */
+void gpu_copy(Gpu *gpu, const Buffer *from, uint64_t from_at, const Buffer *to, uint64_t to_at,
+              uint64_t bytes);
+void gpu_fill(Gpu *gpu, const Buffer *buffer, uint64_t at, uint64_t bytes, uint32_t word);
+void gpu_write(Gpu *gpu, const Buffer *buffer, uint64_t at, const void *bytes, uint32_t length);
+
+/* A shader with what it reads and writes (sets.h). */
+typedef struct Run {
+    Handle      pipeline, layout;
+    Handle      sets[2]; /* the first may be 0, where the shader has no scene */
+    const void *work;    /* its push constants */
+    uint32_t    work_bytes;
+} Run;
+
+/* These record that a shader runs on `groups` workgroups, or on as many as the three numbers in a buffer
+   say by then. */
+void gpu_dispatch(Gpu *gpu, const Run *run, uint32_t groups);
+void gpu_dispatch_counted(Gpu *gpu, const Run *run, const Buffer *counts, uint64_t at);
+
 /* Has the device run one group of a shader, and does not wait for it: a driver that compiles a
-   shader only when it first runs does so meanwhile.  The first set may be VK_NULL_HANDLE.  *number
-   is for gpu_prewarm_ms. */
-bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
-                 const VkDescriptorSet sets[2], const void *constants, uint32_t bytes,
-                 uint32_t *number);
+   shader only when it first runs does so meanwhile.  *number is for gpu_prewarm_ms. */
+bool gpu_prewarm(Gpu *gpu, const Run *run, uint32_t *number);
 /* Tells, after gpu_wait, how long prewarming took on the device; 0 without a clock, and behind the
    first MAX_TIMED_PREWARMS. */
 enum { MAX_TIMED_PREWARMS = 256 };

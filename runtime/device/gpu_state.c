@@ -1,5 +1,5 @@
 /*
- * gpu_state.c: memory of the host, failures, and what is asked of an opened device.
+ * gpu_state.c: memory of the host, and failures.
  */
 #include "runtime/device/gpu_state.h"
 
@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-#include "runtime/device/resources.h"
 
 double clock_ms(void)
 {
@@ -51,76 +49,10 @@ void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
     gpu->status = status;
 }
 
-void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
-{
-    bool starts = result != VK_ERROR_INCOMPATIBLE_DRIVER &&
-                  result !=
-                      VK_ERROR_INITIALIZATION_FAILED; /* what a loader says in want of memory */
-    if (!starts && !memory_suffices_to_start())
-        result = VK_ERROR_OUT_OF_HOST_MEMORY;
-    switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-        gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot %s: out of memory", attempt);
-        break;
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-    case VK_ERROR_OUT_OF_POOL_MEMORY:
-    case VK_ERROR_FRAGMENTED_POOL:
-    case VK_ERROR_FRAGMENTATION:
-    case VK_ERROR_TOO_MANY_OBJECTS:
-        gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot %s: out of memory on the device", attempt);
-        break;
-    case VK_ERROR_INCOMPATIBLE_DRIVER: gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE); break;
-    case VK_ERROR_LAYER_NOT_PRESENT:
-    case VK_ERROR_EXTENSION_NOT_PRESENT:
-        gpu_refuse(gpu, KRS_NO_DEVICE,
-                   "cannot %s: the validation layers are not installed (Debian:"
-                   " vulkan-validationlayers)",
-                   attempt);
-        break;
-    case VK_ERROR_INITIALIZATION_FAILED:
-        gpu_refuse(gpu, KRS_NO_DEVICE, "cannot %s: the Vulkan driver does not start", attempt);
-        break;
-    case VK_ERROR_DEVICE_LOST:
-        gpu_refuse(gpu, KRS_INTERNAL,
-                   "cannot %s: the device was lost (its driver gave up or was reset)", attempt);
-        break;
-    default:
-        gpu_refuse(gpu, KRS_INTERNAL, "cannot %s: the driver answers with Vulkan error %d", attempt,
-                   result);
-    }
-}
-
 bool gpu_tell_compiled(Gpu *gpu, double done)
 {
     if (!gpu->compiling || gpu->compiling(gpu->compiling_user, done))
         return true;
     gpu_refuse(gpu, KRS_INTERRUPTED, "interrupted");
     return false;
-}
-
-void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name)
-{
-    if (gpu->set_name)
-        gpu->set_name(gpu->device, &(VkDebugUtilsObjectNameInfoEXT){
-                                       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
-                                       .objectType   = type,
-                                       .objectHandle = handle,
-                                       .pObjectName  = name,
-                                   });
-}
-
-bool gpu_is_cpu(const Gpu *gpu)
-{
-    return gpu->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !gpu->emulates_card;
-}
-
-uint64_t gpu_memory(const Gpu *gpu)
-{
-    uint64_t most = 0;
-    for (uint32_t i = 0; i < gpu->memory.memoryHeapCount; i++) {
-        const VkMemoryHeap *heap = &gpu->memory.memoryHeaps[i];
-        if ((heap->flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) && heap->size > most)
-            most = heap->size;
-    }
-    return most;
 }

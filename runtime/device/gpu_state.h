@@ -7,8 +7,6 @@
 #ifndef KRS_GPU_STATE_H
 #define KRS_GPU_STATE_H
 
-#include <vulkan/vulkan.h>
-
 #include "runtime/device/cache.h"
 #include "krs/vulkan.h"
 
@@ -18,45 +16,45 @@ enum { STORAGE_BUFFERS = 8, STORAGE_BUFFERS_FOR_TEXELS = 3 };
 
 typedef struct SharedShader SharedShader; /* shared_shaders.h */
 
+/* An object of the driver; 0: none. */
+typedef uint64_t Handle;
+
+/* What the driver has of a device (driver.h). */
+typedef struct Driver Driver;
+
+/* How much of a buffer a shader reads. */
+typedef struct GpuLimits {
+    uint32_t texels;                       /* of a buffer that is read as such */
+    uint32_t storage_bytes, uniform_bytes; /* of others */
+} GpuLimits;
+
 typedef struct Gpu {
-    KrsAllocator     allocator;
-    VkInstance       instance;
-    VkPhysicalDevice physical;
-    VkDevice         device;
-    VkQueue          queue;
-    uint32_t         family;
-    VkCommandPool    pool, prewarm_pool;
-    VkCommandBuffer  commands; /* the one that is recorded, run and waited for */
-    VkFence          fence;
-    VkQueryPool      times; /* timestamps; none when the queue has no clock */
-    uint32_t         marks; /* of them, since recording began */
-    uint64_t         time_mask;
-    VkQueryPool      prewarm_times; /* timestamps before and after each; none likewise */
-    uint32_t         prewarms;      /* that were timed */
+    KrsAllocator allocator;
+    Driver      *driver;   /* NULL: there is no device */
+    uint32_t     marks;    /* of times, since recording began */
+    uint32_t     prewarms; /* that were timed */
 
-    VkPhysicalDeviceProperties       properties;
-    VkPhysicalDeviceMemoryProperties memory;
-    bool     emulates_card; /* a device of type CPU is treated as a graphics card */
-    bool     texels;        /* shaders read what they only read as texels, not as buffers */
-    bool     sums_lanes;    /* lanes of a subgroup can add up before they count */
-    uint32_t refill_lanes;  /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
-    uint64_t memory_used, memory_peak; /* bytes of device memory */
-    uint64_t submissions;              /* that were waited for */
+    GpuLimits limits;
+    bool      has_clock;     /* of its own */
+    bool      validates;     /* validation layers are listened to, in one thread */
+    bool      emulates_card; /* a device of type CPU is treated as a graphics card */
+    bool      texels;        /* shaders read what they only read as texels, not as buffers */
+    bool      sums_lanes;    /* lanes of a subgroup can add up before they count */
+    uint32_t  refill_lanes;  /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
+    uint64_t  memory_used, memory_peak; /* bytes of device memory */
+    uint64_t  submissions;              /* that were waited for */
 
-    Cache           cache;            /* of shaders; zero when none was asked for */
-    VkPipelineCache pipelines;        /* the driver's, or none */
-    SharedShader   *shared_shaders;   /* shaders with a scene */
-    uint64_t        shaders_made;     /* pipelines, so far */
-    size_t          pipelines_loaded; /* bytes that it began with */
+    Cache         cache;            /* of shaders; zero when none was asked for */
+    SharedShader *shared_shaders;   /* shaders with a scene */
+    uint64_t      shaders_made;     /* pipelines, so far */
+    size_t        pipelines_loaded; /* bytes that it began with */
 
-    VkDebugUtilsMessengerEXT         messenger;
-    PFN_vkSetDebugUtilsObjectNameEXT set_name; /* NULL without validation */
-    KrsValidationCallback           *validation_message;
-    KrsWorkingCallback              *working;
-    void                            *user;
-    KrsProgressCallback             *compiling;
-    void                            *compiling_user;
-    uint64_t                         validation_messages;
+    KrsValidationCallback *validation_message;
+    KrsWorkingCallback    *working;
+    void                  *user;
+    KrsProgressCallback   *compiling;
+    void                  *compiling_user;
+    uint64_t               validation_messages;
 
     double timeout; /* seconds that a submission may take */
     bool   stuck;   /* one took longer */
@@ -68,6 +66,8 @@ typedef struct Gpu {
 #define NO_DEVICE \
     "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
 
+/* Tells whether a device was opened, and not closed. */
+bool gpu_is_open(const Gpu *gpu);
 /* Tells whether the device is of type CPU, and not to be treated as a graphics card. */
 bool gpu_is_cpu(const Gpu *gpu);
 /* Returns the bytes of the largest memory that is the device's own. */
@@ -77,28 +77,14 @@ uint64_t gpu_memory(const Gpu *gpu);
 void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt);
 void  gpu_release(Gpu *gpu, void *block);
 
-/* Notes a failure in words of our own, or in Vulkan's: "cannot <attempt>: <reason>". */
+/* Notes a failure. */
 void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-void gpu_fail(Gpu *gpu, VkResult result, const char *attempt);
 
 /* Tells how much of the shaders that are made is ready.  False, and noted: that is to end. */
 bool gpu_tell_compiled(Gpu *gpu, double done);
 
-/* Gives an object a name in the messages of the validation layers. */
-void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
-
 /* Returns the milliseconds of the host's steady clock. */
 double clock_ms(void);
-
-/* Run a Vulkan call, or note why not and go to `failed`. */
-#define TRY(gpu, attempt, call)                \
-    do {                                       \
-        VkResult result_ = (call);             \
-        if (result_ != VK_SUCCESS) {           \
-            gpu_fail((gpu), result_, attempt); \
-            goto failed;                       \
-        }                                      \
-    } while (0)
 
 #endif

@@ -63,12 +63,12 @@ static VkDebugUtilsMessengerCreateInfoEXT listener(Gpu *gpu)
 static bool start_listening(Gpu *gpu, const VkDebugUtilsMessengerCreateInfoEXT *listen)
 {
     PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)
-        vkGetInstanceProcAddr(gpu->instance, "vkCreateDebugUtilsMessengerEXT");
+        vkGetInstanceProcAddr(gpu->driver->instance, "vkCreateDebugUtilsMessengerEXT");
     if (create)
         TRY(gpu, "listen to the validation layers",
-            create(gpu->instance, listen, NULL, &gpu->messenger));
-    gpu->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetInstanceProcAddr(
-        gpu->instance, "vkSetDebugUtilsObjectNameEXT");
+            create(gpu->driver->instance, listen, NULL, &gpu->driver->messenger));
+    gpu->driver->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetInstanceProcAddr(
+        gpu->driver->instance, "vkSetDebugUtilsObjectNameEXT");
     return true;
 
 failed:
@@ -77,6 +77,10 @@ failed:
 
 bool instance_create(Gpu *gpu, bool validation)
 {
+    gpu->driver = gpu_alloc(gpu, 1, sizeof *gpu->driver, "start Vulkan");
+    if (!gpu->driver)
+        return false;
+    gpu->validates              = validation;
     const char *layers[]        = {VALIDATION_LAYER}, *extensions[3];
     uint32_t    extension_count = 0;
     bool        portability     = vulkan_offers(gpu, VK_NULL_HANDLE,
@@ -114,7 +118,7 @@ bool instance_create(Gpu *gpu, bool validation)
                 .enabledExtensionCount   = extension_count,
                 .ppEnabledExtensionNames = extensions,
             },
-            NULL, &gpu->instance));
+            NULL, &gpu->driver->instance));
 
     return !validation || start_listening(gpu, &listen);
 
@@ -124,13 +128,15 @@ failed:
 
 void instance_destroy(Gpu *gpu)
 {
-    if (gpu->messenger) {
+    if (!gpu->driver)
+        return;
+    if (gpu->driver->messenger) {
         PFN_vkDestroyDebugUtilsMessengerEXT destroy = (PFN_vkDestroyDebugUtilsMessengerEXT)
-            vkGetInstanceProcAddr(gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
-        destroy(gpu->instance, gpu->messenger, NULL);
+            vkGetInstanceProcAddr(gpu->driver->instance, "vkDestroyDebugUtilsMessengerEXT");
+        destroy(gpu->driver->instance, gpu->driver->messenger, NULL);
     }
-    if (gpu->instance)
-        vkDestroyInstance(gpu->instance, NULL);
-    gpu->messenger = VK_NULL_HANDLE;
-    gpu->instance  = VK_NULL_HANDLE;
+    if (gpu->driver->instance)
+        vkDestroyInstance(gpu->driver->instance, NULL);
+    gpu_release(gpu, gpu->driver);
+    gpu->driver = NULL;
 }

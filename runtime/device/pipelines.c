@@ -31,13 +31,13 @@ static CacheKey device_key(const VkPhysicalDeviceProperties *device)
 
 static VkResult create(Gpu *gpu, const void *bytes, size_t length)
 {
-    return vkCreatePipelineCache(gpu->device,
+    return vkCreatePipelineCache(gpu->driver->device,
                                  &(VkPipelineCacheCreateInfo){
                                      .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                      .initialDataSize = length,
                                      .pInitialData    = bytes,
                                  },
-                                 NULL, &gpu->pipelines);
+                                 NULL, &gpu->driver->pipelines);
 }
 
 void pipelines_open(Gpu *gpu)
@@ -45,12 +45,13 @@ void pipelines_open(Gpu *gpu)
     if (!gpu->cache.folder)
         return;
     size_t length = 0;
-    void  *bytes  = cache_load(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->properties), &length);
-    if (bytes && length < LARGE && pipelines_fit(&gpu->properties, bytes, length) &&
+    void  *bytes  = cache_load(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->driver->properties),
+                               &length);
+    if (bytes && length < LARGE && pipelines_fit(&gpu->driver->properties, bytes, length) &&
         create(gpu, bytes, length) == VK_SUCCESS)
         gpu->pipelines_loaded = length;
     else if (create(gpu, NULL, 0) != VK_SUCCESS)
-        gpu->pipelines = VK_NULL_HANDLE;
+        gpu->driver->pipelines = VK_NULL_HANDLE;
     gpu_release(gpu, bytes);
 }
 
@@ -59,23 +60,26 @@ void pipelines_open(Gpu *gpu)
 static void save(Gpu *gpu)
 {
     size_t length = 0;
-    if (vkGetPipelineCacheData(gpu->device, gpu->pipelines, &length, NULL) != VK_SUCCESS ||
+    if (vkGetPipelineCacheData(gpu->driver->device, gpu->driver->pipelines, &length, NULL) !=
+            VK_SUCCESS ||
         length <= gpu->pipelines_loaded)
         return;
     Gpu   quiet = {.allocator = gpu->allocator}; /* takes the note when there is no memory */
     void *bytes = gpu_alloc(&quiet, length, 1, "save the pipelines");
     if (bytes &&
-        vkGetPipelineCacheData(gpu->device, gpu->pipelines, &length, bytes) == VK_SUCCESS &&
-        pipelines_fit(&gpu->properties, bytes, length))
-        cache_store(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->properties), bytes, length);
+        vkGetPipelineCacheData(gpu->driver->device, gpu->driver->pipelines, &length, bytes) ==
+            VK_SUCCESS &&
+        pipelines_fit(&gpu->driver->properties, bytes, length))
+        cache_store(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->driver->properties), bytes,
+                    length);
     gpu_release(&quiet, bytes);
 }
 
 void pipelines_close(Gpu *gpu)
 {
-    if (gpu->pipelines) {
+    if (gpu->driver->pipelines) {
         save(gpu);
-        vkDestroyPipelineCache(gpu->device, gpu->pipelines, NULL);
+        vkDestroyPipelineCache(gpu->driver->device, gpu->driver->pipelines, NULL);
     }
-    gpu->pipelines = VK_NULL_HANDLE;
+    gpu->driver->pipelines = VK_NULL_HANDLE;
 }

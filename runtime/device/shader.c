@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "compiler/base/embedded.h"
+#include "runtime/device/driver.h"
 #include "runtime/device/shared_shaders.h"
 #include "compiler/passes/compile.h"
 
@@ -230,15 +231,16 @@ static Shader describe(const ShaderCode *code)
                     .spirv_ms    = code->ms};
 }
 
-bool shader_load(Gpu *gpu, Shader *shader, const ShaderCode *code, VkPipelineLayout layout,
+bool shader_load(Gpu *gpu, Shader *shader, const ShaderCode *code, Handle layout,
                  double *pipeline_ms)
 {
     double         start  = clock_ms();
     VkShaderModule module = VK_NULL_HANDLE;
+    VkPipeline     made   = VK_NULL_HANDLE;
     bool           ready  = false;
     *shader               = describe(code);
     TRY(gpu, "load a shader",
-        vkCreateShaderModule(gpu->device,
+        vkCreateShaderModule(gpu->driver->device,
                              &(VkShaderModuleCreateInfo){
                                  .sType    = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                  .codeSize = code->bytes,
@@ -247,7 +249,7 @@ bool shader_load(Gpu *gpu, Shader *shader, const ShaderCode *code, VkPipelineLay
                              NULL, &module));
     TRY(gpu, "prepare a shader",
         vkCreateComputePipelines(
-            gpu->device, gpu->pipelines, 1,
+            gpu->driver->device, gpu->driver->pipelines, 1,
             &(VkComputePipelineCreateInfo){
                 .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                 .stage =
@@ -257,14 +259,15 @@ bool shader_load(Gpu *gpu, Shader *shader, const ShaderCode *code, VkPipelineLay
                         .module = module,
                         .pName  = "main",
                     },
-                .layout = layout,
+                .layout = FROM_HANDLE(VkPipelineLayout, layout),
             },
-            NULL, &shader->pipeline));
-    gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)shader->pipeline, code->file);
+            NULL, &made));
+    shader->pipeline = TO_HANDLE(made);
+    gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, shader->pipeline, code->file);
     ready = true;
 
 failed:
-    vkDestroyShaderModule(gpu->device, module, NULL);
+    vkDestroyShaderModule(gpu->driver->device, module, NULL);
     shader->pipeline_ms = clock_ms() - start;
     *pipeline_ms += shader->pipeline_ms;
     return ready;
@@ -282,7 +285,7 @@ typedef struct Loading {
     const ShaderRequest *requests;
     const ShaderCode    *codes;
     size_t               count;
-    VkPipelineLayout     layout;
+    Handle               layout;
     atomic_size_t        next;
 } Loading;
 
@@ -325,7 +328,7 @@ static size_t count_loaders(const Gpu *gpu, size_t shaders)
 {
     long   cores = sysconf(_SC_NPROCESSORS_ONLN);
     size_t most  = cores < 1 ? 1 : cores < MAX_LOADERS ? (size_t)cores : MAX_LOADERS;
-    return gpu->messenger ? 0 : shaders < most ? shaders : most;
+    return gpu->validates ? 0 : shaders < most ? shaders : most;
 }
 
 /* Takes what the device has already, and shares what is new. */
@@ -344,7 +347,7 @@ static bool share(Gpu *gpu, Shader *shader, const ShaderCode *code)
 }
 
 bool shader_load_all(Gpu *gpu, const ShaderRequest *requests, const ShaderCode *codes, size_t count,
-                     VkPipelineLayout layout)
+                     Handle layout)
 {
     Loading         loading = {requests, codes, count, layout, 0};
     size_t          loaders = count_loaders(gpu, count);
@@ -374,8 +377,8 @@ bool shader_load_all(Gpu *gpu, const ShaderRequest *requests, const ShaderCode *
     return ready;
 }
 
-bool shader_create_all(Gpu *gpu, const ShaderRequest *requests, size_t count,
-                       VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms)
+bool shader_create_all(Gpu *gpu, const ShaderRequest *requests, size_t count, Handle layout,
+                       double *spirv_ms, double *pipeline_ms)
 {
     ShaderCode *codes = gpu_alloc(gpu, count, sizeof *codes, "compile the shaders");
     bool        ready = codes && shader_compile_all(gpu, requests, count, codes, spirv_ms);
@@ -390,7 +393,7 @@ bool shader_create_all(Gpu *gpu, const ShaderRequest *requests, size_t count,
     return ready;
 }
 
-bool shader_create(Gpu *gpu, Shader *shader, const ShaderSource *source, VkPipelineLayout layout,
+bool shader_create(Gpu *gpu, Shader *shader, const ShaderSource *source, Handle layout,
                    double *spirv_ms, double *pipeline_ms)
 {
     return shader_create_all(gpu, &(ShaderRequest){shader, *source}, 1, layout, spirv_ms,
@@ -401,7 +404,7 @@ void shader_destroy(Gpu *gpu, Shader *shader)
 {
     if (shader->shared)
         shared_shader_leave(gpu, shader->shared);
-    else if (gpu->device && !gpu->stuck)
-        vkDestroyPipeline(gpu->device, shader->pipeline, NULL);
+    else if (gpu_is_open(gpu) && !gpu->stuck)
+        vkDestroyPipeline(gpu->driver->device, FROM_HANDLE(VkPipeline, shader->pipeline), NULL);
     *shader = (Shader){0};
 }

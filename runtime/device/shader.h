@@ -8,8 +8,8 @@
 #include "runtime/device/gpu.h"
 
 typedef struct Shader {
-    VkPipeline    pipeline;
-    const char   *file; /* of runtime/shaders */
+    Handle        pipeline; /* 0: it is not made */
+    const char   *file;     /* of runtime/shaders */
     uint32_t      march_group;
     size_t        glsl_bytes; /* 0: the program carries it as SPIR-V */
     bool          cached;     /* its SPIR-V was not compiled */
@@ -42,7 +42,7 @@ char *shader_text(Gpu *gpu, const ShaderSource *source);
 void shader_strip(char *text);
 
 /* Compiles a shader, or takes it from the cache, and adds the time it took. */
-bool shader_create(Gpu *gpu, Shader *shader, const ShaderSource *source, VkPipelineLayout layout,
+bool shader_create(Gpu *gpu, Shader *shader, const ShaderSource *source, Handle layout,
                    double *spirv_ms, double *pipeline_ms);
 
 /* A shader on its way to the device: SPIR-V, unless the device has it already. */
@@ -73,18 +73,18 @@ bool shader_is_known(Gpu *gpu, const ShaderSource *source);
    the caller's to release, in either case; a shader that was not made is zero. */
 bool shader_compile_all(Gpu *gpu, const ShaderRequest *requests, size_t count, ShaderCode *codes,
                         double *spirv_ms);
-bool shader_load(Gpu *gpu, Shader *shader, const ShaderCode *code, VkPipelineLayout layout,
+bool shader_load(Gpu *gpu, Shader *shader, const ShaderCode *code, Handle layout,
                  double *pipeline_ms);
 bool shader_load_all(Gpu *gpu, const ShaderRequest *requests, const ShaderCode *codes, size_t count,
-                     VkPipelineLayout layout);
+                     Handle layout);
 /* Returns what the driver has taken for a shader so far. */
 double shader_driver_ms(const Gpu *gpu, const Shader *shader);
 void   shader_code_release(Gpu *gpu, ShaderCode *code);
 
 /* Does the same for several shaders, which are compiled at the same time.  On failure some may have
    been made: shader_destroy in either case. */
-bool shader_create_all(Gpu *gpu, const ShaderRequest *requests, size_t count,
-                       VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms);
+bool shader_create_all(Gpu *gpu, const ShaderRequest *requests, size_t count, Handle layout,
+                       double *spirv_ms, double *pipeline_ms);
 void shader_destroy(Gpu *gpu, Shader *shader);
 
 #endif

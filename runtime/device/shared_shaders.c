@@ -5,10 +5,12 @@
 
 #include <string.h>
 
+#include "runtime/device/driver.h"
+
 static void destroy(Gpu *gpu, SharedShader *shared)
 {
-    if (gpu->device && !gpu->stuck)
-        vkDestroyPipeline(gpu->device, shared->pipeline, NULL);
+    if (gpu_is_open(gpu) && !gpu->stuck)
+        vkDestroyPipeline(gpu->driver->device, FROM_HANDLE(VkPipeline, shared->pipeline), NULL);
     gpu_release(gpu, shared);
 }
 
@@ -34,7 +36,7 @@ SharedShader *shared_shader_find(Gpu *gpu, CacheKey key)
     return shared;
 }
 
-SharedShader *shared_shader_add(Gpu *gpu, CacheKey key, VkPipeline pipeline)
+SharedShader *shared_shader_add(Gpu *gpu, CacheKey key, Handle pipeline)
 {
     SharedShader *shared = gpu_alloc(gpu, 1, sizeof *shared, "prepare the shaders");
     if (!shared)

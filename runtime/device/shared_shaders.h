@@ -11,7 +11,7 @@
 
 struct SharedShader {
     CacheKey      key;
-    VkPipeline    pipeline;
+    Handle        pipeline;
     uint32_t      users;
     SharedShader *next;
 };
@@ -22,7 +22,7 @@ enum { MAX_UNUSED_SHADERS = 64 };
 /* Returns the shader with this key, for one more user; NULL: there is none. */
 SharedShader *shared_shader_find(Gpu *gpu, CacheKey key);
 /* Takes over a pipeline, which has one user then; NULL with the failure noted. */
-SharedShader *shared_shader_add(Gpu *gpu, CacheKey key, VkPipeline pipeline);
+SharedShader *shared_shader_add(Gpu *gpu, CacheKey key, Handle pipeline);
 /* Ends the use by one user.  The device must have run all that uses the shader. */
 void shared_shader_leave(Gpu *gpu, SharedShader *shared);
 /* Destroys all; none may have a user. */

@@ -7,6 +7,7 @@
  * band goes from the device to the host only when it is read.
  */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "runtime/tracer/band.h"
@@ -455,7 +456,7 @@ static bool finish(const KrsFilm *film, KrsPicture *picture)
     stats->spirv_ms       = rendering->spirv_ms;
     stats->pipeline_ms    = rendering->pipeline_ms;
     stats->shaders        = gpu->shaders_made;
-    stats->device_time    = gpu->times != VK_NULL_HANDLE;
+    stats->device_time    = gpu->has_clock;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];
     stats->rays                 = count_rays(film);
@@ -463,7 +464,7 @@ static bool finish(const KrsFilm *film, KrsPicture *picture)
     stats->flops_per_evaluation = flops;
     stats->gflops = marching > 0 ? (double)stats->evaluations * flops / marching / 1e6 : 0;
     stats->peak_memory_bytes += gpu->memory_peak;
-    memcpy(stats->device, gpu->properties.deviceName, sizeof stats->device);
+    snprintf(stats->device, sizeof stats->device, "%s", gpu_describe(gpu).name);
     picture->samples = film->samples;
     if (!lights_finish(film, picture) || !plate_finish(film, picture))
         return false;

@@ -37,22 +37,19 @@ static uint32_t rows_of_lights(const ResidentBand *resident, uint32_t rows)
 /* Records copies of rows of results from one buffer to another: those whose bit ROW_... is set in
    `rows`, and those of so many lights. */
 static void record_copies(Gpu *gpu, const Buffer *from, const Buffer *to, uint32_t rows,
-                          uint32_t lights, VkDeviceSize row_bytes)
+                          uint32_t lights, uint64_t row_bytes)
 {
-    VkBufferCopy copies[RESULT_ROWS + 1];
-    uint32_t     count = 0;
-    for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
+    const uint64_t at_lights = ROW_OF_LIGHTS * row_bytes;
+    for (uint64_t row = 0; row < RESULT_ROWS; row++)
         if (rows >> row & 1)
-            copies[count++] = (VkBufferCopy){row * row_bytes, row * row_bytes, row_bytes};
+            gpu_copy(gpu, from, row * row_bytes, to, row * row_bytes, row_bytes);
     if (lights > 0)
-        copies[count++] = (VkBufferCopy){ROW_OF_LIGHTS * row_bytes, ROW_OF_LIGHTS * row_bytes,
-                                         lights * row_bytes};
-    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, count, copies);
+        gpu_copy(gpu, from, at_lights, to, at_lights, lights * row_bytes);
 }
 
-static VkDeviceSize row_bytes_of(const ResidentBand *resident)
+static uint64_t row_bytes_of(const ResidentBand *resident)
 {
-    return (VkDeviceSize)resident->traced.height * resident->traced.width * RESULT_BYTES;
+    return (uint64_t)resident->traced.height * resident->traced.width * RESULT_BYTES;
 }
 
 /* Makes some rows of results readable by the host; NULL with the failure noted. */
@@ -72,21 +69,20 @@ static float *fetch(KrsRendering *rendering, uint32_t rows)
 
 /* Clears rows of results.  They are 0, since colours are sums and pixels without a hit have no
    values.  Positions are infinite where nothing is hit. */
-static bool clear_results(KrsRendering *rendering, uint32_t rows, VkDeviceSize row_bytes)
+static bool clear_results(KrsRendering *rendering, uint32_t rows, uint64_t row_bytes)
 {
     const uint32_t infinite = 0x7f800000;
     Gpu           *gpu      = &rendering->renderer->gpu;
     double         ms       = 0;
     if (!gpu_begin(gpu))
         return false;
-    for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
+    for (uint64_t row = 0; row < RESULT_ROWS; row++)
         if (rows >> row & 1)
-            vkCmdFillBuffer(gpu->commands, rendering->band.results.buffer, row * row_bytes,
-                            row_bytes, row == ROW_POSITIONS ? infinite : 0);
+            gpu_fill(gpu, &rendering->band.results, row * row_bytes, row_bytes,
+                     row == ROW_POSITIONS ? infinite : 0);
     const uint32_t lights = rows_of_lights(&rendering->resident, rows);
     if (lights > 0)
-        vkCmdFillBuffer(gpu->commands, rendering->band.results.buffer, ROW_OF_LIGHTS * row_bytes,
-                        lights * row_bytes, 0);
+        gpu_fill(gpu, &rendering->band.results, ROW_OF_LIGHTS * row_bytes, lights * row_bytes, 0);
     return gpu_finish(gpu, &ms);
 }
 

@@ -28,10 +28,7 @@ static void band_destroy(Gpu *gpu, Band *band)
 
 /* Returns the most beams of a band of this many pixels, whatever its shape and position.  There is
    a beam for every tile of 8x8 pixels, for each of its quarters, and for every tile of 32x32. */
-static VkDeviceSize max_beams(uint64_t pixels)
-{
-    return 2 * (pixels / TILE + 2 * KRS_MAX_SIDE / TILE);
-}
+static uint64_t max_beams(uint64_t pixels) { return 2 * (pixels / TILE + 2 * KRS_MAX_SIDE / TILE); }
 
 /* The last rows are for noise.comp, and behind them those of lights. */
 static uint64_t rows_of_results(bool noise, uint32_t lights)
@@ -42,20 +39,19 @@ static uint64_t rows_of_results(bool noise, uint32_t lights)
 static bool band_create(KrsRendering *rendering, uint64_t pixels, uint32_t path_rows, bool noise,
                         uint32_t lights, uint32_t surface_rows)
 {
-    Gpu               *gpu           = &rendering->renderer->gpu;
-    Band              *band          = &rendering->band;
-    const bool         read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
-    const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
-    const VkDeviceSize hit           = HIT_BYTES + path_rows * PATH_ROW_BYTES;
-    const VkDeviceSize beams         = max_beams(pixels),
-                       tiles         = ((path_rows ? pixels : beams) + 3) / 4 * 4;
-    const VkDeviceSize results       = pixels * rows_of_results(noise, lights) * RESULT_BYTES;
+    Gpu           *gpu           = &rendering->renderer->gpu;
+    Band          *band          = &rendering->band;
+    const bool     read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
+    const Where    shared        = read_in_place ? SHARED : ON_DEVICE;
+    const uint64_t hit           = HIT_BYTES + path_rows * PATH_ROW_BYTES;
+    const uint64_t beams = max_beams(pixels), tiles = ((path_rows ? pixels : beams) + 3) / 4 * 4;
+    const uint64_t results = pixels * rows_of_results(noise, lights) * RESULT_BYTES;
     const struct {
-        Buffer      *buffer;
-        uint32_t     binding, texels; /* in set 1: as a buffer, as texels; 0: none */
-        VkDeviceSize bytes;           /* 0: the buffer is not needed */
-        Where        where;
-        const char  *name;
+        Buffer     *buffer;
+        uint32_t    binding, texels; /* in set 1: as a buffer, as texels; 0: none */
+        uint64_t    bytes;           /* 0: the buffer is not needed */
+        Where       where;
+        const char *name;
     } wanted[] = {
         {&band->ends, ENDS_BINDING, END_TEXELS_BINDING, (pixels + beams) * END_BYTES, shared,
          "rays"},
@@ -78,8 +74,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, uint32_t path_
         Buffer *buffer = wanted[i].buffer;
         if (wanted[i].bytes == 0)
             continue;
-        VkDeviceSize bytes = wanted[i].texels ? buffer_texel_bytes(wanted[i].bytes)
-                                              : wanted[i].bytes;
+        uint64_t bytes = wanted[i].texels ? buffer_texel_bytes(wanted[i].bytes) : wanted[i].bytes;
         if (!buffer_create(gpu, buffer, bytes, wanted[i].where, wanted[i].name) ||
             (wanted[i].texels &&
              !layouts_view_texels(gpu, wanted[i].texels, buffer, wanted[i].name))) {
@@ -120,15 +115,15 @@ static uint64_t larger(uint64_t a, uint64_t b) { return a > b ? a : b; }
 static uint64_t max_pixels(const Gpu *gpu, uint32_t path_rows, uint32_t lights,
                            uint32_t surface_rows)
 {
-    const uint64_t                rows     = RESULT_ROWS + lights;
-    const uint64_t                hit      = HIT_BYTES + path_rows * PATH_ROW_BYTES;
-    const uint64_t                surface  = surface_rows * SURFACE_ROW_BYTES;
-    const uint64_t                usual    = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
-    const VkPhysicalDeviceLimits *limits   = &gpu->properties.limits;
-    const uint64_t                slack    = buffer_texel_bytes(1); /* what rounding adds at most */
-    const uint64_t                in_range = (limits->maxStorageBufferRange - slack) /
+    const uint64_t   rows     = RESULT_ROWS + lights;
+    const uint64_t   hit      = HIT_BYTES + path_rows * PATH_ROW_BYTES;
+    const uint64_t   surface  = surface_rows * SURFACE_ROW_BYTES;
+    const uint64_t   usual    = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
+    const GpuLimits *limits   = &gpu->limits;
+    const uint64_t   slack    = buffer_texel_bytes(1); /* what rounding adds at most */
+    const uint64_t   in_range = (limits->storage_bytes - slack) /
                               larger(larger(hit, surface), rows * RESULT_BYTES);
-    const uint64_t in_texels = (limits->maxTexelBufferElements - slack / sizeof(uint32_t)) /
+    const uint64_t in_texels = (limits->texels - slack / sizeof(uint32_t)) /
                                (rows > 2 * MARCH_BYTES / sizeof(uint32_t)
                                     ? rows
                                     : 2 * MARCH_BYTES / sizeof(uint32_t));

@@ -133,12 +133,12 @@ Dispatch dispatch_of(const Job *job, KrsPhase phase, const Shader *shader, const
 /* Records that the words which neighbours share are cleared (shared.glsl). */
 static void record_unshared(const Job *job, const WorkBlock *work)
 {
-    const VkDeviceSize list  = (VkDeviceSize)work->extent[0] * work->extent[1];
-    const VkDeviceSize tiles = (VkDeviceSize)((work->extent[0] + TILE - 1) / TILE) *
-                               ((work->extent[1] + TILE - 1) / TILE);
-    const VkDeviceSize words = SHARED_LISTS * tiles * TILE * TILE;
-    vkCmdFillBuffer(job->gpu->commands, job->rendering->band.queue.buffer,
-                    LIST_SHARED * list * sizeof(uint32_t), words * sizeof(uint32_t), 0);
+    const uint64_t list  = (uint64_t)work->extent[0] * work->extent[1];
+    const uint64_t tiles = (uint64_t)((work->extent[0] + TILE - 1) / TILE) *
+                           ((work->extent[1] + TILE - 1) / TILE);
+    const uint64_t words = SHARED_LISTS * tiles * TILE * TILE;
+    gpu_fill(job->gpu, &job->rendering->band.queue, LIST_SHARED * list * sizeof(uint32_t),
+             words * sizeof(uint32_t), 0);
 }
 
 static bool clear_shared(Job *job, const Dispatch *dispatch)
@@ -192,7 +192,6 @@ static void record(Job *job, uint32_t i)
     KrsRendering           *r        = job->rendering;
     const Dispatch         *dispatch = &job->chain.list[i];
     const Items            *items    = &dispatch->items;
-    VkBuffer                control  = rendering_control(r)->buffer;
     const NextDispatchBlock next     = {items->counter,
                                         items->each,
                                         items->resets,
@@ -204,8 +203,8 @@ static void record(Job *job, uint32_t i)
     work.first                       = 0;
     work.groups                      = INT32_MAX; /* all groups, in their order (find_cell) */
     work.stride                      = 1;
-    vkCmdUpdateBuffer(job->gpu->commands, control, 0, offsetof(ControlBlock, queued),
-                      &dispatch->control);
+    gpu_write(job->gpu, rendering_control(r), 0, &dispatch->control,
+              offsetof(ControlBlock, queued));
     gpu_barrier(job->gpu);
     rendering_dispatch(r, &r->renderer->next_dispatch, r->band_set, &next, sizeof next, 1);
     gpu_barrier(job->gpu);
@@ -253,7 +252,7 @@ static bool submit(Job *job, uint32_t first)
             i++;
         if (!gpu_marked(job->gpu, mark, &ms))
             return false;
-        learn(job, from, i, job->gpu->times ? ms : mark == 0 ? whole : 0);
+        learn(job, from, i, job->gpu->has_clock ? ms : mark == 0 ? whole : 0);
     }
     return true;
 }
@@ -338,8 +337,8 @@ bool dispatch_fused(Job *job, const Dispatch *dispatches, size_t count)
         dispatch.work.first    = 0;
         dispatch.work.groups   = own;
         dispatch.work.stride   = rendering_spread(job->rendering, own);
-        vkCmdUpdateBuffer(job->gpu->commands, rendering_control(job->rendering)->buffer, 0,
-                          offsetof(ControlBlock, queued), &dispatch.control);
+        gpu_write(job->gpu, rendering_control(job->rendering), 0, &dispatch.control,
+                  offsetof(ControlBlock, queued));
         gpu_barrier(job->gpu);
         rendering_dispatch(job->rendering, dispatch.shader, job->rendering->band_set,
                            &dispatch.work, sizeof dispatch.work, own);

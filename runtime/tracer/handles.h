@@ -7,6 +7,7 @@
 
 #include "compiler/passes/compile.h"
 #include "runtime/device/buffer.h"
+#include "runtime/device/sets.h"
 #include "runtime/device/shader.h"
 #include "runtime/shared/blocks.h"
 
@@ -33,16 +34,6 @@ typedef enum RayKind {
     RAY_KINDS
 } RayKind;
 
-/* The numbers of a texel. */
-typedef enum TexelKind {
-    NO_TEXELS,
-    ONE_NUMBER,
-    TWO_NUMBERS,
-    FOUR_NUMBERS,
-    FOUR_FLOATS,
-    TEXEL_KINDS
-} TexelKind;
-
 /* The fields that lanes of the host ask (lane_fields.h); zero: nothing is kept. */
 typedef struct LaneFields {
     uint64_t             stamp;  /* of the values that they are of (krs_state_stamp) */
@@ -62,13 +53,13 @@ typedef struct LaneTimes {
 typedef struct PrewarmThread PrewarmThread;
 
 struct KrsRenderer {
-    Gpu                   gpu;
-    PrewarmThread        *prewarm; /* NULL: none are made at the moment */
-    bool                  compiler_started;
-    bool                  early_outs;   /* shaders skip far shapes by branches */
-    VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters and tables */
-    VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
-    VkPipelineLayout      layout;       /* shared by all shaders */
+    Gpu            gpu;
+    PrewarmThread *prewarm; /* NULL: none are made at the moment */
+    bool           compiler_started;
+    bool           early_outs;   /* shaders skip far shapes by branches */
+    SetLayout      scene_layout; /* set 0: the scene's parameters and tables */
+    SetLayout      frame_layout; /* set 1: what frame.glsl declares */
+    Handle         layout;       /* shared by all shaders */
     /* Each is made when it is needed, with the shaders of the first scene that needs it. */
     Shader pixels[RAY_KINDS][PIXEL_SHADERS];
     Shader aims[2], arrivals[2];  /* aim.comp and arrive.comp; [1]: paths have such rays, too */
@@ -82,9 +73,9 @@ struct KrsRenderer {
     double spirv_ms, pipeline_ms; /* the time to make these shaders */
     /* Sets for prewarming, in which a shader finds no items, and the buffers of zeros that they
        bind. */
-    VkDescriptorPool idle_pool;
-    VkDescriptorSet  idle_scene, idle_frame;
-    Buffer           idle[TEXEL_KINDS];
+    Handle idle_pool;
+    Handle idle_scene, idle_frame;
+    Buffer idle[TEXEL_KINDS];
 };
 
 /* The buffers that hold a band of the picture. */
@@ -143,10 +134,10 @@ struct KrsRendering {
     bool       catches;         /* this frame's plate catches shadows */
     double     spirv_ms, pipeline_ms;
 
-    VkDescriptorPool pool;
-    VkDescriptorSet  scene_set, band_set, points_set;
-    Buffer           parameters, frame, control;
-    Buffer           table_rows, table_cells; /* krs_state_tables; none where there are no tables */
+    Handle pool;
+    Handle scene_set, band_set, points_set;
+    Buffer parameters, frame, control;
+    Buffer table_rows, table_cells; /* krs_state_tables; none where there are no tables */
     double (*table_inputs)
         [4]; /* krs_state_table_inputs of those on the device; NULL: there are none yet */
     Buffer   sky_table;      /* sky_table.h; none for other skies */

@@ -1,7 +1,6 @@
 /*
  * layouts.h: what all shaders of a renderer share, whatever the scene.  These are the layouts of
- * descriptor sets and of the pipeline, and descriptor sets of zeros, in which a shader finds no
- * items.
+ * sets and of shaders, and sets of zeros, in which a shader finds no items.
  */
 #ifndef KRS_LAYOUTS_H
 #define KRS_LAYOUTS_H
@@ -35,11 +34,11 @@ void layouts_destroy(KrsRenderer *renderer);
    the buffer, as in buffer_create. */
 bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
 /* Points a binding of a frame's set at a buffer.  It does nothing for texels on devices that read none. */
-void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
+void layouts_bind(Gpu *gpu, Handle set, uint32_t binding, const Buffer *buffer);
 
 /* Does the same for a scene's set. */
 bool layouts_view_table(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
-void layouts_bind_scene(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
+void layouts_bind_scene(Gpu *gpu, Handle set, uint32_t binding, const Buffer *buffer);
 /* Returns what a scene without tables binds in their place. */
 const Buffer *layouts_idle_table(const KrsRenderer *renderer, uint32_t binding);
 

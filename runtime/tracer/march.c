@@ -17,7 +17,7 @@ bool march_clear(Job *job)
     Gpu *gpu = job->gpu;
     if (!gpu_begin(gpu))
         return false;
-    vkCmdFillBuffer(gpu->commands, job->rendering->band.ends.buffer, 0, VK_WHOLE_SIZE, STATE_MISS);
+    gpu_fill(gpu, &job->rendering->band.ends, 0, job->rendering->band.ends.size, STATE_MISS);
     return gpu_finish(gpu, &job->stats->phase_ms[KRS_PHASE_BEAMS]);
 }
 

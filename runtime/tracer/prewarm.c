@@ -38,7 +38,7 @@ static bool worth_second_device(const PrewarmQueue *queue)
     size_t     compiled = 0;
     for (size_t i = 0; i < queue->count; i++)
         compiled += queue->codes[i].compiled;
-    return compiled > 1 && gpu_is_cpu(gpu) && !gpu->messenger && sysconf(_SC_NPROCESSORS_ONLN) > 1;
+    return compiled > 1 && gpu_is_cpu(gpu) && !gpu->validates && sysconf(_SC_NPROCESSORS_ONLN) > 1;
 }
 
 /* Returns the second device's thread.  If anything fails, or nothing is kept on disk, the first
@@ -89,7 +89,7 @@ static void end_second_device(PrewarmQueue *queue)
 
 /* Prewarms the shaders that the second device does not take, and then, from the disk, those that it
    took. */
-static bool prewarm_all(KrsRenderer *renderer, VkDescriptorSet scene_set, PrewarmQueue *queue)
+static bool prewarm_all(KrsRenderer *renderer, Handle scene_set, PrewarmQueue *queue)
 {
     const ShaderRequest *requests = queue->requests;
     const ShaderCode    *codes    = queue->codes;
@@ -150,8 +150,8 @@ static size_t drop_made(KrsRenderer *renderer, ShaderRequest *requests, ShaderCo
 
 /* Loads shaders and prewarms them.  The second device begins at once, while the first still has a
    shader at hand that was begun ahead. */
-static bool load_and_prewarm(KrsRenderer *renderer, VkDescriptorSet scene_set,
-                             const ShaderRequest *requests, const ShaderCode *codes, size_t count)
+static bool load_and_prewarm(KrsRenderer *renderer, Handle scene_set, const ShaderRequest *requests,
+                             const ShaderCode *codes, size_t count)
 {
     Gpu         *gpu   = &renderer->gpu;
     PrewarmQueue queue = {.gpu = gpu, .requests = requests, .codes = codes, .count = count};
@@ -167,8 +167,8 @@ static bool load_and_prewarm(KrsRenderer *renderer, VkDescriptorSet scene_set,
 }
 
 /* Makes them likewise, and compiles them before. */
-static bool make(KrsRenderer *renderer, VkDescriptorSet scene_set, const ShaderRequest *asked,
-                 size_t count, double *spirv_ms, double *pipeline_ms)
+static bool make(KrsRenderer *renderer, Handle scene_set, const ShaderRequest *asked, size_t count,
+                 double *spirv_ms, double *pipeline_ms)
 {
     Gpu          *gpu = &renderer->gpu;
     ShaderRequest requests[SHADERS_AT_ONCE];
@@ -190,8 +190,8 @@ static bool make(KrsRenderer *renderer, VkDescriptorSet scene_set, const ShaderR
     return ready;
 }
 
-bool shaders_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const ShaderRequest *asked,
-                  size_t count, double *spirv_ms, double *pipeline_ms)
+bool shaders_make(KrsRenderer *renderer, Handle scene_set, const ShaderRequest *asked, size_t count,
+                  double *spirv_ms, double *pipeline_ms)
 {
     bool ready = count == 0 || make(renderer, scene_set, asked, count, spirv_ms, pipeline_ms);
     /* Shaders that were begun ahead, and failed, are made now: nothing is made ahead any more. */

@@ -25,13 +25,15 @@ struct PrewarmThread {
     pthread_t     thread;
 };
 
-bool shader_prewarm(KrsRenderer *renderer, VkDescriptorSet scene_set, Shader *shader)
+bool shader_prewarm(KrsRenderer *renderer, Handle scene_set, Shader *shader)
 {
-    const VkDescriptorSet sets[2] = {scene_set ? scene_set : renderer->idle_scene,
-                                     renderer->idle_frame};
     const WorkBlock work     = {.groups = 1, .stride = 1};
-    return shader->prewarmed = gpu_prewarm(&renderer->gpu, shader->pipeline, renderer->layout, sets,
-                                           &work, sizeof work, &shader->prewarm);
+    const Run       run      = {.pipeline = shader->pipeline,
+                                .layout   = renderer->layout,
+                                .sets = {scene_set ? scene_set : renderer->idle_scene, renderer->idle_frame},
+                                .work       = &work,
+                                .work_bytes = sizeof work};
+    return shader->prewarmed = gpu_prewarm(&renderer->gpu, &run, &shader->prewarm);
 }
 
 /* Tells whether the driver had to compile the first shader, which its cache gives in a few milliseconds.  Where
@@ -50,7 +52,7 @@ static bool make(PrewarmThread *prewarm, size_t i)
     double unused = 0;
     bool   ready  = shader_load(gpu, &prewarm->shaders[i], &prewarm->codes[i],
                                 prewarm->renderer.layout, &unused) &&
-                 shader_prewarm(&prewarm->renderer, VK_NULL_HANDLE, &prewarm->shaders[i]);
+                 shader_prewarm(&prewarm->renderer, 0, &prewarm->shaders[i]);
     if (i == 1 && finds_no_cache(prewarm))
         spirv_prepare(); /* while the driver's own thread works */
     ready = ready && gpu_wait(gpu);
@@ -80,7 +82,7 @@ static void prewarm_free(KrsRenderer *renderer, PrewarmThread *prewarm)
 void prewarm_start(KrsRenderer *renderer, const ShaderRequest *requests, size_t count)
 {
     Gpu *gpu = &renderer->gpu;
-    if (!gpu_is_cpu(gpu) || !gpu->texels || gpu->messenger || sysconf(_SC_NPROCESSORS_ONLN) < 2)
+    if (!gpu_is_cpu(gpu) || !gpu->texels || gpu->validates || sysconf(_SC_NPROCESSORS_ONLN) < 2)
         return;
     PrewarmThread *prewarm = gpu_alloc(gpu, 1, sizeof *prewarm, "make shaders ahead");
     double         unused  = 0;

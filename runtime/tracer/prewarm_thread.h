@@ -8,7 +8,7 @@
 #include "runtime/tracer/handles.h"
 
 /* Has the driver run a shader that exists once, in the background. */
-bool shader_prewarm(KrsRenderer *renderer, VkDescriptorSet scene_set, Shader *shader);
+bool shader_prewarm(KrsRenderer *renderer, Handle scene_set, Shader *shader);
 
 /* Makes at most MAX_PREWARMED shaders without a scene, one after the other by a thread of its own.  It
    does nothing where that would not help: on graphics cards, and on one core. */

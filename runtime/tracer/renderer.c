@@ -146,8 +146,8 @@ KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emu
         {&renderer->next_dispatch, {.file = "next_dispatch.comp"}},
         request_shader(renderer, &renderer->clear_shared, "clear_shared.comp", RAYS_OF_CAMERAS)};
     const size_t count = gpu_is_cpu(&renderer->gpu) ? 0 : sizeof shaders / sizeof *shaders;
-    if (!layouts_create(renderer) || !shaders_make(renderer, VK_NULL_HANDLE, shaders, count,
-                                                   &renderer->spirv_ms, &renderer->pipeline_ms))
+    if (!layouts_create(renderer) ||
+        !shaders_make(renderer, 0, shaders, count, &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     if (options && options->prewarm)
         start_prewarming(renderer);
@@ -165,7 +165,7 @@ void krs_renderer_free(KrsRenderer *renderer)
         return;
     Gpu *gpu = &renderer->gpu;
     prewarm_end(renderer);
-    if (gpu->device) {
+    if (gpu_is_open(gpu)) {
         gpu_wait(gpu);
         for (int kind = 0; kind < RAY_KINDS; kind++) {
             for (int i = 0; i < PIXEL_SHADERS; i++)
@@ -202,10 +202,7 @@ void renderer_clear(KrsRenderer *renderer)
     renderer->gpu.status     = KRS_OK;
 }
 
-KrsDevice krs_renderer_device(const KrsRenderer *renderer)
-{
-    return gpu_describe(renderer->gpu.physical);
-}
+KrsDevice krs_renderer_device(const KrsRenderer *renderer) { return gpu_describe(&renderer->gpu); }
 
 uint64_t krs_renderer_validation_messages(const KrsRenderer *renderer)
 {
@@ -216,7 +213,7 @@ bool renderer_create_pixels(KrsRendering *rendering)
 {
     ShaderRequest requests[PIXEL_SHADERS];
     const size_t  count = renderer_request_pixels(rendering, requests);
-    return shaders_make(rendering->renderer, VK_NULL_HANDLE, requests, count, &rendering->spirv_ms,
+    return shaders_make(rendering->renderer, 0, requests, count, &rendering->spirv_ms,
                         &rendering->pipeline_ms);
 }
 
@@ -225,7 +222,7 @@ bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_
 {
     ShaderRequest requests[2];
     const size_t  count = renderer_request_escapes(renderer, kind, requests);
-    return shaders_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
+    return shaders_make(renderer, 0, requests, count, spirv_ms, pipeline_ms);
 }
 
 /* Makes a requested shader, unless it exists; NULL with the failure noted. */
@@ -233,7 +230,7 @@ static const Shader *make_request(KrsRenderer *renderer, ShaderRequest *request,
                                   double *pipeline_ms)
 {
     const bool made = request->shader->pipeline ||
-                      shaders_make(renderer, VK_NULL_HANDLE, request, 1, spirv_ms, pipeline_ms);
+                      shaders_make(renderer, 0, request, 1, spirv_ms, pipeline_ms);
     return made ? request->shader : NULL;
 }
 

@@ -20,55 +20,26 @@
 /* The radius of an unused zone, in which no point is. */
 #define NO_ZONE (-1e30f)
 
-void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
-                    const Buffer *buffer)
+void rendering_bind(KrsRendering *rendering, Handle set, uint32_t binding, const Buffer *buffer)
 {
     layouts_bind(&rendering->renderer->gpu, set, binding, buffer);
 }
 
-static bool sets_create(KrsRendering *rendering)
+static bool rendering_sets_create(KrsRendering *rendering)
 {
-    Gpu        *gpu     = &rendering->renderer->gpu;
-    const char *attempt = "prepare the scene";
-    TRY(gpu, attempt,
-        vkCreateDescriptorPool(
-            gpu->device,
-            &(VkDescriptorPoolCreateInfo){
-                .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                .maxSets       = 3,
-                .poolSizeCount = 3,
-                .pPoolSizes =
-                    (VkDescriptorPoolSize[]){
-                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
-                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS + TABLE_BINDINGS},
-                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
-                         2 * TEXEL_BINDINGS + TABLE_BINDINGS},
-                    },
-            },
-            NULL, &rendering->pool));
-    VkDescriptorSet sets[3];
-    TRY(gpu, attempt,
-        vkAllocateDescriptorSets(
-            gpu->device,
-            &(VkDescriptorSetAllocateInfo){
-                .sType              = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                .descriptorPool     = rendering->pool,
-                .descriptorSetCount = 3,
-                .pSetLayouts        = (VkDescriptorSetLayout[]){rendering->renderer->scene_layout,
-                                                                rendering->renderer->frame_layout,
-                                                                rendering->renderer->frame_layout},
-            },
-            sets));
+    const KrsRenderer     *renderer   = rendering->renderer;
+    const SetLayout *const layouts[3] = {&renderer->scene_layout, &renderer->frame_layout,
+                                         &renderer->frame_layout};
+    Handle                 sets[3];
+    if (!sets_create(&rendering->renderer->gpu, layouts, 3, sets, &rendering->pool))
+        return false;
     rendering->scene_set  = sets[0];
     rendering->band_set   = sets[1];
     rendering->points_set = sets[2];
     return true;
-
-failed:
-    return false;
 }
 
-void rendering_bind_frame(KrsRendering *rendering, VkDescriptorSet set)
+void rendering_bind_frame(KrsRendering *rendering, Handle set)
 {
     const Buffer *control = rendering_control(rendering);
     rendering_bind(rendering, set, FRAME_BINDING, &rendering->frame);
@@ -91,8 +62,8 @@ static bool scene_buffers_create(KrsRendering *rendering)
     Gpu     *gpu   = &rendering->renderer->gpu;
     uint32_t slots = rendering_slots(rendering);
     if (slots == 0 ||
-        !buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float),
-                       UPLOADED, "scene's parameters") ||
+        !buffer_create(gpu, &rendering->parameters, (uint64_t)slots * 4 * sizeof(float), UPLOADED,
+                       "scene's parameters") ||
         !scene_tables_create(rendering))
         return false;
     bind_scene(rendering);
@@ -137,7 +108,7 @@ static double guess_slice(const KrsRendering *rendering, int phase, bool has_sce
     const Gpu *gpu   = &rendering->renderer->gpu;
     double     flops = has_scene ? rendering->program->flops * distances_of_item[phase]
                                  : FLOPS_WITHOUT_SCENE;
-    double     items = slow[gpu_describe(gpu->physical).kind] / fmax(flops, 1);
+    double     items = slow[gpu_describe(gpu).kind] / fmax(flops, 1);
     return gpu_is_cpu(gpu) ? 8192 : fmax(items, 1);
 }
 
@@ -170,7 +141,7 @@ KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPur
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         for (int has_scene = 0; has_scene < 2; has_scene++)
             rendering->items_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
-    if (!sets_create(rendering) || !buffers_create(rendering) ||
+    if (!rendering_sets_create(rendering) || !buffers_create(rendering) ||
         !shaders_create(rendering, rendering->purpose)) {
         KrsStatus status = renderer->gpu.status;
         prewarm_end(renderer); /* it may still use the queue */
@@ -280,7 +251,7 @@ void krs_rendering_free(KrsRendering *rendering)
         buffer_destroy(gpu, buffers[i]);
     shaders_destroy(gpu, &rendering->shaders);
     if (!gpu->stuck)
-        vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
+        sets_destroy(gpu, rendering->pool);
     gpu_release(gpu, rendering->table_inputs);
     lane_fields_free(&rendering->lane_fields);
     gpu_release(gpu, rendering);
@@ -379,8 +350,7 @@ bool rendering_begin(KrsRendering *rendering)
     if (!gpu_begin(gpu))
         return false;
     if (rendering->device_control.buffer) {
-        vkCmdCopyBuffer(gpu->commands, rendering->control.buffer, rendering->device_control.buffer,
-                        1, &(VkBufferCopy){0, 0, sizeof(ControlBlock)});
+        gpu_copy(gpu, &rendering->control, 0, &rendering->device_control, 0, sizeof(ControlBlock));
         gpu_barrier(gpu);
     }
     return true;
@@ -388,38 +358,37 @@ bool rendering_begin(KrsRendering *rendering)
 
 bool rendering_finish(KrsRendering *rendering, double *ms)
 {
-    Gpu               *gpu      = &rendering->renderer->gpu;
-    const VkDeviceSize counters = offsetof(ControlBlock, queued);
+    Gpu           *gpu      = &rendering->renderer->gpu;
+    const uint64_t counters = offsetof(ControlBlock, queued);
     if (rendering->device_control.buffer) {
         gpu_barrier(gpu);
-        vkCmdCopyBuffer(gpu->commands, rendering->device_control.buffer, rendering->control.buffer,
-                        1, &(VkBufferCopy){counters, counters, sizeof(ControlBlock) - counters});
+        gpu_copy(gpu, &rendering->device_control, counters, &rendering->control, counters,
+                 sizeof(ControlBlock) - counters);
     }
     return gpu_finish(gpu, ms);
 }
 
-static void bind_shader(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
-                        const void *work, uint32_t work_bytes)
+static Run run_of(const KrsRendering *rendering, const Shader *shader, Handle set, const void *work,
+                  uint32_t work_bytes)
 {
-    VkCommandBuffer  commands = rendering->renderer->gpu.commands;
-    VkPipelineLayout layout   = rendering->renderer->layout;
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader->pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 2,
-                            (VkDescriptorSet[]){rendering->scene_set, set}, 0, NULL);
-    vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, work_bytes, work);
+    return (Run){.pipeline   = shader->pipeline,
+                 .layout     = rendering->renderer->layout,
+                 .sets       = {rendering->scene_set, set},
+                 .work       = work,
+                 .work_bytes = work_bytes};
 }
 
-void rendering_dispatch(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
-                        const void *work, uint32_t work_bytes, uint32_t groups)
+void rendering_dispatch(KrsRendering *rendering, const Shader *shader, Handle set, const void *work,
+                        uint32_t work_bytes, uint32_t groups)
 {
-    bind_shader(rendering, shader, set, work, work_bytes);
-    vkCmdDispatch(rendering->renderer->gpu.commands, groups, 1, 1);
+    const Run run = run_of(rendering, shader, set, work, work_bytes);
+    gpu_dispatch(&rendering->renderer->gpu, &run, groups);
 }
 
-void rendering_dispatch_counted(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
+void rendering_dispatch_counted(KrsRendering *rendering, const Shader *shader, Handle set,
                                 const void *work, uint32_t work_bytes)
 {
-    bind_shader(rendering, shader, set, work, work_bytes);
-    vkCmdDispatchIndirect(rendering->renderer->gpu.commands, rendering_control(rendering)->buffer,
-                          offsetof(ControlBlock, groups));
+    const Run run = run_of(rendering, shader, set, work, work_bytes);
+    gpu_dispatch_counted(&rendering->renderer->gpu, &run, rendering_control(rendering),
+                         offsetof(ControlBlock, groups));
 }

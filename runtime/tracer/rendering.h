@@ -29,10 +29,9 @@ ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights);
    ranges to its cores. */
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count);
 /* Points a binding of set 1 at a buffer. */
-void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
-                    const Buffer *buffer);
+void rendering_bind(KrsRendering *rendering, Handle set, uint32_t binding, const Buffer *buffer);
 /* Points the bindings of the frame and of the control block at those of the rendering. */
-void rendering_bind_frame(KrsRendering *rendering, VkDescriptorSet set);
+void rendering_bind_frame(KrsRendering *rendering, Handle set);
 /* These do what gpu_begin and gpu_finish do, and copy the control block to the shaders, and the
    counters back. */
 bool rendering_begin(KrsRendering *rendering);
@@ -40,10 +39,10 @@ bool rendering_finish(KrsRendering *rendering, double *ms);
 /* Returns the control block that shaders use. */
 const Buffer *rendering_control(const KrsRendering *rendering);
 /* Records that a shader runs with these push constants on `groups` workgroups. */
-void rendering_dispatch(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
-                        const void *work, uint32_t work_bytes, uint32_t groups);
+void rendering_dispatch(KrsRendering *rendering, const Shader *shader, Handle set, const void *work,
+                        uint32_t work_bytes, uint32_t groups);
 /* Does the same, on as many workgroups as the control block has in `groups` by then. */
-void rendering_dispatch_counted(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
+void rendering_dispatch_counted(KrsRendering *rendering, const Shader *shader, Handle set,
                                 const void *work, uint32_t work_bytes);
 /* The most workgroups of a dispatch on any device. */
 enum { MAX_GROUPS = 65535 };

@@ -36,11 +36,11 @@ static void set_albedos(const KrsRendering *rendering)
    also beyond the last one. */
 static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
 {
-    Gpu         *gpu    = &rendering->renderer->gpu;
-    Buffer      *buffer = &rendering->inputs;
-    VkDeviceSize bytes  = buffer_texel_bytes(LIGHTS_AT * RESULT_BYTES +
-                                             (lights + LIGHTS_AT_ONCE) * sizeof(LightBlock) +
-                                             rays * sizeof(ListedRayBlock));
+    Gpu     *gpu    = &rendering->renderer->gpu;
+    Buffer  *buffer = &rendering->inputs;
+    uint64_t bytes  = buffer_texel_bytes(LIGHTS_AT * RESULT_BYTES +
+                                         (lights + LIGHTS_AT_ONCE) * sizeof(LightBlock) +
+                                         rays * sizeof(ListedRayBlock));
     if (buffer->size >= bytes)
         return true;
     buffer_destroy(gpu, buffer);

@@ -12,20 +12,18 @@
 
 enum { ROW_BYTES = 4 * sizeof(float), CELL_BYTES = 2 * sizeof(uint32_t) };
 
-static VkDeviceSize max_texels(const Gpu *gpu, uint32_t texel_bytes)
+static uint64_t max_texels(const Gpu *gpu, uint32_t texel_bytes)
 {
-    const VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
-    return gpu->texels ? limits->maxTexelBufferElements
-                       : limits->maxStorageBufferRange / texel_bytes;
+    return gpu->texels ? gpu->limits.texels : gpu->limits.storage_bytes / texel_bytes;
 }
 
 /* Makes one of the two buffers, which holds so many texels. */
 static bool table_create(KrsRendering *rendering, uint32_t binding, Buffer *buffer, size_t texels,
                          uint32_t texel_bytes)
 {
-    Gpu         *gpu   = &rendering->renderer->gpu;
-    VkDeviceSize bytes = buffer_texel_bytes((VkDeviceSize)texels * texel_bytes);
-    VkDeviceSize most  = max_texels(gpu, texel_bytes);
+    Gpu           *gpu   = &rendering->renderer->gpu;
+    const uint64_t bytes = buffer_texel_bytes((uint64_t)texels * texel_bytes);
+    const uint64_t most  = max_texels(gpu, texel_bytes);
     if (bytes / texel_bytes > most) {
         gpu_refuse(gpu, KRS_NO_DEVICE,
                    "the device has no room for the " TABLES
@@ -58,12 +56,12 @@ void scene_tables_bind(KrsRendering *rendering)
                                : layouts_idle_table(rendering->renderer, binding));
 }
 
-static bool copy(Gpu *gpu, const Buffer *from, const Buffer *to, VkDeviceSize bytes)
+static bool copy(Gpu *gpu, const Buffer *from, const Buffer *to, uint64_t bytes)
 {
     double ms = 0;
     if (!gpu_begin(gpu))
         return false;
-    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, 1, &(VkBufferCopy){0, 0, bytes});
+    gpu_copy(gpu, from, 0, to, 0, bytes);
     return gpu_finish(gpu, &ms);
 }
 

@@ -286,13 +286,12 @@ static bool refuse(Gpu *gpu)
 }
 
 /* Makes room on the device for so many bytes. */
-static bool make_room(KrsRendering *rendering, VkDeviceSize bytes)
+static bool make_room(KrsRendering *rendering, uint64_t bytes)
 {
-    Gpu                          *gpu    = &rendering->renderer->gpu;
-    const VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
-    const VkDeviceSize            row    = sizeof(float[4]);
-    const VkDeviceSize            most   = gpu->texels ? limits->maxTexelBufferElements * row
-                                                       : limits->maxStorageBufferRange;
+    Gpu             *gpu    = &rendering->renderer->gpu;
+    const GpuLimits *limits = &gpu->limits;
+    const uint64_t   row    = sizeof(float[4]);
+    const uint64_t   most   = gpu->texels ? limits->texels * row : limits->storage_bytes;
     if (bytes > most) {
         gpu_refuse(gpu, KRS_NO_DEVICE,
                    "the device has no room for the " TABLE ": it has %llu bytes of %llu",
@@ -321,8 +320,7 @@ static bool fill_and_copy(KrsRendering *rendering, const KrsSkyMap *map, Buffer 
         return refuse(gpu);
     if (!gpu_begin(gpu))
         return false;
-    vkCmdCopyBuffer(gpu->commands, staged->buffer, rendering->sky_table.buffer, 1,
-                    &(VkBufferCopy){0, 0, staged->size});
+    gpu_copy(gpu, staged, 0, &rendering->sky_table, 0, staged->size);
     return gpu_finish(gpu, &ms);
 }
 
@@ -332,7 +330,7 @@ bool sky_table_upload(KrsRendering *rendering, const KrsSkyMap *map)
     Buffer staged = {0};
     if (!map || (rendering->sky_table.buffer && rendering->sky_version == map->version))
         return true;
-    const VkDeviceSize bytes = buffer_texel_bytes(sky_table_rows(map) * sizeof(float[4]));
+    const uint64_t bytes = buffer_texel_bytes(sky_table_rows(map) * sizeof(float[4]));
     bool done = make_room(rendering, bytes) && buffer_create(gpu, &staged, bytes, SHARED, TABLE) &&
                 fill_and_copy(rendering, map, &staged);
     buffer_destroy(gpu, &staged);

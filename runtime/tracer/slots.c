@@ -12,7 +12,7 @@ static uint32_t slots_without_values(const KrsProgram *program)
 
 static uint32_t max_slots(const KrsRendering *rendering)
 {
-    return rendering->renderer->gpu.properties.limits.maxUniformBufferRange / (4 * sizeof(float));
+    return rendering->renderer->gpu.limits.uniform_bytes / (4 * sizeof(float));
 }
 
 bool rendering_rebases(const KrsRendering *rendering)

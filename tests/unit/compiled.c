@@ -18,6 +18,7 @@
 
 #include "compiler/base/embedded.h"
 #include "compiler/passes/compile.h"
+#include "runtime/device/driver.h"
 #include "runtime/device/shader.h"
 #include "runtime/tracer/handles.h"
 #include "tests/support/device.h"
@@ -88,7 +89,7 @@ static VkDescriptorType type_of_binding(int set, uint32_t binding)
 }
 
 /* A layout that has room for the bindings of any shader. */
-static VkPipelineLayout make_layout(Gpu *gpu)
+static Handle make_layout(Gpu *gpu)
 {
     enum { SETS = 2, BINDINGS = 16 };
     VkDescriptorSetLayoutBinding bindings[BINDINGS];
@@ -101,7 +102,7 @@ static VkPipelineLayout make_layout(Gpu *gpu)
                                                          .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
                                                          .descriptorType = type_of_binding(set, i)};
         assert_int_equal(vkCreateDescriptorSetLayout(
-                             gpu->device,
+                             gpu->driver->device,
                              &(VkDescriptorSetLayoutCreateInfo){
                                  .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                  .bindingCount = BINDINGS,
@@ -111,7 +112,7 @@ static VkPipelineLayout make_layout(Gpu *gpu)
     }
     assert_int_equal(
         vkCreatePipelineLayout(
-            gpu->device,
+            gpu->driver->device,
             &(VkPipelineLayoutCreateInfo){
                 .sType                  = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                 .setLayoutCount         = SETS,
@@ -122,8 +123,8 @@ static VkPipelineLayout make_layout(Gpu *gpu)
             NULL, &layout),
         VK_SUCCESS);
     for (int i = 0; i < SETS; i++)
-        vkDestroyDescriptorSetLayout(gpu->device, sets[i], NULL);
-    return layout;
+        vkDestroyDescriptorSetLayout(gpu->driver->device, sets[i], NULL);
+    return TO_HANDLE(layout);
 }
 
 /* A shader that needs no scene. */
@@ -192,7 +193,7 @@ static void shaders_are_compiled_together(void **state)
                                                  "#define VARIANT 2\n", "#error refused\n"};
     assert_true(
         gpu_open(&gpu, &(KrsRendererOptions){.device = tested_device(), .cache = folder}, 0));
-    VkPipelineLayout layout = make_layout(&gpu);
+    Handle layout = make_layout(&gpu);
     for (int i = 0; i < SHADERS; i++)
         requests[i] = (ShaderRequest){&shaders[i], {file, NULL, defines[i]}};
 
@@ -201,7 +202,7 @@ static void shaders_are_compiled_together(void **state)
         assert_true(
             shader_create_all(&gpu, requests, SHADERS - 1, layout, &spirv_ms, &pipeline_ms));
         for (int i = 0; i < SHADERS - 1; i++) {
-            assert_true(shaders[i].pipeline != VK_NULL_HANDLE);
+            assert_true(shaders[i].pipeline != 0);
             shader_destroy(&gpu, &shaders[i]);
         }
         assert_int_equal(count_files_that_end(".spirv", name), SHADERS - 1);
@@ -215,7 +216,7 @@ static void shaders_are_compiled_together(void **state)
     assert_false(shader_create_all(&gpu, requests, 2, layout, &spirv_ms, &pipeline_ms));
     assert_non_null(strstr(gpu.message, "missing.comp"));
     spirv_stop();
-    vkDestroyPipelineLayout(gpu.device, layout, NULL);
+    vkDestroyPipelineLayout(gpu.driver->device, FROM_HANDLE(VkPipelineLayout, layout), NULL);
     gpu_close(&gpu);
 }
 
@@ -259,12 +260,12 @@ static void graphics_cards_do_not_rehearse(void **state)
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
     Gpu          *gpu          = &renderer->gpu;
-    VkCommandPool prewarm_pool = gpu->prewarm_pool;
+    VkCommandPool prewarm_pool = gpu->driver->prewarm_pool;
     assert_true(gpu_wait(gpu));
-    gpu->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    gpu->prewarm_pool          = VK_NULL_HANDLE;
+    gpu->driver->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    gpu->driver->prewarm_pool          = VK_NULL_HANDLE;
     assert_int_equal(krs_rendering_new(renderer, scene, KRS_FOR_PICTURES, &rendering), KRS_OK);
-    gpu->prewarm_pool = prewarm_pool;
+    gpu->driver->prewarm_pool = prewarm_pool;
     krs_rendering_free(rendering);
     krs_renderer_free(renderer);
     krs_scene_free(scene);

@@ -112,8 +112,7 @@ static bool device_has(Gpu *gpu, const Buffer *buffer, const void *bytes, size_t
     double ms = 0;
     assert_true(buffer->size >= count);
     assert_true(buffer_create(gpu, &copy, buffer->size, SHARED, "copy") && gpu_begin(gpu));
-    vkCmdCopyBuffer(gpu->commands, buffer->buffer, copy.buffer, 1,
-                    &(VkBufferCopy){0, 0, buffer->size});
+    gpu_copy(gpu, buffer, 0, &copy, 0, buffer->size);
     assert_true(gpu_finish(gpu, &ms));
     bool same = memcmp(copy.bytes, bytes, count) == 0;
     buffer_destroy(gpu, &copy);
@@ -282,15 +281,15 @@ static void pictures_are_those_of_the_state(void **context)
 /* A device with room for as much as the tables have, or for less. */
 static void compare_with_room(Bench *bench, unsigned emulation, bool enough)
 {
-    Fixture                 fixture = open_fixture(bench, 2000, emulation);
-    VkPhysicalDeviceLimits *limits  = &fixture.renderer->gpu.properties.limits;
-    size_t                  rows    = krs_table_rows(fixture.scene) * 16;
-    size_t                  cells   = krs_table_cells(fixture.scene) * 8;
-    size_t                  page = 4096, most = (rows > cells ? rows : cells) + 2 * page;
-    KrsRendering           *rendering;
+    Fixture       fixture = open_fixture(bench, 2000, emulation);
+    GpuLimits    *limits  = &fixture.renderer->gpu.limits;
+    size_t        rows    = krs_table_rows(fixture.scene) * 16;
+    size_t        cells   = krs_table_cells(fixture.scene) * 8;
+    size_t        page = 4096, most = (rows > cells ? rows : cells) + 2 * page;
+    KrsRendering *rendering;
     assert_true(rows > 64 * page && rows / 16 < cells / 8);
-    limits->maxStorageBufferRange  = (uint32_t)(enough ? most : most - 4 * page);
-    limits->maxTexelBufferElements = (uint32_t)(cells / 8 + 2 * page / 8 - (enough ? 0 : page / 2));
+    limits->storage_bytes = (uint32_t)(enough ? most : most - 4 * page);
+    limits->texels        = (uint32_t)(cells / 8 + 2 * page / 8 - (enough ? 0 : page / 2));
     if (enough) {
         assert_int_equal(
             krs_rendering_new(fixture.renderer, fixture.scene, KRS_FOR_PICTURES, &rendering),

@@ -23,11 +23,10 @@ static void copy_between(Gpu *gpu, const Buffer *from, const Buffer *to, bool wi
 {
     double ms = 0;
     assert_true(gpu_begin(gpu));
-    vkCmdFillBuffer(gpu->commands, from->buffer, 0, VK_WHOLE_SIZE, 7);
+    gpu_fill(gpu, from, 0, from->size, 7);
     if (with_barrier)
         gpu_barrier(gpu);
-    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, 1,
-                    &(VkBufferCopy){.size = from->size});
+    gpu_copy(gpu, from, 0, to, 0, from->size);
     assert_true(gpu_finish(gpu, &ms));
 }
 
@@ -56,8 +55,7 @@ static void a_planted_hazard_is_reported(void **state)
 
     unsigned before = fixture.validation_messages;
     assert_true(gpu_begin(&gpu)); /* a copy beyond the end of the buffer */
-    vkCmdCopyBuffer(gpu.commands, from.buffer, to.buffer, 1,
-                    &(VkBufferCopy){.srcOffset = 4096, .size = 4});
+    gpu_copy(&gpu, &from, 4096, &to, 0, 4);
     assert_true(fixture.validation_messages > before);
     assert_non_null(strstr(fixture.validation_message, "VUID-vkCmdCopyBuffer"));
     assert_int_equal(gpu.validation_messages, fixture.validation_messages);

@@ -17,6 +17,7 @@
 #include "compiler/target/flatten.h"
 #include "compiler/target/spirv.h"
 #include "runtime/device/buffer.h"
+#include "runtime/device/driver.h"
 #include "runtime/device/gpu.h"
 #include "runtime/device/shader.h"
 #include "tests/support/device.h"
@@ -166,7 +167,7 @@ static void create_layout(Fixture *fixture)
         .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = 1,
         .pBindings    = &binding};
-    VkDevice device = fixture->gpu.device;
+    VkDevice device = fixture->gpu.driver->device;
     assert_int_equal(vkCreateDescriptorSetLayout(device, &set, NULL, &fixture->set_layout),
                      VK_SUCCESS);
     const VkPipelineLayoutCreateInfo layout = {
@@ -178,7 +179,7 @@ static void create_layout(Fixture *fixture)
 
 static void create_set(Fixture *fixture)
 {
-    VkDevice                         device = fixture->gpu.device;
+    VkDevice                         device = fixture->gpu.driver->device;
     const VkDescriptorPoolSize       size   = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
     const VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                              .maxSets       = 1,
@@ -191,7 +192,8 @@ static void create_set(Fixture *fixture)
         .descriptorSetCount = 1,
         .pSetLayouts        = &fixture->set_layout};
     assert_int_equal(vkAllocateDescriptorSets(device, &set, &fixture->set), VK_SUCCESS);
-    const VkDescriptorBufferInfo buffer = {fixture->buffer.buffer, 0, fixture->buffer.size};
+    const VkDescriptorBufferInfo buffer = {FROM_HANDLE(VkBuffer, fixture->buffer.buffer), 0,
+                                           fixture->buffer.size};
     vkUpdateDescriptorSets(device, 1,
                            &(VkWriteDescriptorSet){
                                .sType           = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -220,9 +222,9 @@ static int open_fixture(void **state)
 static int close_fixture(void **state)
 {
     Fixture *fixture = *state;
-    vkDestroyDescriptorPool(fixture->gpu.device, fixture->pool, NULL);
-    vkDestroyPipelineLayout(fixture->gpu.device, fixture->layout, NULL);
-    vkDestroyDescriptorSetLayout(fixture->gpu.device, fixture->set_layout, NULL);
+    vkDestroyDescriptorPool(fixture->gpu.driver->device, fixture->pool, NULL);
+    vkDestroyPipelineLayout(fixture->gpu.driver->device, fixture->layout, NULL);
+    vkDestroyDescriptorSetLayout(fixture->gpu.driver->device, fixture->set_layout, NULL);
     buffer_destroy(&fixture->gpu, &fixture->buffer);
     gpu_close(&fixture->gpu);
     spirv_stop();
@@ -243,12 +245,13 @@ static void run(Fixture *fixture, uint32_t *words, size_t count, float results[N
     Shader           shader;
     double           ms = 0;
     fill(fixture->buffer.bytes);
-    if (!shader_load(gpu, &shader, &code, fixture->layout, &ms) || !gpu_begin(gpu))
+    if (!shader_load(gpu, &shader, &code, TO_HANDLE(fixture->layout), &ms) || !gpu_begin(gpu))
         fail_msg("%s", gpu->message);
-    vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline);
-    vkCmdBindDescriptorSets(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, fixture->layout, 0, 1,
-                            &fixture->set, 0, NULL);
-    vkCmdDispatch(gpu->commands, 1, 1, 1);
+    vkCmdBindPipeline(gpu->driver->commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                      FROM_HANDLE(VkPipeline, shader.pipeline));
+    vkCmdBindDescriptorSets(gpu->driver->commands, VK_PIPELINE_BIND_POINT_COMPUTE, fixture->layout,
+                            0, 1, &fixture->set, 0, NULL);
+    vkCmdDispatch(gpu->driver->commands, 1, 1, 1);
     if (!gpu_finish(gpu, &ms))
         fail_msg("%s", gpu->message);
     shader_destroy(gpu, &shader);

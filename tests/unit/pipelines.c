@@ -35,20 +35,20 @@ static bool pretend_to_open(Gpu *gpu)
                                  VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                                     .apiVersion = VK_API_VERSION_1_1},
                          },
-                         NULL, &gpu->instance),
+                         NULL, &gpu->driver->instance),
                      VK_SUCCESS);
-    assert_true(vkEnumeratePhysicalDevices(gpu->instance, &count, devices) >= VK_SUCCESS);
+    assert_true(vkEnumeratePhysicalDevices(gpu->driver->instance, &count, devices) >= VK_SUCCESS);
     unsetenv("RADV_FORCE_FAMILY");
-    for (uint32_t i = 0; i < count && !gpu->physical; i++) {
-        vkGetPhysicalDeviceProperties(devices[i], &gpu->properties);
-        if (strstr(gpu->properties.deviceName, "NAVI21"))
-            gpu->physical = devices[i];
+    for (uint32_t i = 0; i < count && !gpu->driver->physical; i++) {
+        vkGetPhysicalDeviceProperties(devices[i], &gpu->driver->properties);
+        if (strstr(gpu->driver->properties.deviceName, "NAVI21"))
+            gpu->driver->physical = devices[i];
     }
-    if (!gpu->physical) {
-        vkDestroyInstance(gpu->instance, NULL);
+    if (!gpu->driver->physical) {
+        vkDestroyInstance(gpu->driver->instance, NULL);
         return false;
     }
-    assert_int_equal(vkCreateDevice(gpu->physical,
+    assert_int_equal(vkCreateDevice(gpu->driver->physical,
                                     &(VkDeviceCreateInfo){
                                         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                         .queueCreateInfoCount = 1,
@@ -59,7 +59,7 @@ static bool pretend_to_open(Gpu *gpu)
                                                 .pQueuePriorities = &(float){1},
                                             },
                                     },
-                                    NULL, &gpu->device),
+                                    NULL, &gpu->driver->device),
                      VK_SUCCESS);
     return true;
 }
@@ -69,7 +69,7 @@ static void make_pipeline(const Gpu *gpu, const uint32_t *words, size_t bytes)
     VkShaderModule   module;
     VkPipelineLayout layout;
     VkPipeline       pipeline;
-    assert_int_equal(vkCreateShaderModule(gpu->device,
+    assert_int_equal(vkCreateShaderModule(gpu->driver->device,
                                           &(VkShaderModuleCreateInfo){
                                               .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                               .codeSize = bytes,
@@ -78,12 +78,12 @@ static void make_pipeline(const Gpu *gpu, const uint32_t *words, size_t bytes)
                      VK_SUCCESS);
     assert_int_equal(
         vkCreatePipelineLayout(
-            gpu->device,
+            gpu->driver->device,
             &(VkPipelineLayoutCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO},
             NULL, &layout),
         VK_SUCCESS);
     assert_int_equal(vkCreateComputePipelines(
-                         gpu->device, gpu->pipelines, 1,
+                         gpu->driver->device, gpu->driver->pipelines, 1,
                          &(VkComputePipelineCreateInfo){
                              .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                              .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -93,9 +93,9 @@ static void make_pipeline(const Gpu *gpu, const uint32_t *words, size_t bytes)
                              .layout = layout},
                          NULL, &pipeline),
                      VK_SUCCESS);
-    vkDestroyPipeline(gpu->device, pipeline, NULL);
-    vkDestroyPipelineLayout(gpu->device, layout, NULL);
-    vkDestroyShaderModule(gpu->device, module, NULL);
+    vkDestroyPipeline(gpu->driver->device, pipeline, NULL);
+    vkDestroyPipelineLayout(gpu->driver->device, layout, NULL);
+    vkDestroyShaderModule(gpu->driver->device, module, NULL);
 }
 
 /* Bytes that drivers keep at most of no pipeline: a header, and some numbers. */
@@ -107,7 +107,7 @@ static size_t run_on(Gpu *gpu, const uint32_t *words, size_t bytes)
     cache_open(&gpu->cache, folder, (KrsAllocator){0});
     gpu->pipelines_loaded = 0;
     pipelines_open(gpu);
-    assert_true(gpu->pipelines != VK_NULL_HANDLE);
+    assert_true(gpu->driver->pipelines != VK_NULL_HANDLE);
     if (words)
         make_pipeline(gpu, words, bytes);
     pipelines_close(gpu);
@@ -118,7 +118,8 @@ static size_t run_on(Gpu *gpu, const uint32_t *words, size_t bytes)
 static void pipelines_are_kept(void **state)
 {
     (void)state;
-    Gpu       gpu = {0};
+    Driver    driver = {0};
+    Gpu       gpu    = {.driver = &driver};
     uint32_t *words;
     size_t    count;
     char      name[NAME_MAX + 1], *log;
@@ -142,13 +143,13 @@ static void pipelines_are_kept(void **state)
     assert_true(run_on(&gpu, words, 4 * count) > NOTHING);
 
     /* Another device finds nothing, and what its driver would not have made is not kept. */
-    gpu.properties.vendorID ^= 1;
+    gpu.driver->properties.vendorID ^= 1;
     assert_int_equal(run_on(&gpu, words, 4 * count), 0);
     assert_int_equal(count_files_that_end(".pipelines", name), 1);
-    gpu.properties.vendorID ^= 1;
+    gpu.driver->properties.vendorID ^= 1;
     free(words);
-    vkDestroyDevice(gpu.device, NULL);
-    vkDestroyInstance(gpu.instance, NULL);
+    vkDestroyDevice(gpu.driver->device, NULL);
+    vkDestroyInstance(gpu.driver->instance, NULL);
 }
 
 static void lavapipe_keeps_none(void **state)
