@@ -293,30 +293,34 @@ static void divide_tile(March *m, size_t count)
         }
 }
 
-/* Begins all rays; where they are marched. */
+void ray_begin_block(const RayRule *rule, RayBlock *block)
+{
+    for (int i = 0; i < RAYS_OF_BLOCK; i++) {
+        block->t[i]   = block->start[i];
+        block->end[i] = fminf(block->end[i], block->plane[i]);
+        if (!rule->from_surfaces)
+            block->side[i] = block->start[i] > 0 ? 1 : 0;
+        block->clearance[i] = block->step[i] = 0;
+        block->slope[i]                      = -1 / (1 - 0.3f);
+        block->steps[i] = block->unresolved[i] = 0;
+        if (block->state[i] != RAY_IS_ABSENT && !(block->start[i] <= block->end[i]))
+            block->state[i] = block->state[i] == RAY_MARCHES ? RAY_MISSES : RAY_IS_ABSENT;
+    }
+}
+
+/* Begins all rays, and finds where they are marched. */
 static void begin(March *m, size_t count, float *first, float *last)
 {
     *first = HUGE_VALF;
     *last  = 0;
     for (size_t b = 0; b < count; b++) {
         RayBlock *block = &m->blocks[b];
-        for (int i = 0; i < RAYS_OF_BLOCK; i++) {
-            block->t[i]   = block->start[i];
-            block->end[i] = fminf(block->end[i], block->plane[i]);
-            if (!m->rule->from_surfaces)
-                block->side[i] = block->start[i] > 0 ? 1 : 0;
-            block->clearance[i] = block->step[i] = 0;
-            block->slope[i]                      = -1 / (1 - 0.3f);
-            block->steps[i] = block->unresolved[i] = 0;
-            if (block->state[i] == RAY_IS_ABSENT)
-                continue;
-            if (!(block->start[i] <= block->end[i]))
-                block->state[i] = block->state[i] == RAY_MARCHES ? RAY_MISSES : RAY_IS_ABSENT;
+        ray_begin_block(m->rule, block);
+        for (int i = 0; i < RAYS_OF_BLOCK; i++)
             if (is_there(block, i)) {
                 *first = fminf(*first, block->start[i]);
                 *last  = fmaxf(*last, block->end[i]);
             }
-        }
     }
 }
 
@@ -343,11 +347,11 @@ static float slab_at(float first, float last, float clear, int number)
                      : first + (last - first) * part * (even + (1 - even) * part);
 }
 
-/* Ends the rays of a block.  Those that hit nothing else meet their plane. */
-static void end_block(March *m, RayBlock *block, const RayCell *planes)
+uint64_t ray_end_block(const RayField *field, size_t part, const RayRule *rule, RayBlock *block)
 {
-    RayHit meets[RAYS_OF_BLOCK];
-    size_t count = 0;
+    const RayCell planes = {&field->plane_distance.cells, field->plane_distance.works[part], 0};
+    RayHit        meets[RAYS_OF_BLOCK];
+    size_t        count = 0;
     for (int i = 0; i < RAYS_OF_BLOCK; i++) {
         const bool ends = block->state[i] == RAY_MARCHES || block->state[i] == RAY_REFINES;
         block->state[i] = ends ? (uint32_t)RAY_MISSES : block->state[i];
@@ -358,8 +362,7 @@ static void end_block(March *m, RayBlock *block, const RayCell *planes)
             meets[count++]  = (RayHit){block, i};
         }
     }
-    if (m->rule->normal_reach > 0 && m->field->planes)
-        m->evaluations += ray_normals(planes, m->rule, meets, count);
+    return rule->normal_reach > 0 && field->planes ? ray_normals(&planes, rule, meets, count) : 0;
 }
 
 /* Marches rays in the slabs of a tile.  Those that begin with one tape are bounded at once. */
@@ -402,16 +405,15 @@ static void march_tile(March *m, const CellTape *tape, size_t count, float first
 uint64_t ray_field_march(RayField *field, size_t part, RayBlock *blocks, size_t count,
                          const RayRule *rule)
 {
-    const RayCell planes = {&field->plane_distance.cells, field->plane_distance.works[part], 0};
-    March         m      = {.field  = field,
-                            .work   = field->distance.works[part],
-                            .set    = field->set,
-                            .rule   = rule,
-                            .blocks = blocks};
-    float         first, last;
+    March m = {.field  = field,
+               .work   = field->distance.works[part],
+               .set    = field->set,
+               .rule   = rule,
+               .blocks = blocks};
+    float first, last;
     begin(&m, count, &first, &last);
     march_tile(&m, &field->distance.cells, count, first, last);
     for (size_t b = 0; b < count; b++)
-        end_block(&m, &blocks[b], &planes);
+        m.evaluations += ray_end_block(field, part, rule, &blocks[b]);
     return m.evaluations;
 }

@@ -1,5 +1,5 @@
 /*
- * march.h: a tile that is marched.
+ * march.h: rays that look for surfaces.
  */
 #ifndef KRS_RAYS_MARCH_H
 #define KRS_RAYS_MARCH_H
@@ -20,6 +20,11 @@ static inline const float *ray_cell_run_wide(const RayCell *cell, float points[3
     return cell_run_wide(cell->tape, cell->work, cell->depth, (const float(*)[CELL_WIDE])points,
                          blocks);
 }
+
+/* Begins the rays of a block. */
+void ray_begin_block(const RayRule *rule, RayBlock *block);
+/* Ends those that have hit nothing, or meet their plane.  Returns how many distances were evaluated. */
+uint64_t ray_end_block(const RayField *field, size_t part, const RayRule *rule, RayBlock *block);
 
 /* normals.c: how far from hits at t, in parts of the reach of differences there, distances are asked for. */
 #define TAPS_REACH 2.5f

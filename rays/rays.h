@@ -87,6 +87,10 @@ void ray_field_meet_planes(RayField *field, size_t part, float farthest, RayBloc
 uint64_t ray_field_march(RayField *field, size_t part, RayBlock *blocks, size_t count,
                          const RayRule *rule);
 
+/* Marches rays of mirrors, which go anywhere: up to BLOCKS_OF_WAVE blocks, in the order of any list. */
+uint64_t ray_field_follow(RayField *field, size_t part, RayBlock *blocks, size_t count,
+                          const RayRule *rule);
+
 /* Returns the same for rays of hits, of which `side` is given: RAY_HITS is blocked, RAY_MISSES is
    not. */
 uint64_t ray_field_block(RayField *field, size_t part, RayBlock *blocks, size_t count,

@@ -324,6 +324,45 @@ static void find(const Question *q, const CellTape *tape, uint32_t level, const 
     }
 }
 
+/* ---- order ---- */
+
+enum { CELLS = 1024 }; /* in a row along an axis, 2^10 of them */
+
+/* Two zeros between the ten bits of a number. */
+static uint32_t spread_by_three(uint32_t bits)
+{
+    bits = (bits | bits << 16) & 0x030000ffu;
+    bits = (bits | bits << 8) & 0x0300f00fu;
+    bits = (bits | bits << 4) & 0x030c30c3u;
+    return (bits | bits << 2) & 0x09249249u;
+}
+
+static int compare_orders(const void *a, const void *b)
+{
+    const uint32_t one = ((const SurfacePoint *)a)->order, other = ((const SurfacePoint *)b)->order;
+    return (one > other) - (one < other);
+}
+
+/* Cells of the box around them are numbered by Morton's order, so an eighth of an eighth follows another. */
+void surface_points_sort(SurfacePoint *points, size_t count)
+{
+    float low[3] = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, side = 0;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            low[k] = fminf(low[k], points[i].position[k]);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            side = fmaxf(side, points[i].position[k] - low[k]);
+    const float scale = side > 0 ? (CELLS - 0.5f) / side : 0;
+    for (size_t i = 0; i < count; i++) {
+        points[i].order = 0;
+        for (int k = 0; k < 3; k++)
+            points[i].order |= spread_by_three((uint32_t)((points[i].position[k] - low[k]) * scale))
+                               << k;
+    }
+    qsort(points, count, sizeof *points, compare_orders);
+}
+
 /* ---- questions ---- */
 
 static void ask(Question *q, size_t part, size_t count)

@@ -14,10 +14,11 @@
 #include "krs/krs.h"
 
 typedef struct SurfacePoint {
-    float  position[3], normal[3]; /* the normal is on the outside of the solid */
-    float  view[3];                /* of the ray that sees it, unit */
-    float  footprint;              /* the radius of a pixel there */
-    float *found;                  /* where to write what is found */
+    float    position[3], normal[3]; /* the normal is on the outside of the solid */
+    float    view[3];                /* of the ray that sees it, unit */
+    float    footprint;              /* the radius of a pixel there */
+    float   *found;                  /* where to write what is found */
+    uint32_t order;                  /* by which surface_points_sort sorts */
 } SurfacePoint;
 
 /* The numbers of a surface, in this order. */
@@ -51,6 +52,9 @@ void          surface_field_free(SurfaceField *field);
 /* Tells whether surfaces can be found: not where light goes through something or surfaces are open, where
    there is nothing, or where numbers of copies are too large for single precision. */
 bool surface_field_suits(const KrsScene *scene);
+
+/* Sorts points so that those which follow each other are near each other. */
+void surface_points_sort(SurfacePoint *points, size_t count);
 
 /* Finds surfaces, in one of the parts of run_in_parallel.  Points are near those before and behind them; as many as
    SURFACES_AT_ONCE cost the least. */

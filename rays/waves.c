@@ -1,5 +1,5 @@
 /*
- * waves.c: rays of hits, which go anywhere, in cubes of space.
+ * waves.c: rays that go anywhere, those of hits and of mirrors, in cubes of space.
  *
  * All rays of a wave take a step.  They are sorted by the cubes that they are in then, and those in a cube ask
  * its tape together.
@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "rays/march.h"
 #include "rays/ray_field.h"
 
 /* Clips a blocked ray.  Rays of hits meet planes at once, and else only what is in the box. */
@@ -100,10 +101,19 @@ static float distance_to_box(const RayField *field, const float point[3])
 static bool is_beside(const Wave *wave, const RayBlock *block, uint32_t i, const float point[3],
                       float t, float *distance)
 {
-    if (!wave->rule->cones || !(wave->space->side > 0))
+    if (wave->march || !wave->rule->cones || !(wave->space->side > 0))
         return false;
     *distance = distance_to_box(wave->field, point);
     return *distance > 2 * (block->cone[i] * t + block->margin[i]);
+}
+
+/* Lists a ray among those that ask in a cube. */
+static void list_ray(Wave *wave, uint32_t number, uint32_t ray)
+{
+    if (wave->first_rays[number] < 0)
+        wave->cubes[wave->cube_count++] = number;
+    wave->next[ray]          = wave->first_rays[number];
+    wave->first_rays[number] = (int32_t)ray;
 }
 
 /* Lists the rays of a block by cubes; false: none marches. */
@@ -118,11 +128,7 @@ static bool sort_rays(Wave *wave, uint32_t b)
                                 wave->points[b][2][i]};
         if (is_beside(wave, block, i, point, wave->at[b][i], &wave->distances[b][i]))
             continue;
-        const uint32_t number = space_find(wave->space, wave->work, point);
-        if (wave->first_rays[number] < 0)
-            wave->cubes[wave->cube_count++] = number;
-        wave->next[b * RAYS_OF_BLOCK + i] = wave->first_rays[number];
-        wave->first_rays[number]          = (int32_t)(b * RAYS_OF_BLOCK + i);
+        list_ray(wave, space_find(wave->space, wave->work, point), b * RAYS_OF_BLOCK + i);
     }
     wave->evaluations += rays;
     return rays > 0;
@@ -156,6 +162,17 @@ static void ask_cube(Wave *wave, uint32_t number)
     }
 }
 
+/* The clearances of a ray that looks for surfaces are true ones, as its next distance may be in another cube. */
+static void take_block(const Wave *wave, uint32_t b)
+{
+    const RaySet *set = wave->field->set;
+    if (wave->march)
+        set->take(&wave->blocks[b], wave->march, wave->at[b], HUGE_VALF, HUGE_VALF, 1,
+                  wave->distances[b]);
+    else
+        set->take_blocked(&wave->blocks[b], wave->rule, wave->at[b], wave->distances[b]);
+}
+
 static void march_wave(Wave *wave, size_t count)
 {
     wave->live_count = (uint32_t)count;
@@ -171,22 +188,84 @@ static void march_wave(Wave *wave, size_t count)
         for (uint32_t i = 0; i < wave->cube_count; i++)
             ask_cube(wave, wave->cubes[i]);
         for (uint32_t i = 0; i < live; i++)
-            wave->field->set->take_blocked(&wave->blocks[wave->live[i]], wave->rule,
-                                           wave->at[wave->live[i]], wave->distances[wave->live[i]]);
+            take_block(wave, wave->live[i]);
     }
 }
 
-uint64_t ray_field_block(RayField *field, size_t part, RayBlock *blocks, size_t count,
-                         const BlockRule *rule)
+/* Finds the normals of hits in a cube. */
+static void find_normals_in_cube(Wave *wave, uint32_t number)
+{
+    const RayCell cell       = {&wave->space->cubes[number].tape, wave->work, 1};
+    int32_t       next       = wave->first_rays[number];
+    wave->first_rays[number] = -1;
+    while (next >= 0) {
+        RayHit hits[CELL_WIDE];
+        size_t count = 0;
+        for (; count < CELL_WIDE && next >= 0; next = wave->next[next])
+            hits[count++] = (RayHit){&wave->blocks[next / RAYS_OF_BLOCK], next % RAYS_OF_BLOCK};
+        wave->evaluations += ray_normals(&cell, wave->march, hits, count);
+    }
+}
+
+/* The smallest cube whose tape is right where the normal of a hit is found. */
+static uint32_t find_cube_of_hit(const Wave *wave, const RayBlock *block, uint32_t i)
+{
+    const float t = block->t[i];
+    float       point[3], largest = 0;
+    for (int k = 0; k < 3; k++) {
+        point[k] = block->origin[k][i] + t * block->direction[k][i];
+        largest  = fmaxf(largest, fmaxf(fabsf(point[k]), fabsf(block->origin[k][i])));
+    }
+    const float reach = ray_normal_reach(wave->march, block->width[i] + block->spread[i] * t, t,
+                                         largest);
+    return space_find_ball(wave->space, wave->work, point, TAPS_REACH * reach);
+}
+
+static void find_normals_of_wave(Wave *wave, size_t count)
+{
+    wave->cube_count = 0;
+    for (uint32_t b = 0; b < count; b++)
+        for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++)
+            if (wave->blocks[b].state[i] == RAY_HITS)
+                list_ray(wave, find_cube_of_hit(wave, &wave->blocks[b], i), b * RAYS_OF_BLOCK + i);
+    for (uint32_t i = 0; i < wave->cube_count; i++)
+        find_normals_in_cube(wave, wave->cubes[i]);
+}
+
+static Wave *begin_wave(RayField *field, size_t part, RayBlock *blocks)
 {
     Wave *wave        = field->waves[part];
     wave->field       = field;
     wave->part        = part;
     wave->space       = &field->space;
     wave->work        = field->distance.works[part];
-    wave->rule        = rule;
+    wave->rule        = NULL;
+    wave->march       = NULL;
     wave->blocks      = blocks;
     wave->evaluations = 0;
+    return wave;
+}
+
+uint64_t ray_field_follow(RayField *field, size_t part, RayBlock *blocks, size_t count,
+                          const RayRule *rule)
+{
+    Wave *wave  = begin_wave(field, part, blocks);
+    wave->march = rule;
+    for (size_t b = 0; b < count; b++)
+        ray_begin_block(rule, &blocks[b]);
+    march_wave(wave, count);
+    if (rule->normal_reach > 0)
+        find_normals_of_wave(wave, count);
+    for (size_t b = 0; b < count; b++)
+        wave->evaluations += ray_end_block(field, part, rule, &blocks[b]);
+    return wave->evaluations;
+}
+
+uint64_t ray_field_block(RayField *field, size_t part, RayBlock *blocks, size_t count,
+                         const BlockRule *rule)
+{
+    Wave *wave = begin_wave(field, part, blocks);
+    wave->rule = rule;
     for (size_t b = 0; b < count; b++) {
         for (int i = 0; i < RAYS_OF_BLOCK; i++)
             wave->marched[b][i] = blocks[b].state[i] == RAY_MARCHES;

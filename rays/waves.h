@@ -13,7 +13,8 @@ typedef struct Wave {
     size_t           part;
     Space           *space;
     CellWork        *work;
-    const BlockRule *rule;
+    const BlockRule *rule;  /* of rays that are blocked or not; */
+    const RayRule   *march; /* or, if not NULL, of those that look for surfaces */
     RayBlock        *blocks;
     uint64_t         evaluations;
     float            at[BLOCKS_OF_WAVE][RAYS_OF_BLOCK], points[BLOCKS_OF_WAVE][3][RAYS_OF_BLOCK],

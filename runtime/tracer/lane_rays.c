@@ -18,7 +18,7 @@
 #include "runtime/tracer/rendering.h"
 #include "runtime/tracer/view.h"
 
-enum { SIDE = 64, BLOCK_SIDE = 4 };
+enum { SIDE = 64, BLOCK_SIDE = 4, RAYS_OF_WAVE = BLOCKS_OF_WAVE * RAYS_OF_BLOCK };
 static_assert(SIDE * SIDE == BLOCKS_OF_TILE * RAYS_OF_BLOCK &&
                   BLOCK_SIDE * BLOCK_SIDE == RAYS_OF_BLOCK,
               "rays.h");
@@ -65,11 +65,10 @@ typedef struct Slice {
     const Job       *job;
     RayField        *field;
     const WorkBlock *work;
-    const uint8_t
-        *paths; /* of each pixel of the band: 1: its path goes on; NULL: rays are the camera's */
-    FrameBlock  box;             /* around what is marched */
+    const uint32_t  *slots;      /* of pixels whose paths go on */
+    FrameBlock       box;        /* around what is marched */
     uint32_t    across, tile[2]; /* of all tiles: in a row, and the first one's column and row */
-    uint32_t    items;           /* of rays of hits */
+    uint32_t    items;           /* of rays of hits, or of paths */
     atomic_uint next;
     uint32_t    end;
     RayBlock   *blocks[MAX_PARTS]; /* of each part */
@@ -185,68 +184,46 @@ const float (*lane_rays_path(const Job *job, const WorkBlock *work, const uint32
     return hits + (size_t)HIT_ROWS * TILE * TILE * tiles_of_band(work) + PATH_ROWS * index;
 }
 
-uint8_t *lane_rays_mark(Job *job, const WorkBlock *work, const LanePaths *paths)
+/* Begins the ray of a path. */
+static void begin_path(const Slice *slice, const uint32_t pixel[2], RayBlock *block, uint32_t i)
 {
-    uint8_t *marks = gpu_alloc(job->gpu, (size_t)work->extent[0] * work->extent[1], sizeof *marks,
-                               "march rays");
-    for (uint32_t i = 0; i < paths->count && marks; i++) {
-        uint32_t pixel[2];
-        lane_rays_pixel(work, paths->slots[i], pixel);
-        marks[(size_t)pixel[1] * work->extent[0] + pixel[0]] = 1;
+    const float(*path)[4] = lane_rays_path(slice->job, slice->work, pixel);
+    for (int k = 0; k < 3; k++) {
+        block->origin[k][i]    = path[PATH_ORIGIN][k];
+        block->direction[k][i] = path[PATH_DIRECTION][k];
     }
-    return marks;
+    block->width[i]  = path[PATH_ORIGIN][3];
+    block->spread[i] = path[PATH_DIRECTION][3];
+    block->side[i]   = path[PATH_TOWARD][3] < 0 ? -1.0f : 1.0f;
+    block->state[i]  = RAY_MARCHES;
+    clip(slice->box.low, slice->box.high, slice->job->frame.farthest, block, i);
 }
 
-/* Tells whether a ray of the slice is that of a pixel of the band. */
-static bool is_marched(const Slice *slice, Corner corner, uint32_t ray, uint32_t pixel[2])
-{
-    return find_pixel(slice->work, corner, ray, pixel) &&
-           (!slice->paths ||
-            slice->paths[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]] == 1);
-}
-
-/* Does the same for rays of paths, which begin at hits. */
-static void begin_block_of_paths(const Slice *slice, Corner corner, RayBlock *block)
-{
-    for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
-        uint32_t pixel[2];
-        block->state[i] = RAY_IS_ABSENT;
-        if (!is_marched(slice, corner, i, pixel))
-            continue;
-        const float(*path)[4] = lane_rays_path(slice->job, slice->work, pixel);
-        for (int k = 0; k < 3; k++) {
-            block->origin[k][i]    = path[PATH_ORIGIN][k];
-            block->direction[k][i] = path[PATH_DIRECTION][k];
-        }
-        block->width[i]  = path[PATH_ORIGIN][3];
-        block->spread[i] = path[PATH_DIRECTION][3];
-        block->side[i]   = path[PATH_TOWARD][3] < 0 ? -1.0f : 1.0f;
-        block->state[i]  = RAY_MARCHES;
-        clip(slice->box.low, slice->box.high, slice->job->frame.farthest, block, i);
-    }
-}
-
-/* Stores the rays of a block as pack_ray of frame.glsl packs them. */
-static void store_block(Slice *slice, size_t part, Corner corner, const RayBlock *block)
+/* Stores the ray of a pixel as pack_ray of frame.glsl packs it. */
+static void store_ray(Slice *slice, size_t part, const uint32_t pixel[2], const RayBlock *block,
+                      uint32_t i)
 {
     float(*hits)[4]    = slice->job->rendering->band.hits.bytes;
     uint32_t(*ends)[2] = slice->job->rendering->band.ends.bytes;
-    for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
-        uint32_t pixel[2];
-        if (!is_marched(slice, corner, i, pixel))
-            continue;
-        uint32_t *end = ends[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]];
-        memcpy(&end[0], &block->t[i], sizeof *end);
-        end[1] = (block->state[i] == RAY_HITS ? STATE_HIT : STATE_MISS) |
-                 (block->side[i] < 0 ? 4u : 0u) | (block->unresolved[i] ? 8u : 0u) |
-                 block->steps[i] << 8;
-        float *facing = hits[(size_t)HIT_ROWS * lane_rays_slot(slice->work, pixel) + FACING];
-        for (int k = 0; k < 3; k++)
-            facing[k] = block->normal[k][i];
-        facing[3] = block->evenness[i];
-        if (block->steps[i] > slice->max_steps[part])
-            slice->max_steps[part] = block->steps[i];
-    }
+    uint32_t *end      = ends[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]];
+    memcpy(&end[0], &block->t[i], sizeof *end);
+    end[1] = (block->state[i] == RAY_HITS ? STATE_HIT : STATE_MISS) |
+             (block->side[i] < 0 ? 4u : 0u) | (block->unresolved[i] ? 8u : 0u) |
+             block->steps[i] << 8;
+    float *facing = hits[(size_t)HIT_ROWS * lane_rays_slot(slice->work, pixel) + FACING];
+    for (int k = 0; k < 3; k++)
+        facing[k] = block->normal[k][i];
+    facing[3] = block->evenness[i];
+    if (block->steps[i] > slice->max_steps[part])
+        slice->max_steps[part] = block->steps[i];
+}
+
+static void store_block(Slice *slice, size_t part, Corner corner, const RayBlock *block)
+{
+    uint32_t pixel[2];
+    for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++)
+        if (find_pixel(slice->work, corner, i, pixel))
+            store_ray(slice, part, pixel, block, i);
 }
 
 static RayRule rule_of(const Job *job, bool of_paths)
@@ -263,8 +240,7 @@ static void begin_blocks(const Slice *slice, size_t part, uint32_t tile, uint32_
                          uint32_t count, RayBlock *blocks)
 {
     for (uint32_t b = 0; b < count; b++) {
-        (slice->paths ? begin_block_of_paths
-                      : begin_block)(slice, corner_of(slice, tile, first + b), &blocks[b]);
+        begin_block(slice, corner_of(slice, tile, first + b), &blocks[b]);
         ray_field_meet_planes(slice->field, part, slice->job->frame.farthest, &blocks[b]);
     }
 }
@@ -272,7 +248,7 @@ static void begin_blocks(const Slice *slice, size_t part, uint32_t tile, uint32_
 static void march_tiles(void *task, size_t part, size_t parts)
 {
     Slice        *slice  = task;
-    const RayRule rule   = rule_of(slice->job, slice->paths != NULL);
+    const RayRule rule   = rule_of(slice->job, false);
     RayBlock     *blocks = slice->blocks[part];
     (void)parts;
     for (uint32_t tile; (tile = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
@@ -284,7 +260,41 @@ static void march_tiles(void *task, size_t part, size_t parts)
     }
 }
 
-/* Items of rays of hits: a tile is as many as follow each other. */
+/* How many of a list are in a wave of it. */
+static uint32_t count_of_wave(const Slice *slice, uint32_t wave)
+{
+    const uint32_t left = slice->items - wave * RAYS_OF_WAVE;
+    return left < RAYS_OF_WAVE ? left : RAYS_OF_WAVE;
+}
+
+static void march_paths(void *task, size_t part, size_t parts)
+{
+    Slice        *slice  = task;
+    const RayRule rule   = rule_of(slice->job, true);
+    RayBlock     *blocks = slice->blocks[part];
+    (void)parts;
+    for (uint32_t wave; (wave = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+        const uint32_t *slots = slice->slots + wave * RAYS_OF_WAVE,
+                       items  = count_of_wave(slice, wave),
+                       count  = (items + RAYS_OF_BLOCK - 1) / RAYS_OF_BLOCK;
+        uint32_t pixel[2];
+        for (uint32_t i = 0; i < count * RAYS_OF_BLOCK; i++) {
+            RayBlock *block = &blocks[i / RAYS_OF_BLOCK];
+            lane_rays_pixel(slice->work, slots[i < items ? i : 0], pixel);
+            begin_path(slice, pixel, block, i % RAYS_OF_BLOCK);
+            if (i >= items)
+                block->state[i % RAYS_OF_BLOCK] = RAY_IS_ABSENT;
+        }
+        for (uint32_t b = 0; b < count; b++)
+            ray_field_meet_planes(slice->field, part, slice->job->frame.farthest, &blocks[b]);
+        slice->evaluations[part] += ray_field_follow(slice->field, part, blocks, count, &rule);
+        for (uint32_t i = 0; i < items; i++) {
+            lane_rays_pixel(slice->work, slots[i], pixel);
+            store_ray(slice, part, pixel, &blocks[i / RAYS_OF_BLOCK], i % RAYS_OF_BLOCK);
+        }
+    }
+}
+
 static void begin_secondary(const Slice *slice, const float (*rows)[4], uint32_t item,
                             RayBlock *block, uint32_t i)
 {
@@ -322,7 +332,6 @@ static BlockRule block_rule_of(const Job *job)
 
 static void march_items(void *task, size_t part, size_t parts)
 {
-    enum { RAYS = BLOCKS_OF_WAVE * RAYS_OF_BLOCK };
     Slice          *slice  = task;
     const BlockRule rule   = block_rule_of(slice->job);
     RayBlock       *blocks = slice->blocks[part];
@@ -330,16 +339,16 @@ static void march_items(void *task, size_t part, size_t parts)
     rows += (size_t)(HIT_ROWS + (slice->job->rendering->program->mirrors ? PATH_ROWS : 0)) * TILE *
             TILE * tiles_of_band(slice->work);
     (void)parts;
-    for (uint32_t tile; (tile = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
-        const uint32_t left  = slice->items - tile * RAYS;
-        const size_t   count = ((left < RAYS ? left : RAYS) + RAYS_OF_BLOCK - 1) / RAYS_OF_BLOCK;
+    for (uint32_t wave; (wave = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+        const uint32_t first = wave * RAYS_OF_WAVE, items = count_of_wave(slice, wave),
+                       count = (items + RAYS_OF_BLOCK - 1) / RAYS_OF_BLOCK;
         for (uint32_t i = 0; i < count * RAYS_OF_BLOCK; i++)
-            begin_secondary(slice, (const float(*)[4])rows, tile * RAYS + i,
-                            &blocks[i / RAYS_OF_BLOCK], i % RAYS_OF_BLOCK);
+            begin_secondary(slice, (const float(*)[4])rows, first + i, &blocks[i / RAYS_OF_BLOCK],
+                            i % RAYS_OF_BLOCK);
         slice->evaluations[part] += ray_field_block(slice->field, part, blocks, count, &rule);
-        for (uint32_t i = 0; i < count * RAYS_OF_BLOCK && tile * RAYS + i < slice->items; i++) {
+        for (uint32_t i = 0; i < items; i++) {
             const RayBlock *block = &blocks[i / RAYS_OF_BLOCK];
-            float          *found = rows[(size_t)LANE_ROWS * (tile * RAYS + i) + LANE_FOUND];
+            float          *found = rows[(size_t)LANE_ROWS * (first + i) + LANE_FOUND];
             found[0]              = block->t[i % RAYS_OF_BLOCK];
             found[1]              = block->state[i % RAYS_OF_BLOCK] == RAY_HITS;
             found[2]              = (float)block->unresolved[i % RAYS_OF_BLOCK];
@@ -393,23 +402,32 @@ static bool run_slices(Job *job, Slice *slice, KrsPhase phase, uint32_t tiles,
     return good;
 }
 
+static uint32_t waves_of(uint32_t items) { return (items + RAYS_OF_WAVE - 1) / RAYS_OF_WAVE; }
+
+static bool march_camera_rays(Job *job, Slice *slice)
+{
+    const WorkBlock *work = slice->work;
+    uint32_t         tiles[2];
+    for (int k = 0; k < 2; k++) {
+        slice->tile[k] = work->corner[k] / SIDE;
+        tiles[k]       = (work->corner[k] + work->extent[k] - 1) / SIDE - slice->tile[k] + 1;
+    }
+    slice->across = tiles[0];
+    return run_slices(job, slice, KRS_PHASE_PRIMARY, tiles[0] * tiles[1], march_tiles);
+}
+
 bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const LanePaths *paths)
 {
-    uint8_t *marks = paths ? lane_rays_mark(job, work, paths) : NULL;
-    Slice    slice = {.job = job, .field = field, .work = work, .paths = marks};
-    uint32_t tiles[2];
-    if (paths && !marks)
-        return false;
+    Slice slice = {.job = job, .field = field, .work = work};
     place_box(&slice);
-    for (int k = 0; k < 2; k++) {
-        slice.tile[k] = work->corner[k] / SIDE;
-        tiles[k]      = (work->corner[k] + work->extent[k] - 1) / SIDE - slice.tile[k] + 1;
+    if (paths) {
+        slice.slots = paths->slots;
+        slice.items = paths->count;
     }
-    slice.across    = tiles[0];
-    const bool good = run_slices(job, &slice, paths ? KRS_PHASE_BOUNCES : KRS_PHASE_PRIMARY,
-                                 tiles[0] * tiles[1], march_tiles);
+    const bool good = paths ? run_slices(job, &slice, KRS_PHASE_BOUNCES, waves_of(paths->count),
+                                         march_paths)
+                            : march_camera_rays(job, &slice);
     add_counts(job, &slice);
-    gpu_release(job->gpu, marks);
     return good;
 }
 
@@ -458,7 +476,6 @@ bool lane_rays_try(Job *job, RayField *field, double budget_ms, LaneTrial *trial
 bool lane_rays_march_secondary(Job *job, RayField *field, KrsPhase phase, uint32_t items,
                                const WorkBlock *work)
 {
-    enum { RAYS = BLOCKS_OF_WAVE * RAYS_OF_BLOCK };
     Slice slice = {.job = job, .field = field, .work = work, .items = items};
-    return run_slices(job, &slice, phase, (items + RAYS - 1) / RAYS, march_items);
+    return run_slices(job, &slice, phase, waves_of(items), march_items);
 }

@@ -35,9 +35,6 @@ typedef struct LaneTrial {
 /* Marches small parts of the picture, for about so many milliseconds; false with the failure noted. */
 bool lane_rays_try(Job *job, RayField *field, double budget_ms, LaneTrial *trial);
 
-/* Returns a byte for each pixel of the band, 1 for those that are listed, which gpu_release frees; NULL with the failure
-   noted. */
-uint8_t *lane_rays_mark(Job *job, const WorkBlock *work, const LanePaths *paths);
 /* Returns the rows of the path of a pixel (PATH_... of blocks.h), which is counted in the band. */
 const float (*lane_rays_path(const Job *job, const WorkBlock *work, const uint32_t pixel[2]))[4];
 /* These find the pixel of a slot, and the slot of a pixel, which is counted in the band: as in

@@ -1,8 +1,8 @@
 /*
  * lane_surfaces.c: surfaces of hits by lanes of the host.
  *
- * Hits are taken in squares of pixels, whose quarters of quarters follow each other, so that those that follow each other
- * are near each other.  Squares are dealt to all processors.
+ * Points that follow each other are to be near each other.  So hits of the camera's rays are taken in squares of pixels,
+ * whose quarters of quarters follow each other, and those of paths are sorted.  Squares are dealt to all processors.
  */
 #include "runtime/tracer/lane_surfaces.h"
 
@@ -41,13 +41,12 @@ typedef struct Slice {
     const Job          *job;
     const SurfaceField *field;
     const WorkBlock    *work;
-    const uint8_t
-            *paths;  /* of each pixel of the band: 1: a path has hit; NULL: hits are the camera's */
-    uint32_t across; /* squares in a row */
-    uint32_t list, count; /* where the list of occluders begins, and how many they are */
-    atomic_uint   next;
-    uint32_t      end;
-    SurfacePoint *points[MAX_PARTS]; /* of each part */
+    const LanePaths    *paths;       /* that have hit; NULL: hits are the camera's */
+    uint32_t            across;      /* squares in a row */
+    uint32_t            list, count; /* where the list of occluders begins, and how many they are */
+    atomic_uint         next;
+    uint32_t            end;
+    SurfacePoint       *points[MAX_PARTS]; /* of each part */
 } Slice;
 
 /* Runs `work` on numbers up to `all`, in slices that end often enough. */
@@ -120,10 +119,10 @@ static const uint32_t *end_of(const Slice *slice, const uint32_t pixel[2])
     return ends[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]];
 }
 
-static bool is_hit(const Slice *slice, const uint32_t pixel[2], const uint32_t *end)
+/* Tells whether the ray of the camera has hit what has a surface. */
+static bool is_hit(const uint32_t *end)
 {
-    return slice->paths ? slice->paths[(size_t)pixel[1] * slice->work->extent[0] + pixel[0]] == 1
-                        : (end[1] & 3) == STATE_HIT && (end[1] >> 4 & 15) != MARCH_GROUP_OF_PLATE;
+    return (end[1] & 3) == STATE_HIT && (end[1] >> 4 & 15) != MARCH_GROUP_OF_PLATE;
 }
 
 static const float *facing_of(const Slice *slice, uint32_t slot)
@@ -132,23 +131,18 @@ static const float *facing_of(const Slice *slice, uint32_t slot)
     return hits[(size_t)HIT_ROWS * slot + FACING];
 }
 
-/* Adds the hit of a pixel, if it is one. */
-static size_t add_hit(const Slice *slice, const uint32_t pixel[2], SurfacePoint *to)
+static void place_hit(const Slice *slice, const uint32_t pixel[2], SurfacePoint *to)
 {
-    const Band     *band = &slice->job->rendering->band;
     const uint32_t *end = end_of(slice, pixel), slot = lane_rays_slot(slice->work, pixel);
     const float    *facing = facing_of(slice, slot), side = end[1] & 4 ? -1.0f : 1.0f;
     float           t;
-    if (!is_hit(slice, pixel, end))
-        return 0;
     memcpy(&t, &end[0], sizeof t);
     to->footprint = 0.5f * (slice->paths ? find_hit_of_path : find_hit)(slice, pixel, t,
                                                                         to->position, to->view);
     for (int k = 0; k < 3; k++)
         to->normal[k] = side * facing[k];
-    to->found = (float *)band->surfaces.bytes +
+    to->found = (float *)slice->job->rendering->band.surfaces.bytes +
                 4 * (size_t)lane_surfaces_rows(slice->job->rendering) * slot;
-    return 1;
 }
 
 /* Returns the even bits of a number. */
@@ -170,9 +164,28 @@ static void find_squares(void *task, size_t part, size_t parts)
         for (uint32_t i = 0; i < SIDE * SIDE; i++) {
             const uint32_t pixel[2] = {SIDE * (square % slice->across) + even_bits(i),
                                        SIDE * (square / slice->across) + even_bits(i >> 1)};
-            if (pixel[0] < slice->work->extent[0] && pixel[1] < slice->work->extent[1])
-                count += add_hit(slice, pixel, &points[count]);
+            if (pixel[0] < slice->work->extent[0] && pixel[1] < slice->work->extent[1] &&
+                is_hit(end_of(slice, pixel)))
+                place_hit(slice, pixel, &points[count++]);
         }
+        surface_field_find(slice->field, part, points, count);
+    }
+}
+
+static void find_of_paths(void *task, size_t part, size_t parts)
+{
+    Slice        *slice  = task;
+    SurfacePoint *points = slice->points[part];
+    (void)parts;
+    for (uint32_t run; (run = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+        const uint32_t first = run * SURFACES_AT_ONCE, left = slice->paths->count - first;
+        const uint32_t count = left < SURFACES_AT_ONCE ? left : SURFACES_AT_ONCE;
+        for (uint32_t i = 0; i < count; i++) {
+            uint32_t pixel[2];
+            lane_rays_pixel(slice->work, slice->paths->slots[first + i], pixel);
+            place_hit(slice, pixel, &points[i]);
+        }
+        surface_points_sort(points, count);
         surface_field_find(slice->field, part, points, count);
     }
 }
@@ -181,17 +194,14 @@ bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *wo
                         const LanePaths *paths)
 {
     const uint32_t down  = (work->extent[1] + SIDE - 1) / SIDE;
-    uint8_t       *marks = paths ? lane_rays_mark(job, work, paths) : NULL;
     Slice          slice = {.job    = job,
                             .field  = field,
                             .work   = work,
-                            .paths  = marks,
+                            .paths  = paths,
                             .across = (work->extent[0] + SIDE - 1) / SIDE};
-    const bool     good  = (!paths || marks) &&
-                      deal(job, &slice, paths ? KRS_PHASE_BOUNCES : KRS_PHASE_SHADING,
-                           slice.across * down, find_squares);
-    gpu_release(job->gpu, marks);
-    return good;
+    return paths ? deal(job, &slice, KRS_PHASE_BOUNCES,
+                        (paths->count + SURFACES_AT_ONCE - 1) / SURFACES_AT_ONCE, find_of_paths)
+                 : deal(job, &slice, KRS_PHASE_SHADING, slice.across * down, find_squares);
 }
 
 /* ---- occluders ---- */

@@ -15,8 +15,6 @@
 /* The operations from which shaders of march groups take longer to compile than they save in a
    hundred small pictures with mirrors. */
 #define FLOPS_WORTH_MIXED_RAYS 1200
-/* Scenes whose mirrors lanes of the host follow cost no more than this. */
-#define MAX_FLOPS_OF_MIRRORS 5000
 /* The march groups that take longer to compile than they save in a single small picture. */
 #define GROUPS_FOR_LARGE_PICTURES 3
 
@@ -90,19 +88,9 @@ bool rendering_light_meets_planes(const KrsRendering *rendering, KrsIntegrator i
            (integrator != KRS_INTEGRATOR_PREVIEW || (!program->mirrors && !program->media));
 }
 
-/* Tells whether lanes follow mirrors.  What is mirrored by something round goes everywhere, and
-   few parts of a scene are far from it: its tapes stay as long as the scene is, and shaders are
-   faster. */
-static bool follows_mirrors(const KrsRendering *rendering)
-{
-    const KrsProgram *program = rendering->program;
-    return !program->mirrors || program->flops <= MAX_FLOPS_OF_MIRRORS;
-}
-
 bool rendering_lanes_find_surfaces(const KrsRendering *rendering)
 {
-    return rendering->renderer->gpu.texels && surface_field_suits(rendering->scene) &&
-           follows_mirrors(rendering);
+    return rendering->renderer->gpu.texels && surface_field_suits(rendering->scene);
 }
 
 /* The rays of mirrors need shaders for the whole scene.  If those are for the picture, too, the first
