@@ -125,9 +125,7 @@ static void bind(VkCommandBuffer commands, const Run *run)
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE,
                       FROM_HANDLE(VkPipeline, run->pipeline));
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, first, 2 - first,
-                            sets + first, 0, NULL);
-    vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, run->work_bytes,
-                       run->work);
+                            sets + first, 1, &run->work_at);
 }
 
 void gpu_dispatch(Gpu *gpu, const Run *run, uint32_t groups)

@@ -31,6 +31,7 @@ static void read_properties(Gpu *gpu, unsigned emulation)
                                  .texels        = least ? MIN_TEXEL_LIMIT : limits->maxTexelBufferElements,
                                  .storage_bytes = least ? MIN_RANGE_LIMIT : limits->maxStorageBufferRange,
                                  .uniform_bytes = limits->maxUniformBufferRange,
+                                 .uniform_step  = (uint32_t)limits->minUniformBufferOffsetAlignment,
     };
     gpu->emulates_card = emulation & EMULATE_CARD;
     gpu->texels        = devices_read_texels(gpu->limits.texels);

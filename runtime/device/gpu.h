@@ -47,10 +47,9 @@ void gpu_write(Gpu *gpu, const Buffer *buffer, uint64_t at, const void *bytes, u
 
 /* A shader with what it reads and writes (sets.h). */
 typedef struct Run {
-    Handle      pipeline, layout;
-    Handle      sets[2]; /* the first may be 0, where the shader has no scene */
-    const void *work;    /* its push constants */
-    uint32_t    work_bytes;
+    Handle   pipeline, layout;
+    Handle   sets[2]; /* the first may be 0, where the shader has no scene */
+    uint32_t work_at; /* where in the buffer of the second its block of work is */
 } Run;
 
 /* These record that a shader runs on `groups` workgroups, or on as many as the three numbers in a buffer

@@ -26,6 +26,7 @@ typedef struct Driver Driver;
 typedef struct GpuLimits {
     uint32_t texels;                       /* of a buffer that is read as such */
     uint32_t storage_bytes, uniform_bytes; /* of others */
+    uint32_t uniform_step;                 /* blocks of work begin at multiples of it */
 } GpuLimits;
 
 typedef struct Gpu {

@@ -12,6 +12,7 @@ enum { MAX_BINDINGS = 32, MAX_SETS = 4 };
 static const VkDescriptorType types[BINDING_KINDS] = {
     [BINDS_NOTHING] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, /* of which there are none */
     [BINDS_UNIFORM] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+    [BINDS_WORK]    = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
     [BINDS_STORAGE] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
     [BINDS_TEXELS]  = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
 };
@@ -54,24 +55,19 @@ void set_layout_destroy(Gpu *gpu, SetLayout *layout)
     *layout = (SetLayout){0};
 }
 
-bool run_layout_create(Gpu *gpu, const SetLayout *const sets[2], uint32_t work_bytes,
-                       Handle *layout)
+bool run_layout_create(Gpu *gpu, const SetLayout *const sets[2], Handle *layout)
 {
     const VkDescriptorSetLayout layouts[2] = {FROM_HANDLE(VkDescriptorSetLayout, sets[0]->layout),
                                               FROM_HANDLE(VkDescriptorSetLayout, sets[1]->layout)};
     VkPipelineLayout            made;
     TRY(gpu, "prepare the renderer",
-        vkCreatePipelineLayout(
-            gpu->driver->device,
-            &(VkPipelineLayoutCreateInfo){
-                .sType                  = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                .setLayoutCount         = 2,
-                .pSetLayouts            = layouts,
-                .pushConstantRangeCount = 1,
-                .pPushConstantRanges    = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                                                                 work_bytes},
-            },
-            NULL, &made));
+        vkCreatePipelineLayout(gpu->driver->device,
+                               &(VkPipelineLayoutCreateInfo){
+                                   .sType          = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                   .setLayoutCount = 2,
+                                   .pSetLayouts    = layouts,
+                               },
+                               NULL, &made));
     *layout = TO_HANDLE(made);
     return true;
 
@@ -161,7 +157,8 @@ void set_bind(Gpu *gpu, Handle set, uint32_t binding, BindingKind kind, const Bu
             .descriptorType   = types[kind],
             .pTexelBufferView = &view,
             .pBufferInfo      = &(VkDescriptorBufferInfo){FROM_HANDLE(VkBuffer, buffer->buffer), 0,
-                                                          buffer->size},
+                                                     kind == BINDS_WORK ? WORK_BYTES
+                                                                             : buffer->size},
         },
         0, NULL);
 }

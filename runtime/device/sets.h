@@ -6,9 +6,12 @@
 
 #include "runtime/device/buffer.h"
 
+enum { WORK_BYTES = 64 };
+
 typedef enum BindingKind {
     BINDS_NOTHING,
     BINDS_UNIFORM, /* a buffer that all lanes read alike */
+    BINDS_WORK,    /* the same, of which a shader reads WORK_BYTES from work_at on (gpu.h) */
     BINDS_STORAGE,
     BINDS_TEXELS, /* a buffer with a view (buffer_view) */
     BINDING_KINDS
@@ -23,9 +26,8 @@ typedef struct SetLayout {
 bool set_layout_create(Gpu *gpu, SetLayout *layout, const BindingKind *kinds, uint32_t count);
 void set_layout_destroy(Gpu *gpu, SetLayout *layout);
 
-/* Makes the layout of a shader with two sets, and with push constants of so many bytes. */
-bool run_layout_create(Gpu *gpu, const SetLayout *const sets[2], uint32_t work_bytes,
-                       Handle *layout);
+/* Makes the layout of a shader with two sets, of which the second has one binding of BINDS_WORK. */
+bool run_layout_create(Gpu *gpu, const SetLayout *const sets[2], Handle *layout);
 void run_layout_destroy(Gpu *gpu, Handle layout);
 
 /* Makes sets of these layouts, at most four, and the pool with which they end. */

@@ -116,7 +116,7 @@ void add_sky(uvec2 corner, uint misses)
         vec3  before = begins ? vec3(0.0) : load_color(control.color_row, fetched).rgb;
         if (misses != 0u) {
             clamped += uint(factor < 1.0);
-            colors[row + index] = before + factor * radiance;
+            store_color(row + index, before + factor * radiance);
         }
         misses &= misses - 1u;
     } while (misses != 0u);

@@ -30,9 +30,6 @@ struct RayEnd {
 // pixels, then the beams of 8x8 tiles, of 32x32 tiles, and of the quarters of 8x8 tiles, tile by
 // tile.
 layout(std430, set = 1, binding = ENDS_BINDING) buffer Ends { uvec2 ends[]; };
-layout(std430, set = 1, binding = HITS_BINDING) writeonly buffer HitNumbers {
-    float hit_numbers[];
-};
 // Tiles of 8x8 pixels whose beams find something: only their pixels have rays.  Later the slots of
 // pixels whose paths go on.
 layout(std430, set = 1, binding = TILES_BINDING) buffer Tiles { uint tiles[]; };
@@ -64,7 +61,7 @@ uint  load_tile_word(uint index) { return load_tile_row(index)[index & 3u]; }
 vec4  load_hit_row(uint number) { return uintBitsToFloat(texelFetch(hit_texels, int(number))); }
 #endif
 layout(std140, set = 1, binding = FRAME_BINDING) uniform FrameBlock { Frame given_frame; };
-layout(push_constant) uniform WorkBlock { Work given_work; };
+layout(std140, set = 1, binding = WORK_BINDING) uniform WorkBlock { Work given_work; };
 layout(std430, set = 1, binding = CONTROL_BINDING) buffer ControlBlock {
     Control given_control;
     COUNTER_MEMBERS
@@ -142,7 +139,7 @@ void store_hit(uint row, uint slot, vec4 numbers) { hits[HIT_ROWS * slot + row] 
 // Stores one number of the row LIGHTING.
 void store_lighting(uint which, uint slot, float number)
 {
-    hit_numbers[4u * (HIT_ROWS * slot + LIGHTING) + which] = number;
+    hits[HIT_ROWS * slot + LIGHTING][which] = number;
 }
 
 uint count_tiles()

@@ -12,7 +12,7 @@
 
 layout(local_size_x = 1) in;
 
-layout(push_constant) uniform NextDispatchBlock { NextDispatch next; };
+layout(std140, set = 1, binding = WORK_BINDING) uniform NextDispatchBlock { NextDispatch next; };
 layout(std430, set = 1, binding = CONTROL_BINDING) buffer ControlWords { uint words[]; };
 
 void main()

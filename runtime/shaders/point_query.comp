@@ -8,7 +8,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(push_constant) uniform PointWorkBlock { PointWork work; };
+layout(std140, set = 1, binding = WORK_BINDING) uniform PointWorkBlock { PointWork work; };
 
 layout(std430, set = 1, binding = POINTS_BINDING) readonly buffer Points { Point points[]; };
 layout(std430, set = 1, binding = ANSWERS_BINDING) writeonly buffer Answers { Answer answers[]; };

@@ -6,9 +6,6 @@
  */
 #include "optics.glsl"
 
-layout(std430, set = 1, binding = RESULTS_BINDING) writeonly buffer Colors {
-    vec3 colors[]; // 16 bytes each
-};
 #ifdef NO_TEXELS
 layout(std430, set = 1, binding = RESULTS_BINDING) buffer Results { uvec4 results[]; };
 uvec4 load_result(uint number) { return results[number]; }
@@ -18,6 +15,14 @@ layout(std430, set = 1, binding = RESULTS_BINDING) writeonly buffer Results { uv
 layout(set = 1, binding = RESULT_TEXELS_BINDING) uniform usamplerBuffer result_texels;
 uvec4 load_result(uint number) { return texelFetch(result_texels, int(number)); }
 #endif
+
+// Stores a colour, and leaves alpha as it is: number by number, as all four are written else.
+void store_color(uint number, vec3 color)
+{
+    results[number].x = floatBitsToUint(color.r);
+    results[number].y = floatBitsToUint(color.g);
+    results[number].z = floatBitsToUint(color.b);
+}
 
 bool is_wanted(uint row) { return (control.rows >> row & 1u) != 0u; }
 
@@ -32,7 +37,7 @@ vec4 find_color(uint index) { return load_color(control.color_row, index); }
 // Adds light to a row of a pixel; alpha stays as it is.
 void add_light_to(uint row, uint index, vec3 color)
 {
-    colors[row * band_pixels() + index] = load_color(row, index).rgb + color;
+    store_color(row * band_pixels() + index, load_color(row, index).rgb + color);
 }
 
 void add_light(uint index, vec3 color) { add_light_to(control.color_row, index, color); }

@@ -49,7 +49,8 @@ CONSTANT(TILE_TEXELS_BINDING, 14);
 CONSTANT(FRAME_TEXELS_BINDING, 15); /* with FRAME_TEXELS (frame.glsl) */
 CONSTANT(CONTROL_TEXELS_BINDING, 16);
 CONSTANT(SURFACE_TEXELS_BINDING, 17); /* with SURFACES (surfaces.glsl) */
-CONSTANT(FRAME_BINDINGS, 18);         /* how many */
+CONSTANT(WORK_BINDING, 18);           /* a uniform buffer: one of the blocks of a dispatch */
+CONSTANT(FRAME_BINDINGS, 19);         /* how many */
 
 /* ---- Binding in set 0, of pictures: the table of a sky that is a picture ---- */
 
@@ -120,7 +121,7 @@ struct Frame {
     FRAME_ROWS(MEMBER_OF_ONE, MEMBERS_OF_TWO, MEMBERS_OF_THREE, MEMBERS_OF_FLOATS, MEMBERS_OF_UINTS)
 };
 
-/* push_constant WorkBlock, std430. */
+/* uniform WorkBlock, std140. */
 struct Work {
     uvec2 corner, extent;        /* of the band, in pixels */
     vec2  offset;                /* of the ray within its pixel */
@@ -128,7 +129,7 @@ struct Work {
     uint  first, groups, stride; /* workgroups [first, first + groups), by this stride */
 };
 
-/* push_constant of next_dispatch.comp. */
+/* The same, of next_dispatch.comp. */
 struct NextDispatch {
     uint counter; /* items are `each` times this word of the control block; 0: `each` alone */
     uint each;
@@ -139,7 +140,7 @@ struct NextDispatch {
     uint clears;   /* a counter to set to 0; 0: none */
 };
 
-/* push_constant of point_query.comp. */
+/* The same, of point_query.comp. */
 struct PointWork {
     uint  count, taps; /* points; distances for each: 1, or 7 with normals */
     float min_step;    /* to a tap for a normal */

@@ -22,7 +22,6 @@ static_assert((int)GROUP_LISTS == 1 + KRS_MAX_MARCH_GROUPS &&
                   (int)PERSPECTIVE == (int)KRS_PERSPECTIVE &&
                   (int)ORTHOGRAPHIC == (int)KRS_ORTHOGRAPHIC && (int)PANORAMA == (int)KRS_PANORAMA,
               "compile.h");
-static_assert(sizeof(NextDispatchBlock) <= sizeof(WorkBlock), "push constants");
 
 bool dispatch_chains(const Job *job)
 {

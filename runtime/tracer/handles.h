@@ -61,16 +61,18 @@ struct KrsRenderer {
     SetLayout      frame_layout; /* set 1: what frame.glsl declares */
     Handle         layout;       /* shared by all shaders */
     /* Each is made when it is needed, with the shaders of the first scene that needs it. */
-    Shader pixels[RAY_KINDS][PIXEL_SHADERS];
-    Shader aims[2], arrivals[2];  /* aim.comp and arrive.comp; [1]: paths have such rays, too */
-    Shader limits[RAY_KINDS];     /* limit.comp, made when it is needed */
-    Shader escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
-    Shader escapes_to_plate;      /* the same for paths that may meet a plate */
-    Shader noise;                 /* noise.comp, likewise */
-    Shader plate;                 /* plate.comp, likewise */
-    Shader next_dispatch;         /* on graphics cards only (dispatch.c), */
-    Shader clear_shared;          /* and likewise */
-    double spirv_ms, pipeline_ms; /* the time to make these shaders */
+    Shader   pixels[RAY_KINDS][PIXEL_SHADERS];
+    Shader   aims[2], arrivals[2];  /* aim.comp and arrive.comp; [1]: paths have such rays, too */
+    Shader   limits[RAY_KINDS];     /* limit.comp, made when it is needed */
+    Shader   escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
+    Shader   escapes_to_plate;      /* the same for paths that may meet a plate */
+    Shader   noise;                 /* noise.comp, likewise */
+    Shader   plate;                 /* plate.comp, likewise */
+    Shader   next_dispatch;         /* on graphics cards only (dispatch.c), */
+    Shader   clear_shared;          /* and likewise */
+    double   spirv_ms, pipeline_ms; /* the time to make these shaders */
+    Buffer   work;                  /* the blocks of dispatches, each in a slot */
+    uint32_t work_slot;             /* the last that was written */
     /* Sets for prewarming, in which a shader finds no items, and the buffers of zeros that they
        bind. */
     Handle idle_pool;

@@ -27,10 +27,11 @@ static_assert((int)TABLE_BINDINGS <= (int)STORAGE_BUFFERS_FOR_TEXELS, "and for s
 
 static BindingKind kind_of(const Gpu *gpu, uint32_t binding)
 {
-    return binding == FRAME_BINDING ? BINDS_UNIFORM
-           : !texels_of[binding]    ? BINDS_STORAGE
-           : gpu->texels            ? BINDS_TEXELS
-                                    : BINDS_NOTHING;
+    return binding == FRAME_BINDING  ? BINDS_UNIFORM
+           : binding == WORK_BINDING ? BINDS_WORK
+           : !texels_of[binding]     ? BINDS_STORAGE
+           : gpu->texels             ? BINDS_TEXELS
+                                     : BINDS_NOTHING;
 }
 
 static BindingKind kind_of_scene(const Gpu *gpu, uint32_t binding)
@@ -49,7 +50,41 @@ static bool shader_layouts_create(KrsRenderer *renderer)
         frame[i] = kind_of(gpu, i);
     return set_layout_create(gpu, &renderer->scene_layout, scene, SCENE_BINDINGS) &&
            set_layout_create(gpu, &renderer->frame_layout, frame, FRAME_BINDINGS) &&
-           run_layout_create(gpu, sets, sizeof(WorkBlock), &renderer->layout);
+           run_layout_create(gpu, sets, &renderer->layout);
+}
+
+/* ---- Work ---- */
+
+/* The blocks of a submission have a slot each; no submission has more dispatches.  The first slot is
+   that of shaders which are prewarmed. */
+enum { WORK_SLOTS = 128 };
+static_assert(2 * MAX_CHAINED < WORK_SLOTS, "each dispatch follows one of next_dispatch.comp");
+static_assert(sizeof(WorkBlock) <= WORK_BYTES && sizeof(NextDispatchBlock) <= WORK_BYTES &&
+                  sizeof(PointWorkBlock) <= WORK_BYTES,
+              "what shaders read of a slot");
+
+static uint32_t slot_bytes(const Gpu *gpu)
+{
+    return gpu->limits.uniform_step > WORK_BYTES ? gpu->limits.uniform_step : WORK_BYTES;
+}
+
+static bool work_create(KrsRenderer *renderer)
+{
+    const WorkBlock idle = {.groups = 1, .stride = 1};
+    Gpu            *gpu  = &renderer->gpu;
+    if (!buffer_create(gpu, &renderer->work, (uint64_t)WORK_SLOTS * slot_bytes(gpu), UPLOADED,
+                       "work of dispatches"))
+        return false;
+    memcpy(renderer->work.bytes, &idle, sizeof idle);
+    return true;
+}
+
+uint32_t layouts_write_work(KrsRenderer *renderer, const void *work, uint32_t bytes)
+{
+    renderer->work_slot = renderer->work_slot % (WORK_SLOTS - 1) + 1;
+    const uint32_t at   = renderer->work_slot * slot_bytes(&renderer->gpu);
+    memcpy((char *)renderer->work.bytes + at, work, bytes);
+    return at;
 }
 
 /* ---- Idle sets ---- */
@@ -110,13 +145,15 @@ static bool idle_create(KrsRenderer *renderer)
         layouts_bind_scene(gpu, renderer->idle_scene, binding,
                            &renderer->idle[texels_of_scene[binding]]);
     for (uint32_t binding = 0; binding < FRAME_BINDINGS; binding++)
-        layouts_bind(gpu, renderer->idle_frame, binding, &renderer->idle[texels_of[binding]]);
+        layouts_bind(gpu, renderer->idle_frame, binding,
+                     binding == WORK_BINDING ? &renderer->work
+                                             : &renderer->idle[texels_of[binding]]);
     return true;
 }
 
 bool layouts_create(KrsRenderer *renderer)
 {
-    return shader_layouts_create(renderer) && idle_create(renderer);
+    return shader_layouts_create(renderer) && work_create(renderer) && idle_create(renderer);
 }
 
 void layouts_destroy(KrsRenderer *renderer)
@@ -127,6 +164,7 @@ void layouts_destroy(KrsRenderer *renderer)
     sets_destroy(gpu, renderer->idle_pool);
     for (TexelKind kind = NO_TEXELS; kind < TEXEL_KINDS; kind++)
         buffer_destroy(gpu, &renderer->idle[kind]);
+    buffer_destroy(gpu, &renderer->work);
     run_layout_destroy(gpu, renderer->layout);
     set_layout_destroy(gpu, &renderer->frame_layout);
     set_layout_destroy(gpu, &renderer->scene_layout);

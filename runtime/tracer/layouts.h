@@ -21,14 +21,18 @@ enum {
 /* The bindings of the frame's set (blocks.h) that are texels, and those that are storage buffers:
    all others but the uniform buffer of the frame. */
 enum {
-    TEXEL_BINDINGS  = 1 + FRAME_BINDINGS - END_TEXELS_BINDING,
-    BUFFER_BINDINGS = FRAME_BINDINGS - TEXEL_BINDINGS - 1
+    TEXEL_BINDINGS  = 1 + WORK_BINDING - END_TEXELS_BINDING,
+    BUFFER_BINDINGS = FRAME_BINDINGS - TEXEL_BINDINGS - 2
 };
 
 /* The renderer's device must be open.  On failure layouts_destroy frees what was made. */
 bool layouts_create(KrsRenderer *renderer);
 /* Destroys the layouts after the shaders.  It does nothing for a renderer without a device. */
 void layouts_destroy(KrsRenderer *renderer);
+
+/* Copies a block of a dispatch that is about to be recorded to where the shader finds it, and returns
+   where that is. */
+uint32_t layouts_write_work(KrsRenderer *renderer, const void *work, uint32_t bytes);
 
 /* Makes a buffer readable at a binding of texels, on devices that read texels.  `name` is that of
    the buffer, as in buffer_create. */

@@ -27,12 +27,9 @@ struct PrewarmThread {
 
 bool shader_prewarm(KrsRenderer *renderer, Handle scene_set, Shader *shader)
 {
-    const WorkBlock work     = {.groups = 1, .stride = 1};
-    const Run       run      = {.pipeline = shader->pipeline,
+    const Run run            = {.pipeline = shader->pipeline,
                                 .layout   = renderer->layout,
-                                .sets = {scene_set ? scene_set : renderer->idle_scene, renderer->idle_frame},
-                                .work       = &work,
-                                .work_bytes = sizeof work};
+                                .sets = {scene_set ? scene_set : renderer->idle_scene, renderer->idle_frame}};
     return shader->prewarmed = gpu_prewarm(&renderer->gpu, &run, &shader->prewarm);
 }
 

@@ -43,6 +43,7 @@ void rendering_bind_frame(KrsRendering *rendering, Handle set)
 {
     const Buffer *control = rendering_control(rendering);
     rendering_bind(rendering, set, FRAME_BINDING, &rendering->frame);
+    rendering_bind(rendering, set, WORK_BINDING, &rendering->renderer->work);
     rendering_bind(rendering, set, FRAME_TEXELS_BINDING, &rendering->frame);
     rendering_bind(rendering, set, CONTROL_BINDING, control);
     rendering_bind(rendering, set, CONTROL_TEXELS_BINDING, control);
@@ -368,14 +369,13 @@ bool rendering_finish(KrsRendering *rendering, double *ms)
     return gpu_finish(gpu, ms);
 }
 
-static Run run_of(const KrsRendering *rendering, const Shader *shader, Handle set, const void *work,
+static Run run_of(KrsRendering *rendering, const Shader *shader, Handle set, const void *work,
                   uint32_t work_bytes)
 {
-    return (Run){.pipeline   = shader->pipeline,
-                 .layout     = rendering->renderer->layout,
-                 .sets       = {rendering->scene_set, set},
-                 .work       = work,
-                 .work_bytes = work_bytes};
+    return (Run){.pipeline = shader->pipeline,
+                 .layout   = rendering->renderer->layout,
+                 .sets     = {rendering->scene_set, set},
+                 .work_at  = layouts_write_work(rendering->renderer, work, work_bytes)};
 }
 
 void rendering_dispatch(KrsRendering *rendering, const Shader *shader, Handle set, const void *work,

@@ -38,7 +38,7 @@ bool rendering_begin(KrsRendering *rendering);
 bool rendering_finish(KrsRendering *rendering, double *ms);
 /* Returns the control block that shaders use. */
 const Buffer *rendering_control(const KrsRendering *rendering);
-/* Records that a shader runs with these push constants on `groups` workgroups. */
+/* Records that a shader runs with this block of work on `groups` workgroups. */
 void rendering_dispatch(KrsRendering *rendering, const Shader *shader, Handle set, const void *work,
                         uint32_t work_bytes, uint32_t groups);
 /* Does the same, on as many workgroups as the control block has in `groups` by then. */

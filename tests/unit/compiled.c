@@ -82,7 +82,9 @@ static void nothing_is_written_unasked(void **state)
 static VkDescriptorType type_of_binding(int set, uint32_t binding)
 {
     const bool read[] = {binding >= 1 && binding <= 3,
-                         binding == 8 || (binding >= 10 && binding <= 13)};
+                         binding == 8 || (binding >= 10 && binding <= 17)};
+    if (set == 1 && binding == WORK_BINDING)
+        return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
     if (binding == 0)
         return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     return read[set] ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -91,7 +93,7 @@ static VkDescriptorType type_of_binding(int set, uint32_t binding)
 /* A layout that has room for the bindings of any shader. */
 static Handle make_layout(Gpu *gpu)
 {
-    enum { SETS = 2, BINDINGS = 16 };
+    enum { SETS = 2, BINDINGS = FRAME_BINDINGS };
     VkDescriptorSetLayoutBinding bindings[BINDINGS];
     VkDescriptorSetLayout        sets[SETS];
     VkPipelineLayout             layout;
@@ -111,16 +113,13 @@ static Handle make_layout(Gpu *gpu)
                          VK_SUCCESS);
     }
     assert_int_equal(
-        vkCreatePipelineLayout(
-            gpu->driver->device,
-            &(VkPipelineLayoutCreateInfo){
-                .sType                  = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                .setLayoutCount         = SETS,
-                .pSetLayouts            = sets,
-                .pushConstantRangeCount = 1,
-                .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, 128},
-            },
-            NULL, &layout),
+        vkCreatePipelineLayout(gpu->driver->device,
+                               &(VkPipelineLayoutCreateInfo){
+                                   .sType          = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                   .setLayoutCount = SETS,
+                                   .pSetLayouts    = sets,
+                               },
+                               NULL, &layout),
         VK_SUCCESS);
     for (int i = 0; i < SETS; i++)
         vkDestroyDescriptorSetLayout(gpu->driver->device, sets[i], NULL);
