@@ -25,6 +25,7 @@
 # make web        the package `krs` for pages, in build/web/ (web/package/README.md); web-pack: its archive
 # make python     the package for Python, in build/python/; make wheel: as a file for pip (docs/python.md)
 # make playground the playground, a static folder in build/playground/ (docs/playground.md); serve: shows it at localhost
+# make kernels    the runtime's shaders as WGSL, in build/kernels (web/tracer/README.md), with packages of npm
 # make vscode     the extension for VS Code, in build/vscode, with packages of npm
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
@@ -227,6 +228,7 @@ include editors/vscode/vscode.mk
 include python/python.mk
 include web/package/package.mk
 include web/playground/playground.mk
+include web/tracer/tracer.mk
 include tests/tests.mk
 include bench/bench.mk
 include tools/install.mk

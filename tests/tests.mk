@@ -206,7 +206,7 @@ test-long: SET := long
 test-all:  SET := all
 # What scripts of tests/web use, which run side by side, where test-deps could install what builds it.  They tell what is missing.
 web        = $(if $(and $(shell command -v emcc),$(shell command -v node)),web $(B)/tests/web/texts $(B)/tests/web/points)
-played     = $(if $(and $(web),$(shell command -v npm),$(shell command -v esbuild)),playground)
+played     = $(if $(and $(web),$(shell command -v npm),$(shell command -v esbuild)),playground kernels)
 scripts    = $(call scripts_$(SET), $(1))
 programs   = $(patsubst %,$(B)/%,$(programs_$(SET)))
 sanitized  = $(patsubst %,$(B)/asan/%,$(sanitized_$(SET)))
