@@ -28,7 +28,7 @@ WASM_OBJECTS := $(WASM_SOURCES:%.c=$(W)/%.o) $(W)/library_files.o $(W)/helper_fi
 WASM_PACKAGES := qhull expat freetype harfbuzz libpng1.6 zlib meshoptimizer
 SOURCES_OF    := $(W)/sources
 QHULL    := $(addprefix qhull/src/libqhull_r/,geom2_r geom_r global_r io_r libqhull_r mem_r merge_r poly2_r poly_r qset_r \
-            random_r rboxlib_r stat_r user_r usermem_r userprintf_r userprintf_rbox_r)
+            random_r stat_r user_r usermem_r)
 EXPAT    := $(addprefix expat/expat/lib/,xmlparse xmlrole xmltok)
 FREETYPE := $(addprefix freetype/src/,base/ftbase base/ftinit base/ftsystem base/ftdebug base/ftglyph base/ftbbox base/ftbitmap \
             gzip/ftgzip sfnt/sfnt truetype/truetype cff/cff psaux/psaux psnames/psnames)
@@ -37,8 +37,9 @@ PNG      := $(addprefix libpng1.6/,png pngerror pngget pngmem pngread pngrio png
 WASM_LIBRARIES := $(QHULL) $(EXPAT) $(FREETYPE) $(ZLIB) $(PNG) harfbuzz/src/harfbuzz meshoptimizer/src/simplifier
 WASM_HEADERS   := $(addprefix -isystem $(SOURCES_OF)/,qhull/src expat/expat/lib freetype/include harfbuzz/src libpng1.6 zlib \
                   meshoptimizer/src) -Iweb/core/libraries
-LIBRARY_FLAGS   = $(WASM_CC) -w -Os -ffunction-sections -fdata-sections $(WASM_HEADERS)
-$(QHULL:%=$(SOURCES_OF)/%.o): LIBRARY_FLAGS += -Dqh_NOtrace -Dqh_KEEPstatistics=0
+LIBRARY_FLAGS   = $(WASM_CC) -w -Oz -ffunction-sections -fdata-sections $(WASM_HEADERS)
+$(QHULL:%=$(SOURCES_OF)/%.o): LIBRARY_FLAGS += -Dqh_NOtrace -Dqh_KEEPstatistics=0 -include web/core/libraries/quiet.h
+%/user_r.o: LIBRARY_FLAGS += -DQHULL_USER
 $(FREETYPE:%=$(SOURCES_OF)/%.o): LIBRARY_FLAGS += -DFT2_BUILD_LIBRARY "-DFT_CONFIG_OPTIONS_H=<freetype_options.h>" \
                                                   "-DFT_CONFIG_MODULES_H=<freetype_modules.h>"
 # Shaping alone, but for tables of Apple's fonts.
@@ -49,22 +50,32 @@ $(FREETYPE:%=$(SOURCES_OF)/%.o): LIBRARY_FLAGS += -DFT2_BUILD_LIBRARY "-DFT_CONF
 $(W)/libraries: web/core/sources.sh
 	@echo "sources $(SOURCES_OF)"
 	@web/core/sources.sh $(SOURCES_OF) $(WASM_PACKAGES)
-	@cp $(SOURCES_OF)/libpng1.6/scripts/pnglibconf.h.prebuilt $(SOURCES_OF)/libpng1.6/pnglibconf.h
 	@touch $@
+# Of libpng, what reads pixels; no comments, times and profiles.
+PNG_PARTS := 16BIT ALIGNED_MEMORY BENIGN_ERRORS BENIGN_READ_ERRORS EASY_ACCESS ERROR_TEXT FIXED_POINT FLOATING_ARITHMETIC FLOATING_POINT \
+             INFO_IMAGE POINTER_INDEXING READ READ_16BIT READ_ANCILLARY_CHUNKS READ_EXPAND READ_INTERLACING READ_INT_FUNCTIONS READ_OPT_PLTE \
+             READ_SWAP READ_TRANSFORMS READ_tRNS SEQUENTIAL_READ SETJMP SET_USER_LIMITS USER_LIMITS USER_MEM WARNINGS tRNS
+$(SOURCES_OF)/libpng1.6/pnglibconf.h: $(W)/libraries web/core/core.mk
+	@awk -v parts="$(PNG_PARTS)" 'BEGIN { split(parts, names); for (i in names) kept["PNG_" names[i] "_SUPPORTED"] = 1 } \
+	    !/_SUPPORTED/ || kept[$$2]' $(@D)/scripts/pnglibconf.h.prebuilt >$@
+$(PNG:%=$(SOURCES_OF)/%.o): $(SOURCES_OF)/libpng1.6/pnglibconf.h
 $(WASM_LIBRARIES:%=$(SOURCES_OF)/%.o): $(W)/libraries web/core/core.mk $(wildcard web/core/libraries/*.h)
 	@echo "compile $(@:$(W)/%.o=%)"
 	@$(LIBRARY_FLAGS) -c -o $@ $(firstword $(wildcard $(@:.o=.c) $(@:.o=.cc) $(@:.o=.cpp)))
 
 # ---- objects ----
 
-$(W)/%.o: %.c web/core/core.mk | $(W)/libraries
+$(W)/%.o: %.c web/core/core.mk | $(W)/libraries $(SOURCES_OF)/libpng1.6/pnglibconf.h
 	@mkdir -p $(@D)
 	@echo "compile $< for pages"
 	@$(WASM_CC) -std=c17 -D_GNU_SOURCE $(WARNINGS) -I. -Iinclude -DKRS_LIBRARY $(WASM_HEADERS) -MMD -MP $(WASM_FLAGS) -c -o $@ $<
 $(W)/%_files.o: $(B)/%_files.c | $(W)/libraries
 	@$(WASM_CC) -std=c17 -I. -O1 -c -o $@ $<
-# There are no vectors.
-$(LANES:%.c=$(W)/%.o): WASM_FLAGS += -Os -fno-unroll-loops -Wno-pass-failed
+# There are no vectors, and nothing traces rays by cells.
+$(LANES:%.c=$(W)/%.o) $(W)/compiler/graph/lanes/sets_plain.o: WASM_FLAGS += -Os -fno-unroll-loops -Wno-pass-failed -DWITHOUT_CELLS
+# Each call in a function that has setjmp takes much space.
+JUMPING := $(shell grep -lw 'jmp_buf' $(WASM_SOURCES))
+$(JUMPING:%.c=$(W)/%.o): WASM_FLAGS += -fno-inline-functions
 
 # ---- the module ----
 
@@ -72,7 +83,7 @@ $(LANES:%.c=$(W)/%.o): WASM_FLAGS += -Os -fno-unroll-loops -Wno-pass-failed
 open      := (
 core_names = $(shell grep -o 'core_[a-z]*$(open)' web/core/core.h | tr -d '$(open)')
 ASKED     := scene_free state_free state_set state_set_time state_fit_camera state_set_zones parameter_slots state_parameters \
-             value_slots state_values table_rows table_cells state_tables distance normal mesh_free
+             value_slots state_values table_rows table_cells state_tables state_table_inputs distance normal mesh_free
 comma     := ,
 empty     :=
 exported   = $(subst $(empty) $(empty),$(comma),$(patsubst %,_%,malloc free $(call core_names) $(ASKED:%=krs_%)))
