@@ -1,13 +1,13 @@
 /*
  * expression.c: the value of an expression.
  */
+#include "compiler/base/nesting.h"
 #include "compiler/eval/elaborate.h"
 
 #include <math.h>
 
 enum {
     MAX_STEPS = 200 * 1000 * 1000,
-    MAX_DEPTH = 4000,
     MAX_NODES = 500 * 1000 /* from one shape to the next */
 };
 
@@ -332,7 +332,7 @@ Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     if (!count_steps(e, 1, syntax->span))
         return value_error();
-    if (e->depth >= MAX_DEPTH)
+    if (e->depth >= nesting.evaluations)
         return limit_reached(e, syntax->span,
                              "evaluation is nested too deeply, perhaps by a function that calls "
                              "itself without end");

@@ -1,12 +1,11 @@
 /*
  * functions.c: calls of functions, of shape declarations and of materials with parameters.
  */
+#include "compiler/base/nesting.h"
 #include "compiler/eval/elaborate.h"
 #include "compiler/eval/kinds.h"
 
 #include <string.h>
-
-enum { MAX_CALLS = 1000 };
 
 uint32_t parameter_count(const Syntax *definition)
 {
@@ -220,8 +219,8 @@ static void report_depth(Elaboration *e, const CalledFunction *innermost)
         return;
     }
     Diag *diag = diag_add(e->diags, DIAG_LIMIT, call->syntax->span,
-                          "`%s` is called within itself more than 1,000 deep",
-                          call->function->name);
+                          "`%s` is called within itself more than %u deep", call->function->name,
+                          nesting.calls);
     diag->help =
         "a function that calls itself ends by an `if`, as in `def tower(n) = if n == 0 then "
         "sphere(1) else box([1, 1, 1]) | tower(n - 1).move([0, 1, 0]);`";
@@ -232,7 +231,7 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
                          const Syntax *const *origins, const Syntax *syntax)
 {
     const CalledFunction call = {function, syntax, e->called};
-    if (e->calls >= MAX_CALLS) {
+    if (e->calls >= nesting.calls) {
         if (!is_stopped(e))
             report_depth(e, &call);
         e->builder->stopped = true;
