@@ -282,6 +282,13 @@ const parts = {
         const colours = json.materials.map(({ pbrMetallicRoughness }) => pbrMetallicRoughness.baseColorFactor.slice(0, 3).map(Math.round).join(' '));
         report(json.nodes.length === 2 && colours.includes('1 0 0') && colours.includes('0 0 1'), 'with a node for each component and its colours', JSON.stringify(json.materials));
         report(json.meshes[1].primitives[0].attributes.COLOR_0 !== undefined && info.totalTriangleCount > 100, 'and colours of vertices where they change evenly');
+        const vectors = accessor => {
+            const { bufferView, count } = json.accessors[accessor], at = 28 + glb.readUInt32LE(12) + json.bufferViews[bufferView].byteOffset;
+            return Array.from({ length: count }, (_, i) => [0, 4, 8].map(k => glb.readFloatLE(at + 12 * i + k)));
+        };
+        const [boxes, ball] = json.meshes.map(({ primitives: [{ attributes }] }) => ({ at: vectors(attributes.POSITION), normals: vectors(attributes.NORMAL) }));
+        report(boxes.normals.every(normal => Math.max(...normal.map(Math.abs)) > 0.999), 'normals of boxes are along the axes, also at edges');
+        report(ball.normals.every((n, i) => (n[0] * (ball.at[i][0] - 3) + n[1] * ball.at[i][1] + n[2] * ball.at[i][2]) / 0.5 > 0.98), 'those of a ball lead away from its middle');
         await click('#open-download');
         await shot('download');
         await key('Escape');

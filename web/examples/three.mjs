@@ -30,6 +30,6 @@ async function rebuild() {
     renderer.render(world, camera);
 }
 const slider = Object.assign(document.createElement('input'), { type: 'range', min: 0, max: 0.5, step: 'any', value: 0.2 });
-slider.oninput = async () => (await scene.set('blend', Number(slider.value))) && rebuild();
+slider.oninput = () => scene.set('blend', Number(slider.value)).then(rebuild);
 document.body.append(slider);
 await rebuild();

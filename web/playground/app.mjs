@@ -101,10 +101,13 @@ async function open({ text, parameters: values = {}, camera: place = null, time 
     setTime(time);
     if (!view.scene?.ok)
         return;
-    await Promise.all(Object.entries(values).map(([name, value]) => view.scene.set(name, value)));
+    await Promise.all(Object.entries(values).map(([name, value]) => setValue(name, value)));
     parameters.show(view.scene.parameters);
     keep();
 }
+
+// A link may have values that are refused.
+const setValue = (name, value) => view.scene.set(name, value).catch(error => say(error.message));
 
 // The browser keeps the last scene, for the next visit.
 function keep() {
@@ -127,7 +130,7 @@ function kept() {
 
 const parameters = new Parameters($('parameters'), {
     set: async (name, value) => {
-        await view.scene.set(name, value);
+        await setValue(name, value);
         keep();
     },
     write: changed => {

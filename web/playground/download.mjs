@@ -1,5 +1,5 @@
 // download.mjs: the text, a picture or a mesh as a file.
-import { glb, middles, stl } from './files.mjs';
+import { corners, glb, middles, stl } from './files.mjs';
 
 const MOST_POINTS = 4096;
 const isFinite = ({ low, high }) => [...low, ...high].every(Number.isFinite);
@@ -129,7 +129,9 @@ export class Downloads {
         const parts = [], wanted = this.#chosen();
         for (const { number, name } of wanted) {
             const mesh = await this.#mesh(number, signal, parts.length, wanted.length);
-            parts.push({ name, mesh, hits: await this.#hits(mesh.steps ? middles(mesh) : mesh.vertices, signal) });
+            parts.push({ name, mesh, hits: await this.#hits(mesh.steps ? middles(mesh) : mesh.vertices, signal),
+                         normals: await this.view.scene.normal(corners(mesh), this.view.time) });
+            signal.throwIfAborted();
         }
         return glb(parts);
     }
