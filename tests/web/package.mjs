@@ -30,10 +30,13 @@ report(told.doc === 'Of the ball.' && told.high === 2 && told.cameras === 1 && t
 report(await page.evaluate(async () => {
     let changes = 0;
     scene.addEventListener('change', () => changes++);
-    const good = await scene.set('radius', 2), bad = await scene.set('radius', 3), none = await scene.set('width', 1);
+    const why = (...call) => scene.set(...call).then(() => 'it was set', error => error.message);
+    await scene.set('radius', 2);
+    const said = [await why('radius', 3), await why('width', 1), await why('tint', 1)];
     const [distance] = await scene.distance([0, 5, 0]);
-    return good && !bad && !none && changes === 1 && Math.abs(distance - 3) < 1e-9 && scene.parameters[0].value[0] === 2;
-}), 'parameters are set in their range');
+    return said.join('; ') === 'radius cannot be 3: it is from 0.5 to 2; there is no parameter width: the scene has radius, turn, shown, tint; ' +
+        'tint cannot be 1: it has 3 numbers' && changes === 1 && Math.abs(distance - 3) < 1e-9 && scene.parameters[0].value[0] === 2;
+}), 'parameters are set in their range, and what is refused has a reason');
 
 report(await page.evaluate(async () => {
     const text = scene.text, first = await scene.update(text.replace('1 in [0.5', '1.2 in [0.5'));
@@ -43,7 +46,7 @@ report(await page.evaluate(async () => {
     await scene.reset();
     const now = (await scene.distance([0, 5, 0]))[0];
     const comment = await scene.update(`${scene.text} // nothing`);
-    return first.change === 'structure' && same.change === 'values' && comment.change === 'nothing' && kept === 3 && !refused.ok && refused.diagnostics[0].data.replacement === 'sphere' &&
+    return first.change === 'values' && same.change === 'values' && comment.change === 'nothing' && kept === 3 && !refused.ok && refused.diagnostics[0].data.replacement === 'sphere' &&
         still === 3 && now === 3.5 && scene.text !== 'show spere(1);';
 }), 'an edit keeps values that were set, and a mistake keeps the scene');
 
@@ -70,7 +73,8 @@ report(await page.evaluate(async () => {
 
 report(await page.evaluate(async () => {
     const [hit] = await scene.query([[0, 4, 0]]), [ray] = await scene.raycast([[0, 9, 0]], [[0, -1, 0]]);
-    return Math.abs(hit.normal[1] - 1) < 1e-9 && Math.abs(ray.t - 6) < 1e-6 && ray.component === 1;
+    const normals = await scene.normal([[0, 4, 0], [4, 0, 0]]);
+    return normals.every((x, i) => Math.abs(x - [0, 1, 0, 1, 0, 0][i]) < 1e-9) && Math.abs(hit.normal[1] - 1) < 1e-9 && Math.abs(ray.t - 6) < 1e-6 && ray.component === 1;
 }), 'points and rays are answered');
 
 report(await page.evaluate(async () => {
@@ -86,6 +90,19 @@ report(await page.evaluate(async () => {
     const error = await many.mesh({ error: 0.0005, signal: ending.signal }).catch(e => e.message);
     return error === 'enough' && performance.now() - begun < 1000;
 }), 'a mesh can be ended');
+
+const unmade = await page.evaluate(async () => {
+    const why = async (text, how) => (await krs.compile(text)).mesh(how).then(() => 'it was made', error => error.message);
+    return [await why('show plane([0, 1, 0], 0);'), await why('show sphere(1);', { component: 2 }), await why('show sphere(1);', { error: 1e-9 })];
+});
+report(['component 1 has no end', 'there is no component 2: the scene has 1', 'the error is too small: it is at least a 500,000th of the size']
+    .every((reason, i) => unmade[i] === `no mesh is made: ${reason}`), `why there is no mesh is told (${unmade})`);
+
+const deep = { 'within itself': 'def f(n) = f(n + 1);\nshow sphere(f(0));', deeply: 'def f(n) = if n > 0 then (f(n + 1) + 1) * 2 else 1;\nshow sphere(f(1));' };
+for (const [what, text] of Object.entries(deep)) {
+    const said = await page.evaluate(async text => (await krs.compile(text)).diagnostics.map(d => [d.code, d.message, d.range.start.line]), text);
+    report(said.length === 1 && said[0][0] === 'E0503' && /within itself/.test(said[0][1]) && said[0][2] === 0, `endless recursion is told (${said})`);
+}
 
 report(await page.evaluate(async () => {
     const parts = await krs.compile('use "part.krs"; show part();', { files: { 'part.krs': 'def part() = sphere(2);' } });

@@ -215,6 +215,8 @@ static void write_image(const KrsScene *scene)
     add_string("integrator", image.integrator);
     add_number("exposure", image.exposure);
     add_string("tone_map", image.tone_map);
+    add_string("pixel_filter", image.pixel_filter);
+    add_numbers("white_balance", image.white_balance, 2);
     leave("}");
 }
 

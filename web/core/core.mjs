@@ -210,9 +210,13 @@ class Scene {
         return this.core.take(this.core.m._core_text(this.at, targets.indexOf(target), bitsOf(textOptions, wanted)));
     }
 
+    // It never changes.
     describe() {
-        this.core.m._core_describe(this.at);
-        return this.core.answer();
+        if (!this.described) {
+            this.core.m._core_describe(this.at);
+            this.described = this.core.answer();
+        }
+        return this.described;
     }
 
     state() {
@@ -267,6 +271,15 @@ class State {
         return this.core.using([at], () => {
             m._krs_state_tables(this.at, at, at + 16 * rows);
             return { rows: this.core.copy(Float32Array, at, 4 * rows), cells: this.core.copy(Uint32Array, at + 16 * rows, 2 * cells) };
+        });
+    }
+
+    // What tables depend on: states of a scene in which these are equal have the same.
+    tableInputs() {
+        const { m } = this.core, slots = m._krs_parameter_slots(this.scene.at), at = m._malloc(32 * slots + 8);
+        return this.core.using([at], () => {
+            m._krs_state_table_inputs(this.at, 0, at);
+            return this.core.copy(Float64Array, at, 4 * slots);
         });
     }
 

@@ -175,14 +175,13 @@ export class Scene extends EventTarget {
 
     async set(name, value) {
         const numbers = [].concat(Array.from(value[Symbol.iterator] ? value : [value]));
-        const good = await this.#ask('set', { name, value: numbers });
+        await this.#ask('set', { name, value: numbers });
         const parameter = this.parameters.find(p => p.name === name);
-        if (good && parameter) {
+        if (parameter) { // the text may be another by now
             parameter.value = numbers;
             this.#values.set(name, numbers);
             this.#changed('values');
         }
-        return good;
     }
 
     async reset() {
@@ -195,6 +194,7 @@ export class Scene extends EventTarget {
 
     query(points, time = 0) { return this.#ask('query', { points: flat(points), time }); }
     distance(points, time = 0) { return this.#ask('distance', { points: flat(points), time }); }
+    normal(points, time = 0) { return this.#ask('normal', { points: flat(points), time }); }
 
     raycast(origins, directions, { farthest = Infinity, tolerance = 0, time = 0 } = {}) {
         return this.#ask('raycast', { origins: flat(origins), directions: flat(directions), farthest, tolerance, time });
@@ -203,6 +203,9 @@ export class Scene extends EventTarget {
     shader(target = 'glsl', { stateValues = false, earlyOuts = true } = {}) {
         return this.#ask('shader', { target, stateValues, earlyOuts });
     }
+
+    // The shaders of a picture, which edits of numbers leave as they are: these are among the numbers of `state`.
+    pictureText() { return this.#ask('shader', { target: 'essl', values: true, stateValues: true, earlyOuts: false }); }
 
     // What a picture reads at a time; of tables, what it has not seen.
     async state(time, tables) {

@@ -87,6 +87,10 @@ export interface Camera {
     focus: number;
     blades: number;
     shift: [number, number];
+    /** From when to when it is open, in seconds. */
+    shutter: [number, number];
+    /** The distance of two eyes; 0: there is one. */
+    eyes: number;
 }
 
 /** What is known at a point or where a ray ends.  Materials have further members, one for each property. */
@@ -180,7 +184,12 @@ export interface Scene extends EventTarget {
     /** At the values of parameters, at time 0. */
     readonly cameras: readonly Camera[];
     /** The `image` block; 0 or null where it says nothing. */
-    readonly image: { width: number; height: number; samples: number; integrator: string | null };
+    readonly image: {
+        width: number; height: number; samples: number; integrator: string | null; exposure: number; tone_map: string | null;
+        pixel_filter: string | null;
+        /** Kelvins and tint; 0: as the light is. */
+        white_balance: [number, number];
+    };
     /** Whether the picture depends on the time. */
     readonly animated: boolean;
     /** Why no picture is made: it is too large for a shader; null: it is not. */
@@ -191,18 +200,22 @@ export interface Scene extends EventTarget {
      * that come while one is compiled only the last is compiled; the others get its answer.
      */
     update(text: string): Promise<Update>;
-    /** Sets a parameter: a number, or as many as it has.  False: there is none of this name, or the value is refused. */
-    set(name: string, value: number | readonly number[]): Promise<boolean>;
+    /** Sets a parameter: a number, or as many as it has.  Rejected, with the reason, where there is none of this name, or
+        the value is not permitted. */
+    set(name: string, value: number | ArrayLike<number>): Promise<void>;
     /** Sets all to what the text says. */
     reset(): Promise<void>;
     /** What is known at points: x, y, z, x, y, z, ... or an array of points. */
     query(points: ArrayLike<number> | readonly Vector[], time?: number): Promise<Hit[]>;
     /** Distances at points: negative inside, and never more than the distance to the surface. */
     distance(points: ArrayLike<number> | readonly Vector[], time?: number): Promise<Float64Array>;
+    /** Unit normals at points: the direction in which the distance grows fastest. */
+    normal(points: ArrayLike<number> | readonly Vector[], time?: number): Promise<Float64Array>;
     /** Where rays end: origins and directions like points. */
     raycast(origins: ArrayLike<number> | readonly Vector[], directions: ArrayLike<number> | readonly Vector[],
             options?: { farthest?: number; tolerance?: number; time?: number }): Promise<Hit[]>;
-    /** Triangles; in a worker of its own. */
+    /** Triangles; in a worker of its own.  Rejected, with the reason, where there are none: what has no end, or encloses
+        nothing, or too small an error. */
     mesh(options?: MeshOptions): Promise<Mesh>;
     /** The scene in a shading language; 'glsl' is that of `krs compile`. */
     shader(target?: 'glsl' | 'essl' | 'wgsl', options?: { stateValues?: boolean; earlyOuts?: boolean }): Promise<string>;

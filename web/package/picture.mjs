@@ -2,11 +2,14 @@
 //
 // It runs in a worker (painter.mjs), and nothing in it waits but for its own tiles.  A picture begins with levels of few,
 // large pixels, the first of which is over within a frame; then its pixels get samples.
+import { balanceOf, placeRay } from './display.mjs';
 import { frameOf, lightRowsOf, projections } from './frame.mjs';
 import { compilePasses, compileResolve, passes } from './programs.mjs';
 
 const tileTime = 20, firstTime = 40;   // milliseconds: of a tile, and of a picture while something moves
-const levels = [1, 2, 4, 8, 16];       // sides of the pixels
+const levels = [1, 2, 4, 8, 16, 32, 64]; // sides of the pixels
+const smallest = 16, bands = 32;        // pixels of a tile; rows of which the costs are known together
+const firstTiles = 4;                  // of a first level that goes on although something newer has come
 const lightsAt = 5120, inputWidth = 64; // the row of the first light (blocks.h); the width of that texture
 const textureWidth = 4096;
 const mirroredSurfaces = [1, 5];          // that rays are followed to: while pixels are large, and then
@@ -60,9 +63,6 @@ class Layer {
     }
 }
 
-// The offset of a ray within its pixel (place_ray in runtime/tracer/plan.c).
-const placeRay = ray => [0.75487766624669276, 0.56984029099805327].map(step => (0.5 + step * ray) % 1);
-
 // Sums of samples at one size of pixels, and what the passes of a sample leave: of the camera's rays, and of those that go
 // on from mirrors and glass, which read one of two layers of paths and write the other.
 class Sums {
@@ -89,7 +89,7 @@ class Sums {
 export class Picture {
     constructor(canvas, tell) {
         Object.assign(this, { canvas, tell, scene: null, state: null, programs: null, width: 0, height: 0, wanted: 64,
-            cost: 0.002, room: 1024, sums: new Map(), job: null, running: false, shots: [] });
+            cost: 0.002, sums: new Map(), job: null, running: false, shots: [] });
         canvas.addEventListener('webglcontextlost', event => {
             event.preventDefault();
             this.lost = true;
@@ -117,9 +117,10 @@ export class Picture {
 
     // ---- what comes in ----
 
-    // { key, text, about }: a scene whose text has changed.
-    async setScene(scene) {
+    // { key, text, about }: a scene whose text has changed, and its state.
+    async setScene(scene, state = this.state) {
         this.scene = scene;
+        this.setState(state);
         await this.begun;
         const { gl } = this, previous = this.programs;
         if (this.compiled !== scene.key || !this.programs) {
@@ -137,15 +138,17 @@ export class Picture {
                 freePasses(previous);
             this.job = null;
         }
-        if (this.state)
-            this.setState(this.state);
+        this.setState(this.state);
     }
 
-    // Numbers of a state, its view and the camera; of tables, those that are new.
+    // Numbers of a state, its view and the camera, what is told of the scene in it; of tables, those that are new.
+    // Until the shaders of its scene are there, the last picture goes on.
     setState(state) {
         this.state = { ...state, tables: state.tables?.rows ? state.tables : this.state?.tables };
-        if (!this.programs || this.lost)
+        if (!this.#isReady()) {
+            this.next = null;
             return;
+        }
         const { gl } = this, { parameters, values } = state, numbers = new Float32Array(Math.max(parameters.length + values.length, 4));
         numbers.set(parameters);
         numbers.set(values, parameters.length);
@@ -205,34 +208,40 @@ export class Picture {
 
     // A job is a picture: its state, its size, and how far it is.
     #jobOf(width, height, wanted, coarse) {
-        return { state: this.state, width, height, wanted, level: coarse, sample: 0, at: null, begun: performance.now(), first: coarse };
+        return { state: this.state, width, height, wanted, level: coarse, sample: 0, at: null, begun: performance.now(), first: coarse, tiles: 0 };
     }
 
     #restart() {
-        this.next = this.state && this.programs && this.width > 0 ? true : null;
+        this.next = this.#isReady() && this.width > 0 ? true : null;
         this.#wake();
     }
 
-    // The finest level that is over within a frame.
+    // There are a state and the shaders of its scene.
+    #isReady() { return this.state && this.programs && !this.lost && this.compiled === this.scene.key; }
+
+    // The finest level that is over within a frame; of what draws for the first time nothing is known.
     #firstLevel() {
         const pixels = this.width * this.height;
-        return this.warm ? levels.find(level => pixels / level ** 2 * this.cost < firstTime) ?? levels.at(-1) : 8;
+        return this.warm ? levels.find(level => pixels / level ** 2 * this.cost < firstTime) ?? levels.at(-1) : 16;
     }
 
-    // Whether the job goes on although something newer has come: its first, coarse picture is soon over.
-    #isSoonOver(job) { return job.level === job.first && job.sample === 0 && performance.now() - job.begun < 150; }
+    // Whether the job goes on although something newer has come: its first, coarse picture is soon over, or nothing would
+    // be seen while a camera moves.
+    #isSoonOver(job) {
+        return job.level === job.first && job.sample === 0 && (job.tiles < firstTiles || job.level === levels.at(-1));
+    }
 
     async #wake() {
         if (this.running)
             return;
         this.running = true;
         try {
-            while (!this.lost && (this.next || this.job || this.shots.length)) {
+            while (!this.lost && (this.next || this.job || (this.shots.length && this.#isReady()))) {
                 if (this.next && !(this.job && this.#isSoonOver(this.job))) {
                     this.next = null;
                     this.job = this.#jobOf(this.width, this.height, this.wanted, this.#firstLevel());
                 }
-                if (this.shots.length && !this.next && !(this.job && this.job.level === this.job.first && this.job.sample === 0))
+                if (this.shots.length && this.#isReady() && !this.next && !(this.job && this.job.level === this.job.first && this.job.sample === 0))
                     this.#continueShot();
                 else if (this.job)
                     this.#continue(this.job);
@@ -257,9 +266,8 @@ export class Picture {
         const { level } = job, last = this.shown, { gl } = this;
         job.sums = this.#sumsOf(Math.ceil(job.width / level), Math.ceil(job.height / level));
         job.sums.sums.clear();
-        job.frame = frameOf(job.state.camera, job.state.view, this.scene.about.shaders, job.width / level, job.height / level, job.wanted);
-        job.at = { x: 0, y: 0, height: 0 };
-        job.last = performance.now();
+        job.frame = frameOf(job.state.camera, job.state.view, job.state.about.shaders, job.width / level, job.height / level, job.wanted);
+        Object.assign(job, { at: { x: 0, y: 0, height: 0 }, spent: 0, drawn: 0, found: Array(bands).fill(0), last: performance.now() });
         this.shown = job.sums.shown;
         if (last && last !== this.shown)
             this.#copy(last, this.shown.framebuffer, this.shown.width, this.shown.height, false);
@@ -280,6 +288,7 @@ export class Picture {
         if (!job.at)
             this.#beginLevel(job);
         this.#drawTile(job);
+        job.tiles++;
         const over = job.at.y >= job.sums.height, now = performance.now();
         if (over) {
             job.at = { x: 0, y: 0, height: 0 };
@@ -310,22 +319,47 @@ export class Picture {
             this.#timeTile(job, 0, 0, 1, 1);
             this.overhead = this.#timeTile(job, 0, 0, 1, 1);
             sums.sums.clear();
-            Object.assign(this, { warm: true, room: 1024 });
+            Object.assign(this, { warm: true, known: Array(bands).fill(Infinity) });
         }
         if (at.x === 0)
-            at.height = Math.min(Math.max(Math.floor(Math.sqrt(this.room)), Math.floor(this.room / sums.width), 1), sums.height - at.y);
-        const width = Math.min(Math.max(Math.floor(this.room / at.height), 1), sums.width - at.x), pixels = width * at.height;
-        const took = this.#timeTile(job, at.x, at.y, width, at.height), own = Math.max(took - this.overhead, 0.2 * took);
-        // Tiles that are cut off at the edge tell too little.
-        if (2 * pixels > this.room || own > tileTime) {
-            this.cost = own / pixels;
-            this.room = Math.max(pixels * Math.min(Math.max(tileTime / own, 0.125), 2), 64);
-        }
+            at.height = this.#heightAt(at.y, sums);
+        const width = Math.min(Math.max(Math.floor(tileTime / this.#costOf(at.y, at.height, sums) / at.height), smallest), sums.width - at.x);
+        const took = this.#timeTile(job, at.x, at.y, width, at.height), pixels = width * at.height;
+        this.#learn(job, Math.max(took - this.overhead, 0.2 * took) / pixels);
+        job.spent += took;
+        job.drawn += pixels;
+        if (8 * job.drawn > sums.width * sums.height) // what little of a level costs tells too little of the picture
+            this.cost = job.spent / job.drawn;
         at.x += width;
         if (at.x >= sums.width) {
             at.x = 0;
             at.y += at.height;
         }
+    }
+
+    // As many rows as are drawn in the time of a tile, one at least.
+    #heightAt(y, sums) {
+        let height = 1;
+        while (y + height < sums.height && this.#costOf(y, height + 1, sums) * sums.width * (height + 1) < tileTime)
+            height++;
+        return height;
+    }
+
+    // The largest time of a pixel that is known of rows: pictures are expensive in places.
+    #costOf(y, height, sums) {
+        const [first, last] = [y, y + height - 1].map(row => bandOf(row, sums));
+        return Math.max(...this.known.slice(first, last + 1));
+    }
+
+    // What the last level took is known of the next.
+    #learn({ at, sums, found }, cost) {
+        const first = bandOf(at.y, sums), last = bandOf(at.y + at.height - 1, sums);
+        for (let band = first; band <= last; band++) {
+            found[band] = Math.max(found[band], cost);
+            this.known[band] = Number.isFinite(this.known[band]) ? Math.max(this.known[band], cost) : Infinity;
+        }
+        if (at.y + at.height >= sums.height)
+            this.known = found.map((own, band) => own || this.known[band]);
     }
 
     // Draws a tile, and waits until it is there.
@@ -358,7 +392,7 @@ export class Picture {
                     Object.assign(program, { frame, sample });
                     program.set(common);
                     program.set(frame, 'frame.');
-                    program.set({ corner: [0, 0], extent: [sums.width, sums.height], offset: placeRay(sample) }, 'work.');
+                    program.set({ corner: [0, 0], extent: [sums.width, sums.height], offset: placeRay(sample, state.about.image.pixel_filter) }, 'work.');
                 }
                 program.set({ bounce });
                 Object.values(found).forEach((layer, unit) => this.#bindTexture(3 + unit, unit < number ? layer.textures[0] : null));
@@ -383,12 +417,12 @@ export class Picture {
 
     // Where the scissors let it.
     #drawResolved(job) {
-        const { gl, resolve } = this, { sums, sample } = job, { image } = this.scene.about;
+        const { gl, resolve } = this, { sums, sample } = job, { image } = job.state.about;
         gl.useProgram(resolve.program);
         [...sums.sums.textures, sums.first.march.textures[0]].forEach((texture, unit) => this.#bindTexture(unit, texture));
         const reach = sample < 4 ? 2 : sample < 16 ? 1 : 0;
         resolve.set({ direct_sums: 0, scattered_sums: 1, mirrored_sums: 2, own_sums: 3, ends: 4, sums_size: [sums.width, sums.height],
-            exposure: 2 ** image.exposure, tone_map: Math.max(toneMaps.indexOf(image.tone_map), 0), reach });
+            exposure: 2 ** image.exposure, balance: balanceOf(image.white_balance).flat(), tone_map: Math.max(toneMaps.indexOf(image.tone_map), 0), reach });
         gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
 
@@ -412,9 +446,9 @@ export class Picture {
     #continueShot() {
         const [shot] = this.shots, { gl } = this, { width, height, samples } = shot;
         if (!shot.job) {
-            const sums = new Sums(gl, width, height, this.sumFormat, this.programs.mirrors), { state, scene } = this;
-            shot.job = { ...this.#jobOf(width, height, samples, 1), sums, at: { x: 0, y: 0, height: 0 },
-                frame: frameOf(state.camera, state.view, scene.about.shaders, width, height, samples) };
+            const sums = new Sums(gl, width, height, this.sumFormat, this.programs.mirrors), { state } = this;
+            shot.job = { ...this.#jobOf(width, height, samples, 1), sums, at: { x: 0, y: 0, height: 0 }, spent: 0, drawn: 0, found: Array(bands).fill(0),
+                frame: frameOf(state.camera, state.view, state.about.shaders, width, height, samples) };
             sums.sums.clear();
         }
         const { job } = shot;
@@ -458,6 +492,7 @@ export class Picture {
     }
 }
 
+const bandOf = (row, { height }) => Math.floor(bands * row / height);
 const freePasses = programs => passes.forEach(pass => programs[pass].free());
 
 // Tables that materials of several layers need.

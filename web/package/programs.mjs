@@ -74,6 +74,7 @@ export class Program {
             case gl.FLOAT_VEC2: gl.uniform2fv(at, value); break;
             case gl.FLOAT_VEC3: gl.uniform3fv(at, value); break;
             case gl.FLOAT_VEC4: gl.uniform4fv(at, value); break;
+            case gl.FLOAT_MAT3: gl.uniformMatrix3fv(at, true, value); break; // by rows
             case gl.UNSIGNED_INT: gl.uniform1ui(at, value); break;
             case gl.UNSIGNED_INT_VEC2: gl.uniform2uiv(at, value); break;
             case gl.INT_VEC2: gl.uniform2iv(at, value); break;

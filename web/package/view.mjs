@@ -25,6 +25,8 @@ function notes({ about, image, camera, name }) {
         missing.push('the picture of the sky');
     if (camera?.shutter?.[0] !== camera?.shutter?.[1])
         missing.push('motion blur');
+    if (camera?.eyes > 0)
+        missing.push('two eyes');
     return missing.length ? `Not shown here: ${missing.join(', ')}. See \`krs render ${name}\`.` : '';
 }
 
@@ -38,16 +40,17 @@ export class KrsViewElement extends HTMLElement {
     #camera = null;    // the user's, or that of a property; null: the scene's
     #cameraName = null;
     #shown = null;     // the camera of the last state
-    #view = null;
     #playing = false;
     #time = 0;
     #clock = 0;        // when the time was that
     #asking = false;   // a state is being made
     #dirty = null;     // 'scene' or 'state': what has changed since
     #seen;             // version of the tables that the painter has
+    #sent = null;      // the last state that it was sent
     #waiting = new Map();
     #shots = 0;
     #number = 0;       // of the last state that the painter was sent
+    #first = 0;        // of the first state of the scene
     #done = null;
     #changed = event => this.#update(event.detail === 'structure' ? 'scene' : 'state');
     #resizing = new ResizeObserver(() => this.#resize());
@@ -131,6 +134,8 @@ export class KrsViewElement extends HTMLElement {
     }
 
     #heardFrame({ kind, done, number, ...frame }) {
+        if (number < this.#first)
+            return; // of a scene that is no more
         this.dispatchEvent(new CustomEvent('krs-frame', { detail: frame }));
         if (done && number === this.#number)
             this.#done();
@@ -165,7 +170,7 @@ export class KrsViewElement extends HTMLElement {
         this.#scene?.removeEventListener('change', this.#changed);
         this.#scene = scene;
         this.#seen = undefined;
-        this.#camera = null;
+        this.#camera = this.#sent = null;
         scene?.addEventListener('change', this.#changed);
         if (scene?.ok)
             this.#update('scene');
@@ -175,7 +180,7 @@ export class KrsViewElement extends HTMLElement {
     set camera(camera) {
         this.#cameraName = typeof camera === 'string' ? camera : camera === null ? null : this.#cameraName;
         this.#camera = camera && typeof camera === 'object' ? { ...this.camera, ...camera } : null;
-        this.#update('state');
+        this.#moveCamera();
     }
 
     #named(cameras) { return cameras.find(camera => camera.name === this.#cameraName) ?? cameras[0]; }
@@ -243,18 +248,33 @@ export class KrsViewElement extends HTMLElement {
     async #sendOnce() {
         const scene = this.#scene, what = this.#dirty, time = scene.animated ? this.time : 0;
         this.#dirty = null;
-        if (what === 'scene') {
-            const text = await scene.shader('essl', { stateValues: true, earlyOuts: false });
-            this.#seen = undefined;
-            this.#paint({ call: 'scene', scene: { key: text, text, about: scene.about } });
-        }
-        const { parameters, values, tables, view } = await scene.state(time, this.#seen);
+        const text = what === 'scene' ? await scene.pictureText() : null;
+        const { parameters, values, tables, view } = await scene.state(time, text ? undefined : this.#seen);
+        const { image, shaders } = scene.about;
         this.#seen = tables.version;
-        this.#view = view;
         this.#shown = this.#named(view.cameras);
-        const camera = this.#camera ?? this.#shown;
-        this.#note.textContent = notes({ about: scene.about, image: scene.image, camera, name: scene.name });
-        this.#paint({ call: 'state', state: { parameters, values, tables, view, camera, time, number: ++this.#number } });
+        this.#sent = { parameters, values, tables: { version: tables.version }, view, about: { image, shaders }, time };
+        const state = this.#stateAt({ tables });
+        this.#first = text ? state.number : this.#first;
+        this.#paint(text ? { call: 'scene', scene: { key: text, text, about: scene.about }, state } : { call: 'state', state });
+    }
+
+    // The last state with the present camera.
+    #stateAt(more) {
+        const { about, image, name } = this.#scene, camera = this.#camera ?? this.#shown;
+        this.#note.textContent = notes({ about, image, camera, name });
+        return { ...this.#sent, camera, number: ++this.#number, ...more };
+    }
+
+    // A camera alone needs nothing of the compiler.
+    #moveCamera() {
+        if (!this.#sent || this.#asking) {
+            this.#update('state');
+            return;
+        }
+        this.#restartReady();
+        this.#shown = this.#named(this.#sent.view.cameras);
+        this.#paint({ call: 'state', state: this.#stateAt() });
     }
 
     // ---- pictures ----
@@ -294,7 +314,7 @@ export class KrsViewElement extends HTMLElement {
     #move(camera) {
         this.#camera = camera;
         this.dispatchEvent(new CustomEvent('krs-camera', { detail: camera }));
-        this.#update('state');
+        this.#moveCamera();
     }
 
     // Turns about the target, by parts of the height of the view: to the right about what is up.

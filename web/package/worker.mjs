@@ -95,11 +95,9 @@ function viewOf(state) {
     return view;
 }
 
-// What a picture reads at a time, as one number for all.
+// What a picture reads at a time, but for the time itself, as one text.
 function numbersAt(state, time) {
-    const accepted = state.setTime(time);
-    const { rows, cells } = state.tables();
-    const numbers = [state.parameters().slice(4), state.values(), rows, cells];
+    const accepted = state.setTime(time), numbers = [state.parameters().slice(4), state.values(), state.tableInputs()];
     return JSON.stringify([accepted, viewOf(state)]) + numbers.map(hash).join();
 }
 
@@ -111,13 +109,15 @@ function hash(numbers) {
     return sum >>> 0;
 }
 
-// Whether the picture depends on the time: its text reads it, or its numbers are others later on.
-function isAnimated({ scene, state }) {
-    const text = scene.describe().too_large ? '' : scene.text('essl', { stateValues: true }) ?? '';
-    const differs = /krs_parameter\[0\]\.x/.test(text) ||
-        [0.37, 1.91].some(time => numbersAt(state, time) !== numbersAt(state, 0));
+// Whether the picture depends on the time: its shaders read it, or its numbers are others later on.
+function isAnimated({ state, timed }) {
+    const first = timed || numbersAt(state, 0), differs = timed || [0.37, 1.91].some(time => numbersAt(state, time) !== first);
     state.setTime(0);
     return differs;
+}
+
+function readsTime(scene) {
+    return /krs_parameter\[0\]\.x/.test(scene.describe().too_large ? '' : scene.text('essl', { stateValues: true }) ?? '');
 }
 
 // A text with its options, its scene and the values that were set.
@@ -127,21 +127,46 @@ class Held {
     }
 
     async compile(text) {
+        const taken = this.#take(await withFiles(this.options, () => this.#make(text)));
+        this.text = taken.ok ? text : this.text;
+        return taken;
+    }
+
+    #compileAs(text, numbers) {
         const { name, studio } = this.options;
-        const made = await withFiles(this.options, () => this.scene ? this.scene.update(text)
-            : core.compile(text, { name, studio: studio !== false, pictures: true, automatic: true }));
-        return this.#take(made);
+        return core.compile(text, { name, studio: studio !== false, pictures: true, ...numbers });
+    }
+
+    // Numbers are not in shaders, so that an edit of one compiles none; but where they are more than drivers bear.
+    #make(text) {
+        const made = this.scene ? this.scene.update(text) : this.#compileAs(text, { structure: true });
+        if (!made.scene || made.scene.describe().shaders.affordable)
+            return made;
+        made.scene.free();
+        return { ...made, scene: this.#compileAs(text, { automatic: true }).scene, changes: { kind: 'structure' } };
+    }
+
+    // The scene with its numbers as they are, for what is made once.
+    async withNumbers(use) {
+        const { scene } = await withFiles(this.options, () => this.#compileAs(this.text));
+        try {
+            return use(scene);
+        } finally {
+            scene.free();
+        }
     }
 
     // Takes the scene over, or stays what it was.
     #take({ scene, diagnostics, changes }) {
         if (!scene)
             return { ok: false, diagnostics, change: 'nothing', about: null };
-        // Numbers are in the shaders until the first edit, and in parameters from then on (KRS_SPECIALIZE_AUTO).
         const change = changes?.kind ?? 'structure';
         this.#freeScene();
         this.scene = scene;
         this.state = scene.state();
+        this.inputs = null;
+        if (change === 'structure')
+            this.timed = readsTime(scene);
         const told = about(this);
         for (const [name, value] of this.set) {
             const parameter = told.parameters.find(p => p.name === name);
@@ -168,6 +193,10 @@ class Held {
 
     // Tables that a picture has already are not sent again.
     tablesUnless(seen) {
+        const inputs = hash(this.state.tableInputs());
+        if (seen === this.version && inputs === this.inputs)
+            return { version: seen };
+        this.inputs = inputs;
         const { rows, cells } = this.state.tables(), now = `${hash(rows)} ${hash(cells)} ${rows.length} ${cells.length}`;
         if (now !== this.tables) {
             this.tables = now;
@@ -175,6 +204,38 @@ class Held {
         }
         return { version: this.version, ...(seen === this.version ? {} : { rows, cells }) };
     }
+}
+
+// ---- reasons ----
+
+const bounded = numbers => numbers.every(number => number !== null);
+
+// Why a value was not taken.
+function whyRefused(parameters, name, value) {
+    const parameter = parameters.find(p => p.name === name), said = `${name} cannot be ${value.join(', ')}`;
+    if (!parameter)
+        return `there is no parameter ${name}: the scene has ${parameters.map(p => p.name).join(', ') || 'none'}`;
+    const { low, high } = parameter, { length } = parameter.value;
+    if (value.length !== length)
+        return `${said}: it has ${length === 1 ? 'one number' : `${length} numbers`}`;
+    if (value.some((number, i) => number < (low[i] ?? -Infinity) || number > (high[i] ?? Infinity)))
+        return `${said}: it is from ${low.map(number => number ?? '-∞').join(', ')} to ${high.map(number => number ?? '∞').join(', ')}`;
+    return `${said}: a number of the scene would not be finite`;
+}
+
+// Why there is no mesh (krs_mesh in mesh.h).
+function whyNoMesh({ components, shaders }, { component = 0 }, status) {
+    const wanted = component ? components.slice(component - 1, component) : components;
+    const endless = wanted.find(({ low, high }) => !bounded(low) || !bounded(high));
+    if (status !== 2)
+        return status === 71 ? 'there is no memory left, of which a larger error takes less' : `krs failed (status ${status})`;
+    if (component && !wanted.length)
+        return `there is no component ${component}: the scene has ${components.length}`;
+    if (shaders.open_surfaces)
+        return 'the scene has surfaces without thickness, which enclose nothing; .shell gives them some';
+    if (endless)
+        return `${endless.name} has no end`;
+    return 'the error is too small: it is at least a 500,000th of the size';
 }
 
 // ---- calls ----
@@ -201,10 +262,10 @@ const calls = {
     },
 
     set({ scene, name, value }) {
-        const held = heldOf(scene), good = held.state.set(name, value);
-        if (good)
-            held.set.set(name, value);
-        return good;
+        const held = heldOf(scene);
+        if (!held.state.set(name, value))
+            throw new RangeError(whyRefused(held.scene.describe().parameters, name, value));
+        held.set.set(name, value);
     },
 
     reset({ scene }) {
@@ -218,6 +279,8 @@ const calls = {
 
     distance({ scene, points, time }) { return heldOf(scene).at(time).distance(points); },
 
+    normal({ scene, points, time }) { return heldOf(scene).at(time).normal(points); },
+
     raycast({ scene, origins, directions, farthest, tolerance, time }) {
         return heldOf(scene).at(time).raycast(origins, directions, { farthest, tolerance }).hits;
     },
@@ -230,25 +293,28 @@ const calls = {
         return { parameters: state.parameters(), values: state.values(), tables: held.tablesUnless(tables), view: viewOf(state) };
     },
 
-    shader({ scene, target, stateValues, earlyOuts }) {
-        const text = heldOf(scene).scene.text(target, { stateValues, noEarlyOuts: earlyOuts === false });
+    // With `values` numbers of the text are not in the shader, but among those of a state.
+    async shader({ scene, target, values, stateValues, earlyOuts }) {
+        const held = heldOf(scene), print = made => made.text(target, { stateValues, noEarlyOuts: earlyOuts === false });
+        const text = values ? print(held.scene) : await held.withNumbers(print);
         if (text === null)
-            throw new Error(heldOf(scene).scene.describe().too_large);
+            throw new Error(held.scene.describe().too_large);
         return text;
     },
 
     // In a worker of its own: the scene is compiled here.
     async mesh({ text, options, values, time, how }, tell) {
-        const held = new Held(options);
-        const { ok } = await held.compile(text);
-        if (!ok)
+        const { scene } = await withFiles(options, () => core.compile(text, { name: options.name, pictures: true }));
+        if (!scene)
             throw new Error('there is no scene: its text has mistakes');
+        const state = scene.state();
         for (const [name, value] of values)
-            held.state.set(name, value);
+            state.set(name, value);
+        state.setTime(time);
         report = tell;
-        const mesh = held.at(time).mesh(how);
+        const mesh = state.mesh(how);
         if (!mesh.vertices)
-            throw new Error(`the mesh is not made (status ${mesh.status})`);
+            throw new Error(`no mesh is made: ${whyNoMesh(scene.describe(), how, mesh.status)}`);
         return mesh;
     },
 

@@ -8,6 +8,7 @@ const float INFINITE = 1e38;
 uniform highp sampler2D direct_sums, scattered_sums, mirrored_sums, own_sums, ends;
 uniform ivec2 sums_size;
 uniform float exposure;         // a factor
+uniform mat3  balance;          // makes the light white that shall be
 uniform int   tone_map;         // a row of choices.def
 uniform int   reach;            // of the mean over neighbours, in pixels
 
@@ -89,7 +90,7 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4  direct = texelFetch(direct_sums, pixel, 0);
-    vec3 color = min(exposure * find_light(pixel, direct), 1e9);
+    vec3 color = clamp(balance * (exposure * find_light(pixel, direct)), 0.0, 1e9);
     color = tone_map == 1 ? aces(color) : tone_map == 2 ? agx(color) : tone_map == 3 ? color : neutral(color);
     shown = vec4(to_srgb(color), 1.0);
 }
