@@ -9,22 +9,6 @@
 
 static_assert((int)RAYS_OF_BLOCK == (int)CELL_LANES, "a block is run at once");
 
-bool ray_has_large_numbers(const Tape *tape)
-{
-    enum { MOST_PUSHES = 23 };
-    size_t pushes = 0;
-    for (size_t i = tape->frame_count; i < tape->count; i++) {
-        const Op op = (Op)tape->graph->items[tape->nodes[i]].op;
-        if (op == OP_hash_id || op == OP_join_id)
-            return true;
-        pushes += op == OP_push_id;
-    }
-    for (uint32_t i = 0; i < tape->function_count; i++)
-        if (ray_has_large_numbers(&tape->functions[i]))
-            return true;
-    return pushes > MOST_PUSHES;
-}
-
 const char *ray_field_refuses(const KrsScene *scene)
 {
     const KrsProgram *program = &scene->program;
@@ -32,9 +16,7 @@ const char *ray_field_refuses(const KrsScene *scene)
         return "the scene shows nothing";
     if (program->along || program->open_surfaces)
         return "rays go from root to root of what the scene shows";
-    return ray_has_large_numbers(&scene->distance)
-               ? "shapes differ by numbers of copies that single precision does not have"
-               : NULL;
+    return NULL;
 }
 
 /* ---- tapes ---- */

@@ -35,8 +35,6 @@ struct RayField {
     float         margin; /* what rounding may make of coordinates */
 };
 
-/* Tells whether numbers of copies may be above 2^24, up to which single precision knows them. */
-bool ray_has_large_numbers(const Tape *tape);
 /* Copies values of the frame for those who change them: tapes that read tables do. */
 NodeValue *ray_copy_values(const KrsState *state, Arena *arena);
 /* Returns what rounding may make of coordinates of what a scene shows, planes left out. */

@@ -45,8 +45,7 @@ struct SurfaceField {
 
 bool surface_field_suits(const KrsScene *scene)
 {
-    return scene->component_count > 0 && !scene->program.media && !scene->program.open_surfaces &&
-           !ray_has_large_numbers(&scene->surface);
+    return scene->component_count > 0 && !scene->program.media && !scene->program.open_surfaces;
 }
 
 /* ---- tapes ---- */
@@ -174,15 +173,18 @@ static size_t find_nearest(const Question *q, const Rows *rows, const float *val
     return nearest;
 }
 
-/* Identities are integers. */
+/* Stores a number.  Identities are shown as integers, though the graph may have numbers of them. */
 static void put(float *to, size_t number, float value)
 {
-    if (number >= FIRST_IDENTITY && number < FIRST_MATERIAL) {
-        const uint32_t integer = value > 0 && value < 4294967040.0f ? (uint32_t)value : 0;
-        memcpy(to, &integer, sizeof *to);
-    } else {
-        *to = value;
-    }
+    static const GraphType identities[] = {
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) TYPE_##type,
+#include "krs/surface.def"
+    };
+    const bool  identity = number >= FIRST_IDENTITY && number < FIRST_MATERIAL;
+    const bool  whole    = identity && identities[number - FIRST_IDENTITY] == TYPE_FLOAT;
+    const float shown = whole ? cell_bits(value > 0 && value < 4294967040.0f ? (uint32_t)value : 0)
+                              : value;
+    memcpy(to, &shown, sizeof *to);
 }
 
 /* Cuts a surface by zones, which leave the normal as it is. */

@@ -49,8 +49,8 @@ typedef struct SurfaceField SurfaceField;
 /* Makes a field; the state stays as it is while that is in use.  NULL: memory has run out. */
 SurfaceField *surface_field_new(KrsState *state, bool layers);
 void          surface_field_free(SurfaceField *field);
-/* Tells whether surfaces can be found: not where light goes through something or surfaces are open, where
-   there is nothing, or where numbers of copies are too large for single precision. */
+/* Tells whether surfaces can be found: not where light goes through something or surfaces are open, or where
+   there is nothing. */
 bool surface_field_suits(const KrsScene *scene);
 
 /* Sorts points so that those which follow each other are near each other. */

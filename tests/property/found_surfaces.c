@@ -44,6 +44,15 @@ static const char *const scenes[] = {
     "translate([0, 0.4, 0]) * rotate([0, 1, 0], -70deg) * rotate([1, 0, 0], 28deg) * scale(0.8); "
     "reflect plane([1, 0, 0], 0); kernel capsule([0, 0, 0], [0, 0.4, 0], radius: 0.1); } }"
     ".paint(mix(#804020, #20ff40, 0.1 * level + 0.3 * instance));",
+    /* Numbers of copies of 32 bits: of copies within copies, and behind more than 31 mirrors. */
+    "let twig = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], radius: 0.1);"
+    "for i in 0..4 { reflect plane([1, 0, 0.3 * i], -0.1); } };"
+    "show krs { kernel twig.move([0.8, 0.2, 0.3]); for i in 0..3 { reflect plane([0.2 * i, 0.1, "
+    "1], 0); } }"
+    ".paint(mix(#804020, #20ff40, instance));",
+    "show krs { kernel sphere(0.3).move([0.4, 0.9, 0]);"
+    "for i in 0..36 { reflect plane([cos(40deg * i), sin(40deg * i), 0.1 * sin(i)], -0.02); } }"
+    ".paint(mix(#804020, #20ff40, instance));",
     /* Instance groups. */
     "show union([box([0.2, 0.3 + 0.1 * i, 0.2]).rotate([0, 1, 0], i * 20deg).move([0.4 * i - 2, 0, "
     "0])"

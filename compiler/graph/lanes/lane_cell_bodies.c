@@ -156,10 +156,13 @@ static void read_instance(const CellBody *body, const NodeValue *values, uint32_
     const double *numbers = body->table->numbers + (size_t)instance * body->table->columns;
     for (uint32_t k = 0; k < body->column_count; k++) {
         const CellColumn *column = &body->columns[k];
-        const double      number = column->nodes ? values[column->nodes[instance]].v[0]
-                                   : column->column == NODE_NONE ? instance
-                                                                 : numbers[column->column];
-        fill(inner + (size_t)column->row * CELL_LANES, (float)number + 0.0f);
+        float            *row    = inner + (size_t)column->row * CELL_LANES;
+        if (!column->nodes && column->column == NODE_NONE)
+            fill(row, cell_bits(instance));
+        else
+            fill(row, (float)(column->nodes ? values[column->nodes[instance]].v[0]
+                                            : numbers[column->column]) +
+                          0.0f);
     }
 }
 
@@ -185,7 +188,8 @@ static void begin_visit(const CellCall *call, const float *rows, float *inner, C
     fill(inputs + LANE_FRONT * CELL_LANES, 1);
     for (uint32_t k = 0; k < body->function->state_count; k++)
         for (uint32_t c = 0; c < 4; c++)
-            fill(states[4 * k + c], (float)body->function->states[k].first[c]);
+            fill(states[4 * k + c],
+                 cell_number(body->function->states[k].type, body->function->states[k].first[c]));
 }
 
 /* Takes one more instance into the states. */
@@ -280,10 +284,10 @@ bool cell_read_rows(const Graph *graph, const Expr *row, const NodeValue *values
     const uint32_t       column = row_column(id);
     const Node          *nodes  = column_nodes(graph->instances, table, column);
     for (int i = 0; i < CELL_LANES; i++)
-        if (!(instances[i] >= 0 && instances[i] < (float)table->rows))
+        if (cell_integer(instances[i]) >= table->rows)
             return false;
     for (int i = 0; i < CELL_LANES; i++) {
-        const size_t instance = (size_t)instances[i];
+        const size_t instance = cell_integer(instances[i]);
         to[i]                 = (float)(nodes ? values[nodes[instance]].v[0]
                                               : table->numbers[instance * table->columns + column]);
     }
@@ -298,7 +302,8 @@ void cell_join(const CellCall *call, const Graph *graph, CellStates states, floa
         NodeValue all[MAX_INSTANCE_STATES];
         for (uint32_t k = 0; k < call->body->function->state_count; k++)
             for (uint32_t c = 0; c < 4; c++)
-                all[k].v[c] = (double)states[4 * k + c][i];
+                all[k].v[c] = cell_value(call->body->function->states[k].type,
+                                         states[4 * k + c][i]);
         to[i] = (float)instance_walk_result(&walk, graph, all).v[0];
     }
 }

@@ -19,22 +19,29 @@ static inline uint32_t lane_scramble(uint32_t x)
     return x ^ (x >> 16);
 }
 
-/* Numbers up to 2^24 alone are exact. */
-static inline uint32_t lane_whole(float a)
-{
-    return a > 0 && a < 16777216.0f ? (uint32_t)(int32_t)a : 0;
-}
-
 static inline float lane_push_id(float a, float b)
 {
-    return (float)(int32_t)lane_whole(a) * 2 + (b != 0 ? 1.0f : 0.0f);
+    return cell_bits(cell_integer(a) * 2 + (b != 0));
 }
 
-static inline float lane_to_uint(float a) { return (float)(int32_t)lane_whole(a); }
+static inline float lane_hash_id(float a, float b)
+{
+    return cell_bits(lane_scramble(cell_integer(a) + (b != 0 ? 0x9e3779b9u : 0x7f4a7c15u)));
+}
+
+static inline float lane_join_id(float a, float b)
+{
+    return cell_bits(lane_scramble(lane_scramble(cell_integer(a)) + cell_integer(b)));
+}
+
+static inline float lane_to_uint(float a)
+{
+    return cell_bits(a > 0 && a < 4294967296.0f ? (uint32_t)a : 0);
+}
 
 static inline float lane_id_unit(float a)
 {
-    return (float)(int32_t)(lane_scramble(lane_whole(a)) >> 8) * (1.0f / 16777216);
+    return (float)(int32_t)(lane_scramble(cell_integer(a)) >> 8) * (1.0f / 16777216);
 }
 
 /* ---- noise ---- */
@@ -374,6 +381,16 @@ static void LOCAL(cell_push_id)(const REAL *x, const REAL *y, REAL *to)
     ALL_LANES { to[i] = lane_push_id(x[i], y[i]); }
 }
 
+static void LOCAL(cell_hash_id)(const REAL *x, const REAL *y, REAL *to)
+{
+    ALL_LANES { to[i] = lane_hash_id(x[i], y[i]); }
+}
+
+static void LOCAL(cell_join_id)(const REAL *x, const REAL *y, REAL *to)
+{
+    ALL_LANES { to[i] = lane_join_id(x[i], y[i]); }
+}
+
 static void LOCAL(cell_to_uint)(const REAL *x, REAL *to)
 {
     ALL_LANES { to[i] = lane_to_uint(x[i]); }
@@ -392,6 +409,8 @@ static void LOCAL(cell_id_unit)(const REAL *x, REAL *to)
     LOOP(noise2, LOCAL(cell_noise2)(x[0], x[1], to[0]))               \
     LOOP(noise3, LOCAL(cell_noise3)(x[0], x[1], x[2], to[0]))         \
     LOOP(push_id, LOCAL(cell_push_id)(x[0], x[1], to[0]))             \
+    LOOP(hash_id, LOCAL(cell_hash_id)(x[0], x[1], to[0]))             \
+    LOOP(join_id, LOCAL(cell_join_id)(x[0], x[1], to[0]))             \
     LOOP(to_uint, LOCAL(cell_to_uint)(x[0], to[0]))                   \
     LOOP(id_unit, LOCAL(cell_id_unit)(x[0], to[0]))                   \
     LOOP(smin4_quadratic, LOCAL(cell_shares)(x, 4, false, to[0]))     \

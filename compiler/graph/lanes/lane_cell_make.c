@@ -153,11 +153,21 @@ CellTape cell_tape_new(const LaneTape *tape, const NodeValue *values, Arena *are
 
 /* ---- what a thread needs ---- */
 
+float cell_constant(const LaneTape *tape, size_t i)
+{
+    const Node node = tape->sources[i].node;
+    return cell_number(node == NODE_NONE ? TYPE_FLOAT
+                                         : (GraphType)tape->tape->graph->items[node].type,
+                       tape->scalars[i]);
+}
+
 static void fill_constants(const CellTape *tape, float *rows)
 {
-    for (size_t i = 0; i < tape->inputs; i++)
+    for (size_t i = 0; i < tape->inputs; i++) {
+        const float number = cell_constant(tape->whole, i);
         for (int lane = 0; lane < CELL_LANES; lane++)
-            rows[i * CELL_LANES + lane] = (float)tape->whole->scalars[i] + 0.0f;
+            rows[i * CELL_LANES + lane] = number;
+    }
 }
 
 /* Allocates so many numbers, aligned for vectors. */
@@ -224,7 +234,7 @@ CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values,
     work->wide      = new_numbers((LANE_INPUTS + MOST_WIDE_STEPS) * (size_t)CELL_WIDE, arena);
     work->constants = new_numbers(tape->inputs + 1, arena);
     for (uint32_t i = 0; i < tape->inputs; i++)
-        work->constants[i] = (float)tape->whole->scalars[i] + 0.0f;
+        work->constants[i] = cell_constant(tape->whole, i);
     return work;
 }
 

@@ -329,24 +329,23 @@ static uint32_t add_step(Pruning *p, CellTape *to, CellStep step)
     return to->inputs + LANE_INPUTS + to->count++;
 }
 
-static uint32_t add_number(Pruning *p, CellTape *to, double number)
+static uint32_t add_number(Pruning *p, CellTape *to, float number)
 {
-    const float single = (float)number + 0.0f;
-    CellStep    step   = {.op = LANE_NUMBER};
-    memcpy(&step.from[0], &single, sizeof single);
+    const CellStep step = {.op = LANE_NUMBER, .from = {cell_integer(number)}};
     return add_step(p, to, step);
 }
 
-/* Returns a number of the instance that a step of the body reads. */
-static double number_of_instance(const Pruning *p, const InstanceTable *table, const LaneStep *step,
-                                 uint32_t instance)
+/* Returns a number of the instance that a step of the body reads, as a row holds it. */
+static float number_of_instance(const Pruning *p, const InstanceTable *table, const LaneStep *step,
+                                uint32_t instance)
 {
     const Instances *groups = p->ball.tape->whole->tape->graph->instances;
     if (step->op == LANE_INSTANCE)
-        return instance;
+        return cell_bits(instance);
     const Node *nodes = column_nodes(groups, table, step->operands[0]);
-    return nodes ? p->work->values[nodes[instance]].v[0]
-                 : table->numbers[(size_t)instance * table->columns + step->operands[0]];
+    return cell_number(
+        TYPE_FLOAT, nodes ? p->work->values[nodes[instance]].v[0]
+                          : table->numbers[(size_t)instance * table->columns + step->operands[0]]);
 }
 
 /* Adds the steps of a body for one instance; returns the row of its state.  What takes the lesser of the state
@@ -398,12 +397,8 @@ static uint32_t add_instances(Pruning *p, CellTape *to, const CellStep *step)
     const float             steepest = steepest_in_ball(p, step);
     const InstanceFunction *function = least_of_instances(p->ball.tape->whole, call->call);
     for (size_t i = 0; i < body->scalar_count; i++)
-        p->work->body_scalars[i] = add_number(
-            p, to,
-            body->sources[i].node == NODE_NONE
-                ? body->sources[i].number
-                : p->work->values[body->sources[i].node].v[body->sources[i].component]);
-    uint32_t state = add_number(p, to, function->states[0].first[0]);
+        p->work->body_scalars[i] = add_number(p, to, cell_constant(&call->body->lanes, i));
+    uint32_t state = add_number(p, to, cell_number(TYPE_FLOAT, function->states[0].first[0]));
     for (uint32_t i = 0; i < list->count; i++)
         state = add_instance(p, to, call, list->instances[i], state,
                              isfinite(steepest) ? steepest : 0);

@@ -66,6 +66,9 @@ struct CellWork {
     uint32_t *body_rows, *body_scalars; /* of a body whose steps are added */
 };
 
+/* Returns a scalar of a lane tape as rows hold it. */
+float cell_constant(const LaneTape *tape, size_t i);
+
 /* ---- operations ---- */
 
 static inline bool is_lesser(uint16_t op) { return op == OP_min || op == LANE_LESSER; }

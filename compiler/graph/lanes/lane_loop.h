@@ -147,8 +147,9 @@ static void LOCAL(call)(const LaneTape *tape, const LaneWork *work, const LaneCa
 
 /* ---- steps ---- */
 
-/* Zero has no sign (op_evaluate). */
-#define STORE(value) to[i] = (REAL)(value) + 0
+/* Zero has no sign (op_evaluate).  What is chosen is stored as it is: it may be the bits of an integer. */
+#define STORE(value)        to[i] = (REAL)(value) + 0
+#define STORE_OF(op, value) to[i] = (int)(op) == (int)OP_select ? (REAL)(value) : (REAL)(value) + 0
 
 /* Runs a step on two operands of which the first is a scalar; false: there is no such loop. */
 static bool LOCAL(scalar_first)(const LaneCode *code, REAL a, REAL *rows, size_t blocks)
@@ -344,10 +345,12 @@ static void LOCAL(cell_call)(const CellTape *tape, NodeValue *values, const Cell
         NodeValue operands[MAX_OPERANDS] = {0};
         for (uint32_t k = 0; k < e->operand_count; k++)
             for (uint32_t c = 0; c < 4 && call->from[k][c] != NODE_NONE; c++)
-                operands[k].v[c] = (double)rows[(size_t)call->from[k][c] * CELL_LANES + i];
+                operands[k].v[c] = cell_value(
+                    (GraphType)whole->tape->graph->items[e->operands[k]].type,
+                    rows[(size_t)call->from[k][c] * CELL_LANES + i]);
         NodeValue value = lane_call(whole->tape, values, call->call->node, operands);
         for (uint32_t c = 0; c < call->call->parts; c++)
-            to[c * CELL_LANES + i] = (REAL)value.v[c];
+            to[c * CELL_LANES + i] = cell_number((GraphType)e->type, value.v[c]);
     }
 }
 
@@ -360,7 +363,7 @@ static void LOCAL(cell_call)(const CellTape *tape, NodeValue *values, const Cell
         {                                                                                  \
             const REAL a = x[i], b = y[i], c = z[i], d = w[i];                             \
             (void)b, (void)c, (void)d;                                                     \
-            STORE(value);                                                                  \
+            STORE_OF(op, value);                                                           \
         }                                                                                  \
     } break;
 
@@ -434,7 +437,7 @@ void CELL_LOOP(const CellTape *tape, NodeValue *values, REAL *rows)
         {                                                                  \
             const REAL a = x[0][i], b = x[1][i], c = x[2][i], d = x[3][i]; \
             (void)b, (void)c, (void)d;                                     \
-            STORE(value);                                                  \
+            STORE_OF(op, value);                                           \
         }                                                                  \
         break;
 
@@ -554,3 +557,4 @@ void WIDE_LOOP(const CellTape *tape, const REAL *constants, REAL *rows, size_t b
 #undef LOCAL
 #undef ROW
 #undef STORE
+#undef STORE_OF
