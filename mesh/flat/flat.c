@@ -176,13 +176,35 @@ static bool refine(Halving *h, double error, FlatVerdict *verdict)
     return any;
 }
 
+/* Refines by some of the boxes of the first pass, if these are many: they mostly need as many sides
+   as all do. */
+static FlatVerdict refine_by_some(Halving *h, double error)
+{
+    enum { SOME = 100 };
+    FlatBoxes  *boxes = &h->round_boxes;
+    size_t      step  = boxes->count / SOME;
+    FlatVerdict verdict;
+    if (step < 2)
+        return FLAT_PROVEN;
+    for (size_t i = 0; i < SOME; i++)
+        boxes->items[i] = boxes->items[i * step];
+    boxes->count = SOME;
+    verdict      = flat_near(h->m, &h->rounds, boxes, error);
+    if (verdict == FLAT_REFUTED)
+        refine(h, error, &verdict);
+    return verdict;
+}
+
 /* Finds faces with as many sides as the error needs; where even many are not enough, boxes are left
    unresolved. */
 static bool make_round(Halving *h)
 {
-    double      error   = h->m->error - reserve_of(h->m);
-    FlatVerdict refined = FLAT_PROVEN, verdict;
+    static const double MAX_PART = 0.125; /* of the largest radius */
+    FlatVerdict         refined  = FLAT_PROVEN, verdict;
+    double              error    = flat_rounds_limit(&h->rounds, MAX_PART) - reserve_of(h->m);
     flat_rounds_count(&h->rounds);
+    if (refine_by_some(h, error) == FLAT_STOPPED)
+        return false;
     do {
         if (!halve_all(h))
             return false;

@@ -83,6 +83,11 @@ typedef struct Polygon {
 
 enum { MAX_CELL_NODES = 16 * MAX_FLAT_NODES };
 
+/* A set of half-spaces. */
+typedef struct HalfSpaces {
+    uint64_t bits[MAX_FLATS / 64];
+} HalfSpaces;
+
 typedef struct Cell {
     FlatFaces *faces;
     Box        box;
@@ -90,6 +95,7 @@ typedef struct Cell {
     int        signs[MAX_FLATS];
     int        own;                   /* the half-space that is cut */
     FlatNode   nodes[MAX_CELL_NODES]; /* those of the pieces, and what is left of them */
+    HalfSpaces seen[MAX_CELL_NODES];  /* of each node, those that it depends on */
     int        node_count;
     bool       failed;
 } Cell;
@@ -197,30 +203,42 @@ static void add_part(Cell *cell, const Polygon *polygon, int outward)
     }
 }
 
-/* Simplifies a solid where the sides of some half-spaces are known: 1, -1, or 0 if not. */
-static int rest_of(Cell *cell, int solid, const signed char *sides)
+/* Finds the half-spaces that a node depends on; those of its parts are known. */
+static void find_seen(Cell *cell, int number)
 {
-    if (solid < 0)
+    const FlatNode *node = &cell->nodes[number];
+    HalfSpaces     *seen = &cell->seen[number];
+    if (node->kind == FLAT_HALF_SPACE) {
+        memset(seen, 0, sizeof *seen);
+        seen->bits[node->first / 64] = (uint64_t)1 << node->first % 64;
+    } else
+        for (int i = 0; i < MAX_FLATS / 64; i++)
+            seen->bits[i] = cell->seen[node->first].bits[i] | cell->seen[node->second].bits[i];
+}
+
+/* Simplifies a solid on one side of a half-space: 1 is outside, -1 inside. */
+static int rest_of(Cell *cell, int solid, int half_space, int side)
+{
+    if (solid < 0 || !(cell->seen[solid].bits[half_space / 64] >> half_space % 64 & 1))
         return solid;
     FlatNode node = cell->nodes[solid];
-    if (node.kind == FLAT_HALF_SPACE) {
-        int side = node.second * sides[node.first];
-        return side == 0 ? solid : side < 0 ? FLAT_ALL : FLAT_NONE;
-    }
+    if (node.kind == FLAT_HALF_SPACE)
+        return node.second * side < 0 ? FLAT_ALL : FLAT_NONE;
     int decides = node.kind == FLAT_BOTH ? FLAT_NONE : FLAT_ALL;
-    int second  = rest_of(cell, node.second, sides);
+    int second  = rest_of(cell, node.second, half_space, side);
     if (second == decides)
         return second;
-    int first = rest_of(cell, node.first, sides);
+    int first = rest_of(cell, node.first, half_space, side);
     if (first == decides || second < 0)
         return first;
-    if (first < 0 || (first == node.first && second == node.second))
-        return first < 0 ? second : solid;
+    if (first < 0)
+        return second;
     if (cell->node_count == MAX_CELL_NODES) {
         cell->failed = true;
         return solid;
     }
     cell->nodes[cell->node_count] = (FlatNode){node.kind, first, second};
+    find_seen(cell, cell->node_count);
     return cell->node_count++;
 }
 
@@ -234,14 +252,13 @@ static int half_space_of(const Cell *cell, int solid)
 
 /* Cuts a polygon by all half-spaces that decide between `within` and `beyond`, the rests of the
    solid below and above its plane, and adds those parts that are faces. */
-static void cut_part(Cell *cell, const Polygon *polygon, int within, int beyond, signed char *sides)
+static void cut_part(Cell *cell, const Polygon *polygon, int within, int beyond)
 {
-    if (polygon->count < 3 || cell->failed)
+    if (within == beyond)
         return;
     if (within < 0 && beyond < 0) {
-        if (within != beyond)
-            add_part(cell, polygon,
-                     within == FLAT_ALL ? cell->signs[cell->own] : -cell->signs[cell->own]);
+        add_part(cell, polygon,
+                 within == FLAT_ALL ? cell->signs[cell->own] : -cell->signs[cell->own]);
         return;
     }
     int              unknown = half_space_of(cell, beyond >= 0 ? beyond : within);
@@ -254,39 +271,38 @@ static void cut_part(Cell *cell, const Polygon *polygon, int within, int beyond,
     }
     for (int sign = -1; sign <= 1; sign += 2) {
         Polygon part;
+        int     side = sign * cell->signs[unknown];
         cut_polygon(cell, polygon, values, -sign, cell->planes[unknown], &part);
-        sides[unknown] = (signed char)(sign * cell->signs[unknown]);
-        cut_part(cell, &part, rest_of(cell, within, sides), rest_of(cell, beyond, sides), sides);
+        if (part.count < 3 || cell->failed)
+            continue;
+        cut_part(cell, &part, rest_of(cell, within, unknown, side),
+                 rest_of(cell, beyond, unknown, side));
         cell->node_count = nodes;
     }
-    sides[unknown] = 0;
 }
 
 bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces)
 {
-    signed char sides[MAX_FLATS];
-    Cell        cell;
+    Cell cell;
     if (pieces->root < 0)
         return true;
     cell.faces  = faces;
     cell.box    = box;
     cell.failed = false;
     memcpy(cell.nodes, pieces->nodes, pieces->node_count * sizeof *cell.nodes);
+    for (size_t i = 0; i < pieces->node_count; i++)
+        find_seen(&cell, (int)i);
     for (size_t i = 0; i < pieces->count; i++)
         cell.planes[i] = find_plane(faces, &pieces->list[i], &cell.signs[i]);
     for (size_t i = 0; i < pieces->count && !cell.failed; i++) {
         Polygon polygon;
-        int     solids[2];
         cell.own        = (int)i;
         cell.node_count = (int)pieces->node_count;
-        memset(sides, 0, sizeof sides);
-        for (int side = 0; side < 2; side++) {
-            sides[i]     = (signed char)(2 * side - 1);
-            solids[side] = rest_of(&cell, pieces->root, sides);
-        }
-        sides[i] = 0;
+        int within      = rest_of(&cell, pieces->root, (int)i, -1);
+        int beyond      = rest_of(&cell, pieces->root, (int)i, 1);
         begin_polygon(&cell, &faces->planes.items[cell.planes[i]], &polygon);
-        cut_part(&cell, &polygon, solids[0], solids[1], sides);
+        if (polygon.count >= 3)
+            cut_part(&cell, &polygon, within, beyond);
     }
     return !cell.failed;
 }

@@ -284,6 +284,14 @@ FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double erro
     return local == SEAM ? FLAT_SEAM : FLAT_THIN;
 }
 
+double flat_largest_slack(const FlatPieces *pieces)
+{
+    double largest = 0;
+    for (size_t i = 0; i < pieces->count; i++)
+        largest = max2(largest, largest_of(pieces->slack[i]));
+    return largest;
+}
+
 int flat_widest_axis(const FlatPieces *pieces, const Box *box)
 {
     static const double LEAST  = 1e-3;

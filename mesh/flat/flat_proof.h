@@ -35,6 +35,9 @@ typedef enum FlatNearness {
    that is larger by that on all sides. */
 FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double error);
 
+/* Returns by how much the number of any half-space may be off. */
+double flat_largest_slack(const FlatPieces *pieces);
+
 /* Returns the axis along which half-spaces change most. */
 int flat_widest_axis(const FlatPieces *pieces, const Box *box);
 

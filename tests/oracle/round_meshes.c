@@ -201,6 +201,8 @@ static void nothing_is_reported_at_seams(void **state)
         /* Parts of a sweep overlap by little, at the plane of a mitre. */
         {"show sweep(rectangle([0.2, 0.2]), [[0, 0, 0], [2, 0, 0], [2, 1, 0]], taper: 0.8);", 0.012,
          SIZE_MAX, 2},
+        /* The error is a quarter of the radius, and the notches between balls are a thirtieth of it deep. */
+        {"show union([sphere(2).move([i, 0, 0]) for i in 0..100]);", 0.5, 10000, 2},
     };
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
