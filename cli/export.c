@@ -8,34 +8,63 @@
 #include "cli/shell/supervise.h"
 #include "export/export.h"
 
-static const char *file_name(const Options *options)
+static const char *first_path(const Options *options)
 {
     Text path = {.arena = options->arena};
     if (options->outputs.count > 0)
         return options->outputs.items[0];
     text_format(&path, "%s%s", scene_name(options->arena, options->files.items[0]),
-                export_targets[options->export_to].ending);
+                export_ending((ExportId)options->export_to));
     return path.bytes;
 }
 
-static KrsStatus write_file(const Options *options, const KrsScene *scene, KrsState *state,
-                            const char *path)
+/* What comes before the endings of all files: the first has that of the target, or another. */
+static const char *find_base(const Options *options, const char *path)
 {
-    const char *name = scene_name(options->arena, options->files.items[0]);
-    Text        file = {.arena = options->arena};
-    size_t      camera;
-    KrsStatus   status = scene_camera(options, scene, &camera);
+    const char  *ending = export_ending((ExportId)options->export_to);
+    const size_t length = strlen(path), tail = strlen(ending);
+    const char  *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash + 1 : path, '.');
+    if (length > tail && strcmp(path + length - tail, ending) == 0)
+        return arena_copy_text(options->arena, path, length - tail);
+    return dot && dot > path ? arena_copy_text(options->arena, path, (size_t)(dot - path)) : path;
+}
+
+static KrsStatus write_files(const Options *options, const ExportFiles *files, const char *path)
+{
+    const char *base   = find_base(options, path);
+    KrsStatus   status = KRS_OK;
+    for (size_t i = 0; i < files->count && status == KRS_OK; i++) {
+        const ExportFile *file = &files->items[i];
+        Text              own  = {.arena = options->arena};
+        text_format(&own, "%s%s", i ? base : path, i ? file->ending : "");
+        status = write_output_text(own.bytes, file->text.bytes, file->text.length);
+    }
+    return status;
+}
+
+static KrsStatus export_to(const Options *options, const KrsScene *scene, KrsState *state,
+                           const char *path)
+{
+    const char *base = find_base(options, path), *slash = strrchr(base, '/');
+    Text        why    = {.arena = options->arena};
+    ExportFiles files  = {0};
+    ExportWish  wish   = {.target = (ExportId)options->export_to,
+                          .name   = scene_name(options->arena, options->files.items[0]),
+                          .stem   = slash ? slash + 1 : base};
+    KrsStatus   status = scene_camera(options, scene, &wish.camera);
     if (status != KRS_OK)
         return status;
-    status = export_scene(state, (ExportId)options->export_to, name, camera, &file);
-    if (status == KRS_BAD_ARGUMENT)
+    status = export_scene(state, &wish, &files, &why);
+    if (status == KRS_BAD_ARGUMENT) {
         say("cannot export `%s` to %s: %s", options->files.items[0],
-            export_targets[options->export_to].name, file.bytes);
-    else if (status != KRS_OK)
+            export_targets[wish.target].name, why.bytes);
+        return KRS_BAD_SCENE;
+    }
+    if (status != KRS_OK) {
         say_status(status, options->files.items[0]);
-    return status == KRS_OK             ? write_output_text(path, file.bytes, file.length)
-           : status == KRS_BAD_ARGUMENT ? KRS_BAD_SCENE
-                                        : status;
+        return status;
+    }
+    return write_files(options, &files, path);
 }
 
 KrsStatus command_export(Options *options)
@@ -45,8 +74,8 @@ KrsStatus command_export(Options *options)
     if (options->export_to < 0)
         return say_usage(options, "export wants to know what for: --to shadertoy, for example");
     if (options->outputs.count > 1)
-        return say_usage(options, "export writes one file");
-    const char *path   = file_name(options);
+        return say_usage(options, "export wants one file");
+    const char *path   = first_path(options);
     KrsStatus   status = check_output(options, path);
     if (status == KRS_OK)
         status = scene_open(options, options->files.items[0], &scene);
@@ -54,7 +83,7 @@ KrsStatus command_export(Options *options)
         return status;
     status = scene_state(options, scene, &state);
     if (status == KRS_OK) {
-        status = write_file(options, scene, state, path);
+        status = export_to(options, scene, state, path);
         krs_state_free(state);
     }
     krs_scene_free(scene);

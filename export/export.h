@@ -1,5 +1,5 @@
 /*
- * export.h: a scene as a file for a program that has shaders of its own.
+ * export.h: a scene as files for a program that has shaders of its own.
  */
 #ifndef KRS_EXPORT_H
 #define KRS_EXPORT_H
@@ -8,22 +8,64 @@
 #include "krs/krs.h"
 
 typedef enum ExportId {
-#define EXPORT_TARGET(id, name, template, ending, tables, cameras, longest, about) EXPORT_##id,
+#define EXPORT_TARGET(id, name, words, language, source, tables, cameras, longest, about) \
+    EXPORT_##id,
 #include "export/targets.def"
     EXPORT_COUNT
 } ExportId;
 
+/* Where tables of parts that are alike, and textures, are. */
+typedef enum ExportTables {
+    EXPORT_WITHOUT_TABLES,
+    EXPORT_TABLES_INSIDE,
+    EXPORT_TABLES_BESIDE /* in files of their own */
+} ExportTables;
+
+/* In which language a scene's text is. */
+typedef enum ExportLanguage {
+    EXPORT_IN_SHORT_ESSL, /* without comments and indents */
+    EXPORT_IN_GLSL,
+    EXPORT_IN_ESSL,
+    EXPORT_IN_WGSL,
+    EXPORT_IN_HLSL,
+    EXPORT_IN_MSL,
+    EXPORT_IN_GDSHADER
+} ExportLanguage;
+
 /* The properties of a target, as its row says them. */
 typedef struct ExportTarget {
-    const char *name, *template, *ending;
-    bool        tables, cameras;
-    size_t      longest;
+    const char    *name, *words; /* vec3 is `words` with a 3 for its # */
+    ExportLanguage language;
+    const char
+        *source; /* the template of what another language is made of; NULL: the scene's text */
+    ExportTables tables;
+    bool         cameras;
+    size_t       longest;
 } ExportTarget;
 extern const ExportTarget export_targets[EXPORT_COUNT];
 
-/* Adds the file for a target to `file`.  `name` is that of the scene.  KRS_BAD_ARGUMENT: the target cannot have it, and
-   `file` says why, in words of its author.  KRS_OUT_OF_MEMORY. */
-KrsStatus export_scene(KrsState *state, ExportId target, const char *name, size_t camera,
-                       Text *file);
+/* A file that is called STEM`ending`. */
+typedef struct ExportFile {
+    const char *ending;
+    Text        text;
+} ExportFile;
+
+typedef struct ExportFiles {
+    ExportFile *items;
+    size_t      count, capacity;
+} ExportFiles;
+
+/* Tells how a target's first file ends. */
+const char *export_ending(ExportId target);
+
+typedef struct ExportWish {
+    ExportId    target;
+    const char *name, *stem; /* of the scene; of the files, without their endings */
+    size_t      camera;
+} ExportWish;
+
+/* Adds the files for a target, in memory of the arena of `why`.  KRS_BAD_ARGUMENT: the target cannot have the scene, and
+   `why` says why, in words of its author.  KRS_OUT_OF_MEMORY; KRS_IO_ERROR. */
+KrsStatus export_scene(KrsState *state, const ExportWish *wish, ExportFiles *files, Text *why);
 
 #endif

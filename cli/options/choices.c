@@ -65,7 +65,8 @@ const Choice language_choices[] = {
 #include "krs/targets.def"
     LAST};
 const Choice export_choices[] = {
-#define EXPORT_TARGET(id, name, template, ending, tables, cameras, longest, about) {name, about},
+#define EXPORT_TARGET(id, name, words, language, source, tables, cameras, longest, about) \
+    {name, about},
 #include "export/targets.def"
     LAST};
 const Choice stereo_choices[] = {

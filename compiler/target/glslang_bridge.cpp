@@ -63,6 +63,16 @@ static bool merge_returns(std::vector<uint32_t> &words)
     return merging.Run(words.data(), words.size(), &words, options);
 }
 
+static BridgeResult copy(const std::vector<uint32_t> &words, uint32_t **made, size_t *count)
+{
+    *made = static_cast<uint32_t *>(malloc(words.size() * sizeof **made));
+    if (!*made)
+        return BRIDGE_NO_MEMORY;
+    memcpy(*made, words.data(), words.size() * sizeof **made);
+    *count = words.size();
+    return BRIDGE_OK;
+}
+
 /* Makes one function of a module, or leaves it as it is.  Otherwise drivers do so at every start.
    They copy a body once for each call above it, and compare each access to a global with all before
    it.  Results are the same but for the last digit, which a driver may round differently. */
@@ -73,15 +83,11 @@ static BridgeResult flatten(std::vector<uint32_t> &words, uint32_t **made, size_
         result = flatten_module(words.data(), words.size(), made, count);
     if (result != FLATTEN_REFUSED)
         return result == FLATTEN_OK ? BRIDGE_OK : BRIDGE_NO_MEMORY;
-    *made = static_cast<uint32_t *>(malloc(words.size() * sizeof **made));
-    if (!*made)
-        return BRIDGE_NO_MEMORY;
-    memcpy(*made, words.data(), words.size() * sizeof **made);
-    *count = words.size();
-    return BRIDGE_OK;
+    return copy(words, made, count);
 }
 
-static BridgeResult compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
+static BridgeResult compile(const char *glsl, bool flat, uint32_t **words, size_t *word_count,
+                            char **log)
 {
     glslang_input_t input         = {};
     input.language                = GLSLANG_SOURCE_GLSL;
@@ -116,7 +122,7 @@ static BridgeResult compile(const char *glsl, uint32_t **words, size_t *word_cou
 
     std::vector<uint32_t> made(glslang_program_SPIRV_get_size(work.program));
     glslang_program_SPIRV_get(work.program, made.data());
-    return flatten(made, words, word_count);
+    return flat ? flatten(made, words, word_count) : copy(made, words, word_count);
 }
 
 /* Calls `work` and returns its result; an exception becomes BRIDGE_NO_MEMORY or BRIDGE_REFUSED. */
@@ -132,10 +138,12 @@ template <typename Work> static BridgeResult guarded(Work work, char **log)
     }
 }
 
-BridgeResult bridge_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
+BridgeResult bridge_compile(const char *glsl, int flat, uint32_t **words, size_t *word_count,
+                            char **log)
 {
     *words              = nullptr;
-    BridgeResult result = guarded([=] { return compile(glsl, words, word_count, log); }, log);
+    BridgeResult result = guarded([=] { return compile(glsl, flat != 0, words, word_count, log); },
+                                  log);
     if (result != BRIDGE_OK)
         release_lock();
     return result;
@@ -151,7 +159,7 @@ static BridgeResult start(bool *started, char **log)
     size_t            count;
     *started            = true; /* in case of an exception: then glslang has to be stopped */
     *started            = glslang_initialize_process() != 0;
-    BridgeResult result = *started ? compile(first, &words, &count, log) : BRIDGE_NO_MEMORY;
+    BridgeResult result = *started ? compile(first, true, &words, &count, log) : BRIDGE_NO_MEMORY;
     free(words);
     return result;
 }

@@ -14,10 +14,12 @@ extern "C" {
 
 typedef enum BridgeResult { BRIDGE_OK, BRIDGE_REFUSED, BRIDGE_NO_MEMORY } BridgeResult;
 
-/* Compiles a GLSL compute shader to SPIR-V for Vulkan 1.1.  On BRIDGE_OK *words is malloc'ed; on
-   BRIDGE_REFUSED *log is malloc'ed or, if memory ran out, NULL.  After BRIDGE_NO_MEMORY glslang
-   must be stopped and started again, while no other thread compiles. */
-BridgeResult bridge_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log);
+/* Compiles a GLSL compute shader to SPIR-V for Vulkan 1.1, as one function or, not `flat`, as those
+   that it has.  On BRIDGE_OK *words is malloc'ed; on BRIDGE_REFUSED *log is malloc'ed or, if memory
+   ran out, NULL.  After BRIDGE_NO_MEMORY glslang must be stopped and started again, while no other
+   thread compiles. */
+BridgeResult bridge_compile(const char *glsl, int flat, uint32_t **words, size_t *word_count,
+                            char **log);
 /* These start and stop glslang, before and after all calls of bridge_compile.  A start that failed
    needs no stop; with glslang from 14 on no later one succeeds. */
 BridgeResult bridge_start(void);

@@ -115,14 +115,14 @@ static KrsStatus status_of(BridgeResult result, const char *entry, const char *t
                                       : KRS_OUT_OF_MEMORY;
 }
 
-KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
-                        char **log)
+static KrsStatus compile(const char *glsl, bool flat, const char *entry, uint32_t **words,
+                         size_t *word_count, char **log)
 {
     char        *refusal = NULL;
     BridgeResult result  = begin_use();
     *words               = NULL;
     if (result == BRIDGE_OK) {
-        result = bridge_compile(glsl, words, word_count, &refusal);
+        result = bridge_compile(glsl, flat, words, word_count, &refusal);
         end_use(result);
     }
     KrsStatus status = status_of(result, entry, "glslang", refusal, log);
@@ -135,6 +135,18 @@ KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, s
         *words = NULL;
     }
     return status;
+}
+
+KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
+                        char **log)
+{
+    return compile(glsl, true, entry, words, word_count, log);
+}
+
+KrsStatus spirv_compile_functions(const char *glsl, const char *entry, uint32_t **words,
+                                  size_t *word_count, char **log)
+{
+    return compile(glsl, false, entry, words, word_count, log);
 }
 
 char *spirv_disassemble(const uint32_t *words, size_t word_count)

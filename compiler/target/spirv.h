@@ -12,6 +12,9 @@
    Thread-safe. */
 KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
                         char **log);
+/* Does the same, where functions stay what they are, with their names. */
+KrsStatus spirv_compile_functions(const char *glsl, const char *entry, uint32_t **words,
+                                  size_t *word_count, char **log);
 /* Returns SPIR-V as assembly text, malloc'ed; NULL if it is no SPIR-V, or without memory. */
 char *spirv_disassemble(const uint32_t *words, size_t word_count);
 /* These must be called before and after every spirv_compile.  Pairs may nest, and may be called in

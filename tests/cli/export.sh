@@ -1,7 +1,7 @@
 #!/bin/sh
 # export.sh: `krs export`: files are complete shaders, numbers of the scene are in them, and what cannot be is refused.
 . "$(dirname "$0")/common.sh"
-plan 16
+plan 29
 
 cat >ball.krs <<'END'
 param radius = 0.5 in [0.1, 1];
@@ -45,7 +45,7 @@ fi
 
 echo 'show text("krs").extrude(0.2);' >letters.krs
 run export letters.krs --to shadertoy
-[ "$status" -eq 1 ] && grep -q 'cannot export .letters.krs. to shadertoy: parts that are alike' err && [ ! -e letters.shadertoy.glsl ]
+[ "$status" -eq 1 ] && grep -q 'cannot export .letters.krs. to shadertoy: parts that are alike, at letters.krs:1,' err && [ ! -e letters.shadertoy.glsl ]
 result $? "what Shadertoy cannot have is told, and nothing is written"
 run export letters.krs --to three
 grep -q "cells = '[A-Za-z0-9+/]" letters.three.mjs
@@ -69,9 +69,66 @@ run export "a$(printf '\nb').krs" --to three -o lines.mjs
 [ "$status" -eq 0 ] && head -n 1 lines.mjs | grep -q 'for three.js'
 result $? "a name with a line's end stays in its comment"
 
+# ---- functions, and engines ----
+
+# A compute shader with a file in its midst; glslang's options come first.
+compiles() { # file, ending of the stage, main
+    { printf '#version 450\n'; [ "$2" = comp ] && echo 'layout(local_size_x = 1) in;'; cat "$1"; echo "$3"; } >"made.$2"
+}
+run export ball.krs --to glsl
+if command -v glslangValidator >/dev/null; then
+    compiles ball.glsl comp 'layout(std430, binding = 5) buffer Found { float found; };
+        void main() { krs_prepare(); vec3 p = vec3(found) + KRS_LOW + KRS_DEFAULTS[1].xyz; found = krs_distance_lod(p, 0.1) + krs_surface(p, p, 0.0).roughness; }'
+    glslangValidator -V made.comp -o made.spv >out 2>err && glslangValidator made.comp >out 2>err
+    result $? "functions in GLSL are compiled for Vulkan and for OpenGL"
+    sed 's/krs_distance_lod(p, 0.1)/krs_distance_lod(p)/' made.comp >wrong.comp
+    ! glslangValidator wrong.comp >/dev/null 2>&1
+    result $? "a wrong call is refused"
+else
+    skip "functions in GLSL are compiled for Vulkan and for OpenGL" "no glslangValidator"
+    skip "a wrong call is refused" "no glslangValidator"
+fi
+grep -q '^//   krs_parameter\[1\].x: radius, 0.1 to 1$' ball.glsl && grep -q 'KRS_LOW = vec3(-0.7, -1.0, -1.0), KRS_HIGH = vec3(1.3, ' ball.glsl
+result $? "parameters have their ranges, and there is the box"
+run export ball.krs --to wgsl --set radius=0.25
+grep -q 'KRS_DEFAULTS = array<vec4f, 3>(vec4f(0.0, 0.0, 0.0, 0.0), vec4f(0.25, ' ball.wgsl && grep -q 'fn krs_distance_lod' ball.wgsl
+result $? "WGSL has the values that were chosen"
+run export letters.krs --to essl
+[ "$status" -eq 0 ] && [ -s letters.rows.bin ] && [ -s letters.cells.bin ]
+result $? "tables are in files beside the text"
+run compile letters.krs --language essl -o compiled
+cmp -s letters.cells.bin compiled/letters.cells.bin
+result $? "which have the bytes that \`krs compile\` writes"
+PATH=/nowhere "$krs" export ball.krs --to hlsl >out 2>err
+status=$?
+said 1 "there is no \`spirv-cross\`" "what is missing for HLSL is told"
+if command -v spirv-cross >/dev/null && command -v glslangValidator >/dev/null; then
+    run export letters.krs --to hlsl
+    glslangValidator -D -V -S comp -e main -DKRS_KERNEL -o hlsl.spv letters.hlsl >out 2>err
+    result $? "glslang compiles HLSL with its kernel"
+    sed 's/float3 KRS_LOW/flat3 KRS_LOW/' letters.hlsl >wrong.hlsl
+    ! glslangValidator -D -V -S comp -e main -o hlsl.spv wrong.hlsl >/dev/null 2>&1
+    result $? "and refuses it with a wrong type"
+    run export ball.krs --to msl
+    head -n 1 ball.metal | grep -q untested && grep -q 'kernel void main0' ball.metal
+    result $? "MSL says that no compiler has seen it"
+else
+    skip "glslang compiles HLSL with its kernel" "no spirv-cross or glslangValidator"
+    skip "and refuses it with a wrong type" "no spirv-cross or glslangValidator"
+    skip "MSL says that no compiler has seen it" "no spirv-cross"
+fi
+run export ball.krs --to godot -o game/../moon.gdshader
+[ "$status" -ne 0 ]
+result $? "a folder that is not there is told of several files"
+run export ball.krs --to godot -o moon.gdshader
+head -n 1 moon.gdshader | grep -q untested && grep -q 'path="res://moon.gdshader"' moon.tscn && grep -q 'size = Vector3(2, 2, 2)' moon.tscn
+result $? "a scene for Godot names its shader and has its box"
+grep -q 'uniform float param_radius : hint_range(0.1, 1.0) = 0.5;' moon.gdshader && grep -q 'uniform vec3 param_tint : source_color = vec3(1.0, 0.50' moon.gdshader
+result $? "parameters are sliders and colours there"
+
 run export ball.krs
 said 2 "--to shadertoy" "what for must be said"
 run export ball.krs --to blender
-said 2 "shadertoy or three" "other programs are told"
+said 2 "shadertoy, three, glsl, essl, wgsl, hlsl, msl or godot" "other programs are told"
 run export ball.krs --to three -o missing/folder/x.mjs
 ended 73 "a folder that is not there is told"

@@ -2,10 +2,12 @@
 //
 // A module for three.js gives its material to a stand-in for that: what three.js puts before the text is put there.
 // A file for Shadertoy is drawn as its page would do it; then a main of the test stores how far its rays go.
+// A shader for Godot gets what the engine has built in from the test.  Functions say distances at points; HLSL goes through
+// glslang and spirv-cross to WebGL.  KRS_EXPORT_ENGINES are the scenes for engines.
 import { spawnSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
-import { launch } from './browser.mjs';
+import { launch, serve } from './browser.mjs';
 
 const [krs, folder, shots] = process.argv.slice(2);
 const width = 96, height = 54;
@@ -49,7 +51,7 @@ function toWorld([eye, ahead, right, up], near, far)
 }
 
 // In the page: draws a fragment shader; an answer of floats, or a picture that stays.
-function draw({ source, width, height, floats, look, vertex, uniforms = {}, tables = [] })
+function draw({ source, width, height, floats, look, vertex, block, uniforms = {}, tables = [] })
 {
     document.body.innerHTML = '<canvas></canvas>';
     document.body.style.margin = 0;
@@ -85,6 +87,11 @@ function draw({ source, width, height, floats, look, vertex, uniforms = {}, tabl
             gl.texParameteri(gl.TEXTURE_2D, parameter, gl.NEAREST);
         gl.uniform1i(gl.getUniformLocation(program, name), i);
     });
+    if (block && gl.getProgramParameter(program, gl.ACTIVE_UNIFORM_BLOCKS) > 0) {
+        gl.uniformBlockBinding(program, 0, 0);
+        gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, gl.createBuffer());
+        gl.bufferData(gl.UNIFORM_BUFFER, new Float32Array(block), gl.STATIC_DRAW);
+    }
     if (look)
         gl.uniform3fv(gl.getUniformLocation(program, 'krs_look'), look);
     if (floats) {
@@ -154,7 +161,153 @@ async function tryThree(name, module, truth)
     }
 }
 
-const browser = await launch(), page = await browser.open('about:blank');
+// ---- engines ----
+
+// Points that single precision has as they are: one for each pixel, where a camera looks.
+const points = scale => Array.from({ length: width * height }, (_, i) => {
+    const x = i % width, y = Math.floor(i / width);
+    return [(x - 48) * scale / 64, (y - 27) * scale / 32, ((7 * x + 3 * y) % 41 - 20) * scale / 32];
+});
+const pointText = scale => `(floor(at.x) - 48.0) * ${(scale / 64).toFixed(9)}, (floor(at.y) - 27.0) * ${(scale / 32).toFixed(9)}, (whole - 41.0 * floor((whole + 0.5) / 41.0) - 20.0) * ${(scale / 32).toFixed(9)}`;
+const distances = scale => `
+out vec4 krs_out;
+void main()
+{
+    vec2  at = gl_FragCoord.xy;
+    float whole = 7.0 * floor(at.x) + 3.0 * floor(at.y);
+    vec3 p = vec3(${pointText(scale)});
+    krs_prepare();
+    krs_out = vec4(krs_distance(p), krs_distance_lod(p, 0.0), krs_surface(p, vec3(0.0, 1.0, 0.0), 0.0).roughness, 1.0);
+}`;
+const hlslDistances = scale => `
+float4 main(float4 at : SV_Position) : SV_Target
+{
+    float  whole = 7.0 * floor(at.x) + 3.0 * floor(at.y);
+    float3 p = float3(${pointText(scale)});
+    krs_prepare();
+    return float4(krs_distance(p), krs_distance_lod(p, 0.0), krs_surface(p, float3(0.0, 1.0, 0.0), 0.0).roughness, 1.0);
+}`;
+const precise = '#version 300 es\nprecision highp float; precision highp int; precision highp sampler2D; precision highp usampler2D;\n';
+
+// What Godot has of its own.
+const godot = `
+#define TIME 0.0
+uniform vec3 krs_look[4];
+mat4 PROJECTION_MATRIX, VIEW_MATRIX, MODEL_MATRIX;
+vec3 VERTEX, ALBEDO, EMISSION, NORMAL, LIGHT_VERTEX;
+vec2 VIEWPORT_SIZE;
+float ROUGHNESS, METALLIC, DEPTH;
+`;
+const godotMain = `
+out vec4 krs_out;
+void main()
+{
+    vec2 size = vec2(${width}.0, ${height}.0), plane = 2.0 * gl_FragCoord.xy / size - 1.0;
+    vec3 back = -krs_look[1], right = normalize(krs_look[2]), up = normalize(krs_look[3]);
+    VIEW_MATRIX = transpose(mat4(vec4(right, -dot(right, krs_look[0])), vec4(up, -dot(up, krs_look[0])), vec4(back, -dot(back, krs_look[0])), vec4(0.0, 0.0, 0.0, 1.0)));
+    MODEL_MATRIX = mat4(vec4(1.0, 0.0, 0.0, 0.0), vec4(0.0, 1.0, 0.0, 0.0), vec4(0.0, 0.0, 1.0, 0.0), vec4(KRS_CENTER, 1.0));
+    PROJECTION_MATRIX = mat4(0.0);
+    PROJECTION_MATRIX[0][0] = 1.0 / length(krs_look[2]);
+    PROJECTION_MATRIX[1][1] = 1.0 / length(krs_look[3]);
+    PROJECTION_MATRIX[2] = vec4(0.0, 0.0, -1.0, -1.0);
+    PROJECTION_MATRIX[3][2] = -0.1;
+    VIEWPORT_SIZE = size;
+    VERTEX = vec3(plane.x / PROJECTION_MATRIX[0][0], plane.y / PROJECTION_MATRIX[1][1], -1.0) * 10.0;
+    fragment();
+    krs_out = vec4(length(LIGHT_VERTEX), DEPTH, dot(NORMAL, NORMAL), 1.0);
+}`;
+const withoutGodot = text => text.replace(/^(shader_type|render_mode).*$/gm, '')
+    .replace(/^uniform (\w+ \w+)(?: : [^=]*)? = /gm, 'const $1 = ');
+
+// Statements of a text for Godot that stand in no braces, and are none of those that it permits there.
+function globals(text)
+{
+    let depth = 0;
+    const outside = [...text.replace(/\/\/.*$|^#.*$/gm, '')].filter(c => (depth += c === '{', depth -= c === '}', depth === 0 || c === '}')).join('');
+    return outside.split(/[;}]/).map(part => part.trim()).filter(part => part && !/^(uniform|const|struct|shader_type|render_mode) ?/.test(part) && !/\)$/.test(part));
+}
+
+// What is wrong of distances and distances to march by, or nothing.
+function wrongDistances(found, truth, scale)
+{
+    const wrong = points(scale).map((p, i) => {
+        const size = 1 + p.reduce((sum, x) => sum + Math.abs(x), Math.abs(truth[i])), [distance, lod] = found.slice(4 * i);
+        return Math.abs(distance - truth[i]) <= 1e-4 * size && lod <= distance + 1e-4 * size && (Math.abs(distance) < 1e-4 * size || lod > 0 === distance > 0)
+            ? '' : `at ${p} ${distance}, ${lod} for ${truth[i]}`;
+    }).filter(Boolean);
+    return wrong.length ? `${wrong.length} of ${truth.length} differ, ${wrong[0]}` : '';
+}
+
+const defaults = text => text.match(/KRS_DEFAULTS.*?[({](.*)[)}];/)[1].match(/-?[\d.]+(e[-+]?\d+)?(?=[,)])/g).map(Number);
+
+// HLSL as ESSL.
+function crossed(file, text)
+{
+    fs.writeFileSync(`${file}.test.hlsl`, text);
+    const compiled = spawnSync('glslangValidator', ['-D', '-V', '-S', 'frag', '-e', 'main', '-o', `${file}.spv`, `${file}.test.hlsl`], { encoding: 'utf8' });
+    if (compiled.status !== 0)
+        throw new Error(compiled.stdout);
+    return spawnSync('spirv-cross', ['--es', '--version', '300', `${file}.spv`], { encoding: 'utf8' }).stdout;
+}
+
+// Distances by WGSL, in the page that tests of the printer have.
+async function byWgpu(name, text, scale)
+{
+    const put = (ending, numbers) => fs.writeFileSync(`${folder}/${name}.${ending}`, new Uint8Array(Float32Array.from(numbers).buffer));
+    put('parameters', defaults(text));
+    put('points', points(scale).flatMap(p => [...p, 0]));
+    put('normals', points(scale).flatMap(() => [0, 1, 0, 0]));
+    put('rows', []);
+    put('cells', []);
+    const { error, found } = await wgpu.evaluate((...scene) => run(...scene), name);
+    if (error)
+        throw new Error(error);
+    return found.flatMap((_, i) => i % 8 === 0 ? [found[i], found[i + 1], 0, 1] : []);
+}
+
+async function tryEngines(scene, name, camera)
+{
+    const look = lookOf(camera), scale = 2 ** Math.ceil(Math.log2(Math.hypot(...minus(camera.eye, camera.target)) / 2));
+    const truth = queried(scene, points(scale)), tried = {
+        essl: text => page.evaluate(draw, { source: precise + text + distances(scale), block: defaults(text), width, height, floats: true }),
+        glsl: text => page.evaluate(draw, { source: `${precise}#define precise\n` + text.replace('KRS_SET binding = 0', '').replace('std140, ', 'std140') + distances(scale), block: defaults(text), width, height, floats: true }),
+        wgsl: text => byWgpu(name, text, scale),
+        hlsl: text => page.evaluate(draw, { source: crossed(`${folder}/${name}`, text + hlslDistances(scale)), block: defaults(text), width, height, floats: true }),
+    };
+    for (const [target, ask] of Object.entries(tried)) {
+        const file = `${folder}/${name}.${target}`, told = run('export', scene, '--to', target, '--studio', 'off', '-o', file);
+        if (target === 'hlsl' && /no `spirv-cross`/.test(told.stderr)) {
+            ok(true, `${name} for hlsl # SKIP no spirv-cross`);
+            continue;
+        }
+        try {
+            const skipped = target === 'wgsl' && !wgpu, found = skipped ? null : await ask(fs.readFileSync(file, 'utf8'));
+            const wrong = skipped ? '' : wrongDistances(found, truth, scale);
+            ok(told.status === 0 && !wrong, `${name} has the command's distances in ${target}${skipped ? ' # SKIP no WebGPU' : ''}`, told.stderr + wrong);
+            if (target === 'essl' && name === '01-hello')
+                ok(wrongDistances(found.map(x => 1.001 * x), truth, scale), 'a wrong distance is seen');
+        } catch (error) {
+            ok(false, `${name} has the command's distances in ${target}`, error.message.slice(0, 2000));
+        }
+    }
+    const file = `${folder}/${name}.gdshader`, told = run('export', scene, '--to', 'godot', '--studio', 'off', '-o', file);
+    try {
+        const text = fs.readFileSync(file, 'utf8'), rays = queried(scene, raysOf(look));
+        ok(globals(text).length === 0 && globals(`${text}\nfloat a;`).length === 1, `${name} has no globals that change for Godot`, globals(text).join('; '));
+        const found = await page.evaluate(draw, { source: precise + godot + withoutGodot(text) + godotMain, width, height, floats: true, look: look.flat() });
+        const wrong = rays.filter((t, i) => t === Infinity ? found[4 * i + 3] > 0 : !(Math.abs(found[4 * i] - t) <= 0.002 * t));
+        ok(told.status === 0 && wrong.length <= 0.02 * rays.length, `${name} hits for Godot where the command says`, `${wrong.length} of ${rays.length} differ`);
+    } catch (error) {
+        ok(false, `${name} is drawn for Godot`, told.stderr + error.message.slice(0, 2000));
+    }
+}
+
+const browser = await launch({ args: ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader'] }), page = await browser.open('about:blank');
+const server = await serve({ '/': 'tests/web/pages', '/scenes/': folder });
+let wgpu = await browser.open(`${server.url}/wgsl.html`);
+if (await wgpu.until('window.ready') === 'no adapter')
+    wgpu = null;
+const engines = (process.env.KRS_EXPORT_ENGINES ?? '').split(' ');
 for (const scene of process.env.KRS_EXPORT_SCENES.split(' ')) {
     const name = path.basename(scene, '.krs'), three = `${folder}/${name}.three.mjs`, toyFile = `${folder}/${name}.shadertoy.glsl`;
     const told = run('export', scene, '--to', 'three', '--studio', 'off', '-o', three);
@@ -164,6 +317,8 @@ for (const scene of process.env.KRS_EXPORT_SCENES.split(' ')) {
         await tryThree(name, module, truth);
     else
         ok(told.status === 1 && /cannot export/.test(told.stderr), `${name} is refused for three.js, with a reason`, told.stderr);
+    if (module && engines.includes(scene))
+        await tryEngines(scene, name, camera);
     const exported = run('export', scene, '--to', 'shadertoy', '--studio', 'off', '-o', toyFile);
     if (exported.status !== 0) {
         ok(exported.status === 1 && /cannot export/.test(exported.stderr) && !fs.existsSync(toyFile), `${name} is refused, with a reason`, exported.stderr);
@@ -195,5 +350,6 @@ for (const scene of process.env.KRS_EXPORT_SCENES.split(' ')) {
 }
 ok(page.errors.length === 0, 'the page has no errors', page.errors.join('\n'));
 await browser.close();
+server.close();
 console.log(`1..${count}`);
 process.exit(failed > 0 ? 1 : 0);

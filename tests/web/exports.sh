@@ -6,4 +6,5 @@ for name in 01-hello 03-machined-part 13-lamps 14-inversion 22-lattice 23-lighth
     38-dodecahedron; do
     scenes="$scenes examples/$name.krs"
 done
+export KRS_EXPORT_ENGINES="examples/01-hello.krs examples/13-lamps.krs examples/22-lattice.krs examples/26-gasket.krs examples/30-bolt.krs"
 KRS_EXPORT_SCENES=${scenes# } exec tests/web/export.sh

@@ -1,39 +1,3 @@
-// ---- the tracer ----
-
-// A step is the distance, so no surface is passed by.  Where that would be shorter than a twentieth of a pixel the step is
-// as long, and a surface is where the distance changes its sign within it.
-bool krs_trace(vec3 origin, vec3 direction, float first, float last, float pixel, out float t)
-{
-    float magnitude = max(max(abs(origin.x), abs(origin.y)), abs(origin.z));
-    t = first;
-    float here = krs_distance(origin + t * direction);
-    float side = here < 0.0 ? -1.0 : 1.0;
-    here *= side;
-    for (int i = 0; i < KRS_MAX_STEPS && t < last; i++) {
-        float least = 0.05 * pixel * t + 2.4e-7 * (magnitude + t);
-        float next = t + max(here, least);
-        float there = side * krs_distance(origin + next * direction);
-        if (there <= 0.0) {
-            t = mix(t, next, here / max(here - there, 1e-30));
-            return t < last;
-        }
-        t = next;
-        here = there;
-    }
-    return false;
-}
-
-// The normal outside of the solid, by four distances as far away as half a pixel.
-vec3 krs_normal_at(vec3 p, float reach)
-{
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < 4; i++) {
-        vec3 corner = vec3(i == 0 || i == 3 ? 1.0 : -1.0, i == 1 || i == 3 ? 1.0 : -1.0, i == 2 || i == 3 ? 1.0 : -1.0);
-        sum += corner * krs_distance(p + 0.57735 * reach * corner);
-    }
-    return normalize(sum);
-}
-
 // The part of a light at p that nothing hides: a cone as wide as the light is looked along (Aaltonen 2018).
 // No step is shorter than "least" and a hundredth of the way.
 float krs_find_visible(vec3 p, vec3 toward, float last, float width, float least)

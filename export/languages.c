@@ -1,0 +1,176 @@
+/*
+ * languages.c: the text of a scene in the language of a target.
+ */
+#include "export/parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- texts that are cut ---- */
+
+/* Cuts the declaration of the block of parameters out of a text: the target declares it. */
+static void cut_block(char *text)
+{
+    char *from = strstr(text, "layout(std140"), *end = from ? strchr(from, '\n') : NULL;
+    if (end)
+        memmove(from, end + 1, strlen(end + 1) + 1);
+}
+
+/* Cuts comments and indents. */
+static void cut_comments(char *text)
+{
+    char *to = text;
+    for (const char *line = text; *line;) {
+        const char  *next = line + strcspn(line, "\n"), *word = line + strspn(line, " ");
+        const char  *comment = strstr(word, "//");
+        const size_t length  = comment && comment < next ? (size_t)(comment - word)
+                                                         : (size_t)(next - word);
+        const bool   ends    = *next == '\n';
+        memmove(to, word, length);
+        to += length;
+        if (length > 0 && ends)
+            *to++ = '\n';
+        line = next + ends;
+    }
+    *to = '\0';
+}
+
+static void cut(char *text)
+{
+    cut_block(text);
+    cut_comments(text);
+}
+
+/* ---- texts that are made of others ---- */
+
+/* Adds a text without sets, which Vulkan wants and OpenGL does not know: a macro stands for them. */
+static void add_with_sets(Text *to, const char *text)
+{
+    static const char set[] = "set = 0, ";
+    for (const char *at; (at = strstr(text, set)); text = at + sizeof set - 1) {
+        text_add_bytes(to, text, (size_t)(at - text));
+        text_add(to, "KRS_SET ");
+    }
+    text_add(to, text);
+}
+
+/* Adds a text with krs_parameter, which spirv-cross calls "_17_krs_parameter" in a block without a
+   name. */
+static void add_named(Text *to, const char *text, size_t length)
+{
+    static const char name[] = "krs_parameter";
+    const char       *end    = text + length;
+    for (const char *at; (at = strstr(text, name)) && at < end; text = at) {
+        const char *start = at - 1;
+        while (start > text && start[-1] >= '0' && start[-1] <= '9')
+            start--;
+        const bool numbered = at - start > 1 && start > text && at[-1] == '_' && start[-1] == '_';
+        text_add_bytes(to, text, (size_t)((numbered ? start - 1 : at) - text));
+        text_add(to, name);
+        at += sizeof name - 1;
+    }
+    text_add_bytes(to, text, (size_t)(end - text));
+}
+
+/* Adds a text whose entry point is left out where functions alone are included. */
+static void add_guarded(Text *to, const char *text)
+{
+    const char *entry = strstr(text, "\nvoid comp_main()");
+    add_named(to, text, entry ? (size_t)(entry + 1 - text) : strlen(text));
+    if (entry)
+        text_format(to, "#ifdef KRS_KERNEL\n%s#endif\n", entry + 1);
+}
+
+static KrsStatus make_glsl(const Export *export, Text *to, Text *why)
+{
+    (void)why;
+    add_with_sets(to, export->text);
+    return KRS_OK;
+}
+
+static KrsStatus make_hlsl(const Export *export, Text *to, Text *why)
+{
+    static const char *const options[] = {"--hlsl", "--shader-model", "50", NULL};
+    Text                     whole     = {.arena = to->arena};
+    const KrsStatus          status    = cross_compile(export->text, options, &whole, why);
+    if (status == KRS_OK)
+        add_guarded(to, whole.bytes);
+    return status;
+}
+
+static KrsStatus make_msl(const Export *export, Text *to, Text *why)
+{
+    static const char *const options[] = {"--msl",
+                                          "--msl-version",
+                                          "20100",
+                                          "--msl-texture-buffer-native",
+                                          "--msl-decoration-binding",
+                                          NULL};
+    return cross_compile(export->text, options, to, why);
+}
+
+static KrsStatus make_gdshader(const Export *export, Text *to, Text *why)
+{
+    (void)why;
+    Text prepared = {.arena = to->arena};
+    set_godot_parameters(&prepared, export);
+    add_without_globals(to, export->text, krs_parameter_slots(export->scene), prepared.bytes);
+    return KRS_OK;
+}
+
+/* ---- languages ---- */
+
+static const struct {
+    KrsTarget printed; /* what the library prints */
+    bool      lod;     /* with krs_distance_lod */
+    void (*cut)(char *text);
+    KrsStatus (*make)(const Export *export, Text *to, Text *why); /* NULL: it stays as it is */
+} languages[] = {
+    [EXPORT_IN_SHORT_ESSL] = {KRS_TARGET_ESSL, false, cut, NULL},
+    [EXPORT_IN_GLSL]       = {KRS_TARGET_GLSL, true, NULL, make_glsl},
+    [EXPORT_IN_ESSL]       = {KRS_TARGET_ESSL, true, NULL, NULL},
+    [EXPORT_IN_WGSL]       = {KRS_TARGET_WGSL, true, NULL, NULL},
+    [EXPORT_IN_HLSL]       = {KRS_TARGET_GLSL, true, NULL, make_hlsl},
+    [EXPORT_IN_MSL]        = {KRS_TARGET_GLSL, true, NULL, make_msl},
+    [EXPORT_IN_GDSHADER]   = {KRS_TARGET_ESSL, true, cut_block, make_gdshader},
+};
+
+/* Fills the template that another language is made of, in GLSL. */
+static const char *fill_source(const Export *export, Arena *arena)
+{
+    Text         text   = {.arena = arena};
+    ExportTarget target = *export->target;
+    Export       own    = *export;
+    target.words        = "vec#";
+    own.target          = &target;
+    export_fill(&text, &own, target.source);
+    return text.bytes;
+}
+
+KrsStatus find_scene_text(Export *export, Arena *arena, Text *why)
+{
+    const ExportLanguage language = export->target->language;
+    const KrsTextOptions how      = {.no_early_outs = !languages[language].lod};
+    char                *printed;
+    Text                 made = {.arena = arena};
+    KrsStatus status = krs_text(export->scene, languages[language].printed, &how, &printed);
+    if (status != KRS_OK)
+        return status;
+    if (languages[language].cut)
+        languages[language].cut(printed);
+    export->text = arena_copy_text(arena, printed, strlen(printed));
+    free(printed);
+    if (export->target->source)
+        export->text = fill_source(export, arena);
+    if (!languages[language].make)
+        return KRS_OK;
+    status       = languages[language].make(export, &made, why);
+    export->text = made.bytes;
+    return status;
+}
+
+void add_march(Text *to, const Export *export)
+{
+    text_add(to, languages[export->target->language].lod ? "krs_distance_lod(p, footprint)"
+                                                         : "krs_distance(p)");
+}
