@@ -37,6 +37,8 @@ typedef struct Opened {
     char          *uri, *path;
     json_int_t     version;
     bool           unread, unchecked; /* mistakes of reading, and of a check, are to be told */
+    char          *told;              /* the diagnostics that it was told last, of this version: */
+    json_int_t     told_version;
     struct Opened *next;
 } Opened;
 
@@ -97,8 +99,11 @@ static void send_error(Server *server, const json_t *id, int code, const char *m
     free(text);
 }
 
-static void send_diagnostics(Server *server, const Opened *opened, const char *found)
+/* Sends diagnostics, unless the editor was told the same of this version. */
+static void send_diagnostics(Server *server, Opened *opened, const char *found)
 {
+    if (opened->told && opened->told_version == opened->version && strcmp(opened->told, found) == 0)
+        return;
     json_t *word = json_string_nocheck(opened->uri);
     char   *uri  = word ? json_dumps(word, JSON_ENCODE_ANY) : NULL;
     send(server,
@@ -107,6 +112,9 @@ static void send_diagnostics(Server *server, const Opened *opened, const char *f
          uri ? uri : "\"\"", opened->version, found);
     free(uri);
     json_decref(word);
+    free(opened->told);
+    opened->told         = strdup(found);
+    opened->told_version = opened->version;
 }
 
 /* ---- parameters ---- */
@@ -170,6 +178,7 @@ static void remove_opened(Server *server, Opened *opened)
         server->checked = NULL;
     free(opened->uri);
     free(opened->path);
+    free(opened->told);
     free(opened);
 }
 
@@ -442,7 +451,7 @@ static bool begin_check(Server *server)
    that is known. */
 static void end_check(Server *server)
 {
-    const Opened *opened = server->checked;
+    Opened *opened = server->checked;
     if (!opened)
         return;
     const char *found = server->check.found;

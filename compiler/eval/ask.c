@@ -201,6 +201,12 @@ Value ask_definition(Asking *a, size_t file, const Syntax *const *nodes, size_t 
     }
 }
 
+size_t ask_mistakes(Asking *a)
+{
+    run_file(&a->e, a->e.scopes.items[0]);
+    return a->diags.errors - (is_stopped(&a->e) && a->diags.errors > 0 ? 1 : 0); /* the steps */
+}
+
 /* ---- words ---- */
 
 /* Adds a corner of a box with six digits: it is for orientation. */

@@ -23,6 +23,9 @@ Asking *asking_new(Files *files, const Loader *loader, Arena *arena, Arena *valu
 Value ask_value(Asking *asking, size_t file, const Syntax *const *nodes, size_t count);
 /* Returns the same of a statement that defines a name, of the name. */
 Value ask_definition(Asking *asking, size_t file, const Syntax *const *nodes, size_t count);
+/* Runs the statements of the first file, and returns how many mistakes they have, as far as it comes within the steps;
+   nothing else can be asked then. */
+size_t ask_mistakes(Asking *asking);
 /* Says what a value is: "1.5", "a shape, `sphere`, from [-1, -1, -1] to [1, 1, 1]"; nothing of VALUE_ERROR. */
 void ask_text(Asking *asking, Value value, Text *out);
 /* Returns the number of components of a vector; else 0 or 1. */

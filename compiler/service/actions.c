@@ -183,24 +183,65 @@ static bool may_vary(const Here *here, const Way *way)
     return way->count > 1 && here->file->syntax == way->items[0];
 }
 
+/* A range for a number. */
+typedef struct Reach {
+    double low, high;
+} Reach;
+
+/* Returns the text with a line at an offset and a name in place of a number behind it. */
+static Text with_param(const Here *here, uint32_t at, const Text *line, Span number,
+                       const char *name)
+{
+    const Source *source = here->source;
+    Text          text   = {.arena = &here->service->arena};
+    text_add_bytes(&text, source->text, at);
+    text_add(&text, line->bytes);
+    text_add_bytes(&text, source->text + at, number.start - at);
+    text_add(&text, name);
+    text_add_bytes(&text, source->text + number.end, source->length - number.end);
+    return text;
+}
+
+/* Finds the line of a param with the first range that makes no mistake; false: a count, for example, cannot be one. */
+static bool find_param_line(const Here *here, const Way *way, const char *name, uint32_t at,
+                            Text *line)
+{
+    const Syntax *number    = way->items[way->count - 1];
+    const char   *text      = here->source->text + number->span.start;
+    const int     length    = (int)(number->span.end - number->span.start);
+    const bool    angle     = length > 3 && memcmp(text + length - 3, "deg", 3) == 0;
+    const double  value     = angle ? strtod(text, NULL) : number->number[0];
+    const Reach   reaches[] = {
+          {0, 2 * value}, {0.5 * value, 2 * value}, {0.5 * value, angle ? 0.5 * (value + 180) : 1}};
+    const size_t before = mistakes_instead(here, here->source->text, here->source->length);
+    for (size_t i = 0; i < sizeof reaches / sizeof *reaches; i++) {
+        const Reach reach = value > 0 ? reaches[i] : (Reach){-1, 1};
+        if (reach.high < value || (value <= 0 && i > 0))
+            continue;
+        line->length = 0;
+        text_format(line, "param %s = %.*s in [", name, length, text);
+        text_number(line, reach.low);
+        text_add(line, angle ? "deg, " : ", ");
+        text_number(line, reach.high);
+        text_add(line, angle ? "deg];\n" : "];\n");
+        const Text changed = with_param(here, at, line, number->span, name);
+        if (mistakes_instead(here, changed.bytes, changed.length) <= before)
+            return true;
+    }
+    return false;
+}
+
 static void add_param(const Here *here, const Way *way, Json *json)
 {
-    const Syntax *number = way->items[way->count - 1];
-    Arena        *arena  = &here->service->arena;
-    const char   *use    = purpose(here, way);
-    const char   *name   = new_name(here, use && strlen(use) > 1 ? use : "size");
-    const char   *text   = here->source->text + number->span.start;
-    const int     length = (int)(number->span.end - number->span.start);
-    const bool    angle  = length > 3 && memcmp(text + length - 3, "deg", 3) == 0;
-    double        twice  = 2 * (angle ? strtod(text, NULL) : number->number[0]);
-    Text          line = {.arena = arena}, title = {.arena = arena};
+    const Syntax  *number = way->items[way->count - 1];
+    Arena         *arena  = &here->service->arena;
+    const char    *use    = purpose(here, way);
+    const char    *name   = new_name(here, use && strlen(use) > 1 ? use : "size");
+    const uint32_t at     = line_before(here, way->items[1]);
+    Text           line = {.arena = arena}, title = {.arena = arena};
+    if (!find_param_line(here, way, name, at, &line))
+        return;
     text_format(&title, "make this a param, `%s`", name);
-    text_format(&line, "param %s = %.*s in [", name, length, text);
-    text_add(&line, twice > 0 ? "0" : "-1");
-    text_add(&line, angle ? "deg, " : ", ");
-    text_number(&line, twice > 0 ? twice : 1);
-    text_add(&line, angle ? "deg];\n" : "];\n");
-    const uint32_t at = line_before(here, way->items[1]);
     begin_action(here, json, title.bytes, "refactor.extract", NULL);
     add_edit(here, json, at, at, line.bytes);
     add_edit(here, json, number->span.start, number->span.end, name);

@@ -105,6 +105,67 @@ Analysis *analyse_instead(Service *service, const Document *document, const char
     return &service->probe;
 }
 
+static bool ends_with(const char *name, size_t length, const char *ending)
+{
+    return length > strlen(ending) &&
+           memcmp(name + length - strlen(ending), ending, strlen(ending)) == 0;
+}
+
+static void add_neighbour(Service *service, const char *path, const char *wanted)
+{
+    size_t      length;
+    const char *text = find_document(service, path) ? NULL : supply(service, path, &length);
+    if (!text || !memmem(text, length, wanted, strlen(wanted)))
+        return;
+    Document *found = calloc(1, sizeof *found);
+    if (found) {
+        found->path         = strdup(path);
+        found->text         = strndup(text, length);
+        found->length       = found->text ? strlen(found->text) : 0;
+        found->next         = service->neighbours;
+        service->neighbours = found;
+    }
+    if (found && (!found->path || !found->text)) {
+        service->neighbours = found->next;
+        found->next         = NULL;
+        documents_free(&found);
+    }
+}
+
+Document *find_neighbours(Service *service, const char *path)
+{
+    enum { MOST = 500 };
+    const char  *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const size_t start  = (size_t)(name - path);
+    const char  *folder = arena_copy_text(&service->arena, path, start > 1 ? start - 1 : start);
+    const char  *names = service->host.list ? service->host.list(service->host.user, folder) : NULL;
+    names = names && !service->neighbours ? arena_copy_text(&service->arena, names, strlen(names))
+                                          : "";
+    for (int count = 0; *names && count < MOST; count++) {
+        const size_t length = strcspn(names, "\n");
+        Text         own    = {.arena = &service->arena};
+        text_add_bytes(&own, path, start);
+        text_add_bytes(&own, names, length);
+        if (ends_with(names, length, ".krs"))
+            add_neighbour(service, own.bytes, name);
+        names += length + (names[length] == '\n');
+    }
+    return service->neighbours;
+}
+
+void documents_free(Document **documents)
+{
+    while (*documents) {
+        Document *document = *documents;
+        *documents         = document->next;
+        analysis_free(&document->analysis);
+        free(document->path);
+        free(document->uri);
+        free(document->text);
+        free(document);
+    }
+}
+
 const File *file_of(const Analysis *a, uint32_t source)
 {
     for (size_t i = 0; i < a->files.count; i++)
@@ -315,6 +376,13 @@ static Asking *ask_for(const Here *here)
     Service *s = here->service;
     return asking_new(&here->analysis->files, &here->analysis->loader, &s->arena, &s->values,
                       &s->scratch);
+}
+
+size_t mistakes_instead(const Here *here, const char *text, size_t length)
+{
+    Here other     = *here;
+    other.analysis = analyse_instead(here->service, here->document, text, length);
+    return other.analysis->diags.errors + ask_mistakes(ask_for(&other));
 }
 
 Asked value_on(const Here *here, const Way *way)

@@ -31,6 +31,7 @@ typedef struct Document {
 struct Service {
     ServiceHost     host;
     Document       *documents;
+    Document       *neighbours; /* files beside one, until the next question */
     Memory          memory;
     Analysis        probe; /* of a text that is not quite that of a document */
     Arena           arena; /* of what an answer needs, until the next question */
@@ -57,6 +58,9 @@ typedef struct Here {
 Document *find_document(const Service *service, const char *path);
 /* Reads a document; what was read stays until a text changes. */
 Analysis *analyse(Service *service, Document *document);
+/* Reads files in the folder of a path that are not open and have its name in their texts: they may use it. */
+Document *find_neighbours(Service *service, const char *path);
+void      documents_free(Document **documents);
 /* Reads another text in place of that of a document, until the next question. */
 Analysis *analyse_instead(Service *service, const Document *document, const char *text,
                           size_t length);
@@ -99,6 +103,8 @@ typedef struct Asked {
     Asking *asking;
     Value   value;
 } Asked;
+/* Returns how many mistakes the statements of another text in place of the document's have. */
+size_t mistakes_instead(const Here *here, const char *text, size_t length);
 /* Returns the value of the last node of a way in the file. */
 Asked value_on(const Here *here, const Way *way);
 /* Returns the value of a definition anywhere in the files. */

@@ -24,15 +24,6 @@ Service *service_new(const ServiceHost *host)
     return s;
 }
 
-static void document_free(Document *document)
-{
-    analysis_free(&document->analysis);
-    free(document->path);
-    free(document->uri);
-    free(document->text);
-    free(document);
-}
-
 /* Forgets what was read: any text may use the one that changed. */
 void service_forget(Service *service)
 {
@@ -44,6 +35,7 @@ void service_forget(Service *service)
 static void begin(Service *service)
 {
     analysis_free(&service->probe);
+    documents_free(&service->neighbours);
     arena_free(&service->arena);
     arena_free(&service->values);
     arena_free(&service->scratch);
@@ -57,11 +49,7 @@ void service_free(Service *service)
     if (!service)
         return;
     begin(service);
-    while (service->documents) {
-        Document *document = service->documents;
-        service->documents = document->next;
-        document_free(document);
-    }
+    documents_free(&service->documents);
     free(service);
 }
 
@@ -176,7 +164,8 @@ void service_close(Service *service, const char *path)
         if (strcmp((*at)->path, own) == 0) {
             Document *closed = *at;
             *at              = closed->next;
-            document_free(closed);
+            closed->next     = NULL;
+            documents_free(&closed);
             service_forget(service);
             break;
         }

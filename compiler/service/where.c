@@ -128,15 +128,34 @@ static int compare_places(const void *a, const void *b)
     return left->span.start < right->span.start ? -1 : left->span.start > right->span.start;
 }
 
-/* Gathers all places of a target in the documents that are open and the files that these use, by
-   paths and offsets. */
+typedef void UseOther(const Here *here, const Analysis *a, const Target *target, void *user);
+
+/* Calls for what is read of each document that is open but for this one, and of files beside the target that may use
+   it. */
+static void each_other(const Here *here, const Target *target, UseOther *call, void *user)
+{
+    Service *service = here->service;
+    for (Document *other = service->documents; other; other = other->next)
+        if (other != here->document)
+            call(here, analyse(service, other), target, user);
+    if (here->analysis->sources.items[target->syntax->name_span.source].library)
+        return;
+    for (Document *other = find_neighbours(service, target->path); other; other = other->next)
+        call(here, analyse(service, other), target, user);
+}
+
+static void gather_other(const Here *here, const Analysis *a, const Target *target, void *user)
+{
+    gather_from(here, a, target, user);
+}
+
+/* Gathers all places of a target in the documents that are open, the files that these use, and those
+   beside it that use it, by paths and offsets. */
 static Places gather(const Here *here, const Target *target)
 {
     Places places = {0};
     gather_from(here, here->analysis, target, &places);
-    for (Document *other = here->service->documents; other; other = other->next)
-        if (other != here->document)
-            gather_from(here, analyse(here->service, other), target, &places);
+    each_other(here, target, gather_other, &places);
     if (places.count)
         qsort(places.items, places.count, sizeof *places.items, compare_places);
     return places;
@@ -274,8 +293,23 @@ static bool same_meanings(const Here *here, const Analysis *after, const Places 
     return true;
 }
 
+/* Tells whether one of some documents, or a file that it uses, has a name. */
+static bool has_name(const Here *here, Document *documents, const char *word)
+{
+    for (Document *other = documents; other; other = other->next) {
+        const Analysis *a = analyse(here->service, other);
+        for (size_t i = 0; i < a->files.count; i++)
+            for (size_t k = 0; !a->files.items[i]->library && k < a->files.items[i]->uses.count;
+                 k++)
+                if (strcmp(a->files.items[i]->uses.items[k].name, word) == 0)
+                    return true;
+    }
+    return false;
+}
+
 /* Tells whether the new name hides no other, and is hidden by none, in the document where the definition and its uses
-   are.  Where these are in several files, the new name must be new in all that are open. */
+   are.  Where these are in several files, the new name must be new in all that are
+   looked at. */
 static bool is_safe(const Here *here, const Places *places, const char *word)
 {
     Meaning meaning;
@@ -283,20 +317,47 @@ static bool is_safe(const Here *here, const Places *places, const char *word)
     for (size_t i = 0; i < places->count; i++)
         alone = alone && strcmp(places->items[i].source->name, here->source->name) == 0;
     if (!alone) {
-        for (const Document *other = here->service->documents; other; other = other->next) {
-            const Analysis *a = analyse(here->service, (Document *)other);
-            for (size_t i = 0; i < a->files.count; i++)
-                for (size_t k = 0; !a->files.items[i]->library && k < a->files.items[i]->uses.count;
-                     k++)
-                    if (strcmp(a->files.items[i]->uses.items[k].name, word) == 0)
-                        return false;
-        }
-        return !find_meaning(here->analysis, word, here->offset, &meaning);
+        return !has_name(here, here->service->documents, word) &&
+               !has_name(here, here->service->neighbours, word) &&
+               !find_meaning(here->analysis, word, here->offset, &meaning);
     }
     const Text text = renamed_text(here, here->source, places, word);
     return same_meanings(here,
                          analyse_instead(here->service, here->document, text.bytes, text.length),
                          places, word);
+}
+
+static bool has_unread(const Analysis *a, const File *file)
+{
+    for (size_t i = 0; i < a->diags.count; i++)
+        if (a->diags.items[i]->code < DIAG_UNKNOWN_NAME &&
+            a->diags.items[i]->span.source == file->source)
+            return true;
+    return false;
+}
+
+/* Tells whether the name stands where a text cannot be read, so that nobody knows what it means. */
+static bool is_unread(const File *file, const Source *source, const char *name)
+{
+    for (size_t i = 0; i < file->tokens.count; i++) {
+        const Token *token  = &file->tokens.items[i];
+        const bool   member = token->span.start > 0 && source->text[token->span.start - 1] == '.';
+        if (token->kind == TOKEN_NAME && !member && strcmp(token->name, name) == 0 &&
+            !find_use(file, token->span.start))
+            return true;
+    }
+    return false;
+}
+
+static void find_unread(const Here *here, const Analysis *a, const Target *target, void *user)
+{
+    bool *found = user;
+    (void)here;
+    for (size_t i = 0; i < a->files.count && !*found; i++) {
+        const File   *file   = a->files.items[i];
+        const Source *source = &a->sources.items[file->source];
+        *found = !source->library && has_unread(a, file) && is_unread(file, source, target->name);
+    }
 }
 
 void answer_rename(const Here *here, const ServiceQuestion *about, Json *json)
@@ -310,6 +371,14 @@ void answer_rename(const Here *here, const ServiceQuestion *about, Json *json)
         return;
     }
     const Places places = gather(here, &target);
+    bool         unread = false;
+    find_unread(here, here->analysis, &target, &unread);
+    each_other(here, &target, find_unread, &unread);
+    if (unread) {
+        refuse_question(here,
+                        "a statement that cannot be read has this name, too: mend that first");
+        return;
+    }
     if (!is_safe(here, &places, about->word)) {
         refuse_question(here, "names would mean something else then: another thing is called so");
         return;

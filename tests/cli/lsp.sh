@@ -5,7 +5,7 @@
 # where it is built, must give the same answers.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 22
+plan 23
 LC_ALL=C
 export LC_ALL XDG_CACHE_HOME="$work/cache"
 
@@ -183,6 +183,24 @@ if command -v python3 >/dev/null; then
 else
     skip "a storm of messages" "no python3"
 fi
+
+# ---- once ----
+
+# Mistakes of the first are told when the second has been checked behind it.  What comes is read while it is written.
+# shellcheck disable=SC2094
+{
+    begin
+    open_text untitled:second 'show sphere(1);\n'
+    open_text untitled:first 'show sphere(1;\n'
+    tries=0
+    while [ $tries -lt 300 ] && ! grep -q 'untitled:second' raw 2>/dev/null; do
+        sleep 0.1
+        tries=$((tries + 1))
+    done
+    end
+} | timeout 60 "$krs" lsp >raw 2>err
+[ "$(grep -o '"params":{"uri":"untitled:first"' raw | wc -l)" -eq 1 ] && grep -q E0103 raw && grep -q untitled:second raw
+result $? "what reading and a check both find is told once"
 
 # ---- an editor, and the library of another ----
 

@@ -188,6 +188,64 @@ static void files_that_are_open_count(void **state)
     close_text(&asked);
 }
 
+static void names_that_cannot_be_read_are_not_changed(void **state)
+{
+    (void)state;
+    static const char *const unread[] = {"let d = a +;", "show box([a, 1 2]);", "show a a;",
+                                         "camera { eye: [a }", "let 3 = a;"};
+    for (size_t i = 0; i < sizeof unread / sizeof *unread; i++) {
+        char text[100];
+        snprintf(text, sizeof text, "let a@ = 1;\n%s\n", unread[i]);
+        Asked asked = open_text(text);
+        assert_null(renamed(&asked, "c"));
+        expect_in(service_refusal(asked.service), "cannot be read");
+        close_text(&asked);
+    }
+    /* What is left of a statement is read, and members have names of their own. */
+    Asked asked = open_text("let a@ = 1;\nlet b = a;\nshow sphere(a;\nshow v.a +;\n");
+    expect_in(renamed(&asked, "c"), RANGE(2, 12, 13));
+    close_text(&asked);
+}
+
+/* A folder of files that are not open. */
+static const char *const beside[][2] = {{"user.krs", "use \"scene.krs\";\nshow ball(2);\n"},
+                                        {"other.krs", "def ball(r) = sphere(r);\nshow ball(3);\n"},
+                                        {"notes.txt", "use \"scene.krs\";\nshow ball(4);\n"}};
+
+static const char *list_beside(void *user, const char *folder)
+{
+    (void)user;
+    return *folder ? NULL : "user.krs\nother.krs\nnotes.txt\nmore/\n";
+}
+
+static const char *read_beside(void *user, const char *path, size_t *length)
+{
+    (void)user;
+    for (size_t i = 0; i < sizeof beside / sizeof *beside; i++)
+        if (strcmp(beside[i][0], path) == 0) {
+            *length = strlen(beside[i][1]);
+            return beside[i][1];
+        }
+    return NULL;
+}
+
+static void files_beside_a_document_count(void **state)
+{
+    static const char        text[] = "def ball(r) = sphere(r);\n";
+    static const ServiceHost host   = {.list = list_beside, .read = read_beside};
+    (void)state;
+    Asked asked = {.service = service_new(&host), .about = {.path = "scene.krs", .from = {0, 5}}};
+    assert_true(service_open(asked.service, "scene.krs", NULL, text, strlen(text)));
+    assert_string_equal(service_answer(asked.service, "textDocument/references", &asked.about),
+                        "[{\"uri\":\"user.krs\",\"range\":" RANGE(1, 5, 9) "}]");
+    expect_in(renamed(&asked, "globe"), "\"user.krs\":[{\"range\":" RANGE(1, 5, 9));
+    /* An open text counts in place of the file. */
+    assert_true(service_open(asked.service, "user.krs", NULL, "show sphere(1);\n", 16));
+    assert_string_equal(service_answer(asked.service, "textDocument/references", &asked.about),
+                        "[]");
+    close_text(&asked);
+}
+
 /* ---- hover ---- */
 
 static void hover_tells_documentation_and_value(void **state)
@@ -359,7 +417,15 @@ static void numbers_become_params(void **state)
         "{\"range\":" RANGE(0, 0, 0) ",\"newText\":\"param radius = 0.5 in [0, 1];\\n\"},"
                                      "{\"range\":" RANGE(1, 12, 15) ",\"newText\":\"radius\"}");
     expect_answer(question, "let radius = 1;\nshow sphere(2@);\n", "param radius_2 = 2 in [0, 4];");
-    expect_answer(question, "camera { fov: 40d@eg }\n", "param fov = 40deg in [0deg, 80deg];");
+    expect_answer(question, "camera { fov: 40d@eg }\n", "param fov = 40deg in [20deg, 80deg];");
+    /* Ranges that the compiler takes, where there is one. */
+    expect_answer(question, "show sphere(1).scale(2@);\n", " = 2 in [1, 4];");
+    expect_answer(question, "camera { fov: 120d@eg }\n", "in [60deg, 150deg];");
+    expect_answer(question, "show sphere(0.1).move([1, 0, 0]).repeat_polar(7@);\n", "[]");
+    expect_answer(question, "show prism(5@, 1, 1);\n", "[]");
+    expect_answer(question, "let n = 5@;\nshow union([sphere(i) for i in 1..n]);\n", "[]");
+    expect_answer(question, "let a = 35d@eg;\nshow sphere(1).rotate([0, 1, 0], a);\n",
+                  " = 35deg in [0deg, 70deg];");
     expect_answer(question, "let a = [i for i in 0..8@];\n", "[]");
     expect_answer(question, "param a = 8@;\n", "[]");
 }
@@ -459,6 +525,8 @@ int main(void)
         cmocka_unit_test(definitions_are_found),
         cmocka_unit_test(references_are_found),
         cmocka_unit_test(names_change_where_nothing_else_does),
+        cmocka_unit_test(names_that_cannot_be_read_are_not_changed),
+        cmocka_unit_test(files_beside_a_document_count),
         cmocka_unit_test(files_that_are_open_count),
         cmocka_unit_test(hover_tells_documentation_and_value),
         cmocka_unit_test(long_values_are_given_up),
