@@ -122,9 +122,25 @@ def dtype_of(name: str) -> np.dtype:
     return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": ffi.sizeof(name)})
 
 
+def block(values: Any, what: str, dtype: Any = np.float64) -> np.ndarray:
+    """Numbers as one block; an array that is such is not copied."""
+    try:
+        return np.ascontiguousarray(values, dtype=dtype)
+    except (TypeError, ValueError) as reason:
+        raise errors.ArgumentError(f"{what} must be numbers, in rows of one length: {reason}") from None
+
+
+def vector(values: Any, count: int, what: str) -> np.ndarray:
+    """So many numbers."""
+    array = np.ravel(block(values, what))
+    if array.size != count:
+        raise errors.ArgumentError(f"{what} must have {count} numbers, not {array.size}")
+    return array
+
+
 def rows(values: Any, columns: int, what: str, dtype: Any = np.float64) -> np.ndarray:
     """Vectors as one block; an array that is such is not copied."""
-    array = np.ascontiguousarray(values, dtype=dtype)
+    array = block(values, what, dtype)
     if array.ndim == 0 or array.shape[-1] != columns:
         raise errors.ArgumentError(f"{what} must be an array of vectors of {columns}, not of shape {array.shape}")
     return array
@@ -171,7 +187,7 @@ def fill(struct: Any, values: dict[str, Any], what: str) -> Any:
         if kind.kind == "struct":
             fill(getattr(struct, member), value, f"`{member}`")
         elif kind.kind == "array":
-            setattr(struct, member, [float(v) for v in np.ravel(value)])
+            setattr(struct, member, vector(value, kind.length, f"`{member}`").tolist())
         else:
             setattr(struct, member, _choice(kind, value, member) if kind.kind == "enum"
                     else bool(value) if kind.cname == "_Bool" else value)
@@ -217,7 +233,8 @@ class Progress:
         self.pointer = ffi.callback("bool(void *, double)", self._tell, error=False, onerror=self._keep)
 
     def _tell(self, _user: Any, done: float) -> bool:
-        return self._callback is None or self._callback(done) is not False
+        answer = None if self._callback is None else self._callback(done)
+        return bool(answer) if isinstance(answer, (bool, np.bool_)) else True
 
     def _keep(self, _kind: Any, exception: BaseException, _trace: Any) -> None:
         self.raised = exception
@@ -227,12 +244,17 @@ _kinds = {lib.KRS_BAD_ARGUMENT: errors.ArgumentError, lib.KRS_NO_DEVICE: errors.
           lib.KRS_OUT_OF_MEMORY: errors.MemoryLimit, lib.KRS_INTERRUPTED: errors.Interrupted}
 
 
+# What is known without asking what was done.
+_messages = {lib.KRS_OUT_OF_MEMORY: "memory has run out, or the limit of an option is reached",
+             lib.KRS_INTERRUPTED: "`progress` returned False, which ends the work"}
+
+
 def check(status: int, message: str, progress: Progress | None = None) -> None:
-    """Raises what a status means."""
+    """Raises what a status means; `message` is that of an argument that cannot be, and of failures that have no other."""
     if progress is not None and progress.raised is not None:
         raise progress.raised
     if status != lib.KRS_OK:
-        raise _kinds.get(status, errors.InternalError)(message)
+        raise _kinds.get(status, errors.InternalError)(_messages.get(status, message))
 
 
 def make(function: Any, owner: Any, struct: Any, kind: str, message: str, progress: Progress | None = None) -> Any:

@@ -243,9 +243,11 @@ def render(scene: Scene, size: tuple[int, int] | None = None, *, camera: int | s
     done = Progress(progress)
     given = dict(options)
     if size is not None:
-        given.update(width=int(size[0]), height=int(size[1]))
+        width, height = native.vector(size, 2, "`size`, a width and a height,")
+        given.update(width=int(width), height=int(height))
     if crop is not None:
-        given["crop"] = dict(zip(("x", "y", "width", "height"), crop))
+        place = native.vector(crop, 4, "`crop`")
+        given["crop"] = {name: int(number) for name, number in zip(("x", "y", "width", "height"), place)}
     moved = None
     if isinstance(camera, Camera):
         moved = camera._struct

@@ -58,7 +58,8 @@ class Camera:
 
     @staticmethod
     def _argument(value: Any) -> Any:
-        return ffi.NULL if value is None else [float(v) for v in value] if np.ndim(value) else value
+        return (ffi.NULL if value is None else value if np.ndim(value) == 0 else
+                native.vector(value, 3, "a place or a direction").tolist())
 
     def __setattr__(self, name: str, value: Any) -> None:
         native.fill(self._struct, {name: value}, "a camera")
@@ -308,7 +309,10 @@ class Scene:
 
     @zones.setter
     def zones(self, balls: ArrayLike) -> None:
-        zones = np.array(balls, dtype=np.float64).reshape(-1, 4)
+        zones = native.block(balls, "zones").copy()
+        if zones.size % 4 or (zones.size and zones.shape[-1] != 4):
+            raise ArgumentError(f"zones must be an array of balls [x, y, z, radius], not of shape {zones.shape}")
+        zones = zones.reshape(-1, 4)
         with self._state.lock:
             self._state.set_zones(zones)
         zones.flags.writeable = False
@@ -479,8 +483,12 @@ class Scene:
         >>> hits.hit, hits.t[0]
         (array([ True, False]), 8.0)
         """
-        starts, along = np.broadcast_arrays(np.asarray(origins, np.float64), np.asarray(directions, np.float64))
-        starts, along = native.rows(starts, 3, "origins"), native.rows(along, 3, "directions")
+        starts, along = native.rows(origins, 3, "origins"), native.rows(directions, 3, "directions")
+        try:
+            starts, along = map(np.ascontiguousarray, np.broadcast_arrays(starts, along))
+        except ValueError:
+            raise ArgumentError(f"origins of shape {starts.shape} and directions of shape {along.shape} make no rays: "
+                                "there must be as many of both, or one of either") from None
         hits = np.zeros(starts.shape[:-1], HIT)
         self._ask(device, lib.krs_raycast_sized, lib.krs_device_raycast_sized,
                   "numbers must be finite, directions not 0, and `farthest` and `tolerance` not negative",
@@ -494,7 +502,7 @@ class Scene:
         """Options of what is made of solids: a component by its name, and a box that is looked at."""
         within = options.pop("within", None)
         if within is not None:
-            low, high = within
+            low, high = native.vector(within, 6, "`within`, two corners of a box,").reshape(2, 3)
             options.update(within=True, low=low, high=high)
         component = options.get("component", 0)
         if isinstance(component, str):
@@ -510,8 +518,8 @@ class Scene:
         """A closed mesh within an error of the surface; 0: a 200th of the longest side of the box.
 
         Options are members of KrsMeshOptions: `component`, a name or a number from 1; `within`, two corners of a box, for
-        what has no end; `even`, `simplify`, `draft` and so on.  `progress` is called with the part that is done; it ends
-        the work by False.
+        what has no end; `even`, `simplify`, `draft` and so on.  `progress` is called with the part that is done; False
+        ends the work, with krs.Interrupted.
 
         >>> ball = compile("show sphere(1);").mesh(0.02)
         >>> ball.vertices.shape[1], bool(abs(ball.volume - 4.18879) < 0.1)

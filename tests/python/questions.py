@@ -94,6 +94,37 @@ class Questions(unittest.TestCase):
                 call()
             self.assertGreater(len(str(said.exception)), 15)
 
+    def test_sizes(self):
+        """arrays of wrong sizes are refused in words of the caller, wherever they go"""
+        scene, camera = krs.compile("show sphere(1);"), krs.compile("show sphere(1);").camera()
+
+        def set_eye(eye):
+            camera.eye = eye
+
+        def set_zones(zones):
+            scene.zones = zones
+        for call, words in (
+                (lambda: scene.distance([[0, 0, 1], [2, 3]]), "points must be numbers, in rows of one length"),
+                (lambda: scene.distance("abc"), "points must be numbers"),
+                (lambda: scene.raycast([[0, 0, 5]] * 3, [[0, 0, 1]] * 2), r"origins of shape \(3, 3\) and directions of shape \(2, 3\)"),
+                (lambda: scene.raycast([0, 0], [0, 0, 1]), "origins must be an array of vectors of 3"),
+                (lambda: scene.raycast([0, 0, 1], [[0], [1]]), "directions must be an array of vectors of 3"),
+                (lambda: set_eye([1, 2]), "`eye` must have 3 numbers, not 2"), (lambda: set_eye([1, 2, 3, 4]), "`eye` must have 3 numbers, not 4"),
+                (lambda: camera.aim([1, 2]), "must have 3 numbers, not 2"), (lambda: camera.fit([0, 0, 0], [1, 1], 1), "must have 3 numbers, not 2"),
+                (lambda: scene.mesh(0.1, within=[0, 1]), "`within`, two corners of a box, must have 6 numbers, not 2"),
+                (lambda: scene.section([0, 0], [0, 1, 0]), "`point` must have 3 numbers, not 2"),
+                (lambda: scene.render(8), "`size`, a width and a height, must have 2 numbers, not 1"),
+                (lambda: scene.render((8, 8), crop=(1, 2, 3)), "`crop` must have 4 numbers, not 3"),
+                (lambda: set_zones([1, 2, 3]), "zones must be an array of balls")):
+            with self.assertRaisesRegex(krs.ArgumentError, words):
+                call()
+        camera.eye = (0, 0, 7)
+        self.assertEqual(camera.eye.tolist(), [0, 0, 7])
+        set_zones([[0, 0, 9, 1]])
+        self.assertEqual(scene.zones.shape, (1, 4))
+        set_zones([])
+        self.assertEqual(scene.zones.shape, (0, 4))
+
 
 class Values(unittest.TestCase):
     text = """

@@ -76,8 +76,11 @@ class Meshes(unittest.TestCase):
         scene, told = krs.compile(RING), []
         scene.mesh(0.02, progress=told.append)
         self.assertTrue(told and all(0 <= done <= 1 for done in told) and told == sorted(told))
-        with self.assertRaises(krs.Interrupted):
+        with self.assertRaisesRegex(krs.Interrupted, "`progress` returned False"):
             scene.mesh(0.02, progress=lambda done: False)
+        with self.assertRaises(krs.Interrupted):
+            scene.mesh(0.02, progress=lambda done: np.float64(done) < 0)
+        self.assertGreater(scene.mesh(0.05, progress=lambda done: 0).volume, 0)  # 0 is an answer of other functions
 
         def interrupt(done):
             raise KeyboardInterrupt
