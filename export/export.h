@@ -29,6 +29,8 @@ typedef enum ExportLanguage {
     EXPORT_IN_WGSL,
     EXPORT_IN_HLSL,
     EXPORT_IN_MSL,
+    EXPORT_IN_HLSL_PART,   /* parameters are a global that a shader fills */
+    EXPORT_IN_HLSL_STRUCT, /* all is in a struct, for a text within a function */
     EXPORT_IN_GDSHADER
 } ExportLanguage;
 

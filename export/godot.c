@@ -8,7 +8,7 @@
 
 /* ---- parameters ---- */
 
-static double encode(double light)
+double encode_light(double light)
 {
     return light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
 }
@@ -27,7 +27,7 @@ static void add_uniform(Text *to, const Export *export, size_t i)
     double             value[4];
     for (int k = 0; k < 4; k++) {
         value[k] = (double)export->block[1 + i][k];
-        value[k] = color && k < 3 ? encode(value[k]) : value[k];
+        value[k] = color && k < 3 ? encode_light(value[k]) : value[k];
     }
     text_add(to, "uniform ");
     if (parameter.components == 1)
@@ -181,7 +181,7 @@ static void add_light_node(Text *to, const KrsLight *light, size_t number)
         add_transform(to, light->vector, up, nowhere);
     text_add(to, "light_color = Color(");
     for (int k = 0; k < 3; k++)
-        text_format(to, "%.6g, ", most > 0 ? encode(light->color[k] / most) : 0);
+        text_format(to, "%.6g, ", most > 0 ? encode_light(light->color[k] / most) : 0);
     text_format(to, "1)\nlight_energy = %.6g\nshadow_enabled = true\n", most / 3.141592653589793);
     if (light->positional)
         text_add(to, "omni_range = 1000.0\nomni_attenuation = 2.0\n");

@@ -88,14 +88,69 @@ static KrsStatus make_glsl(const Export *export, Text *to, Text *why)
     return KRS_OK;
 }
 
+static const char *const hlsl_options[] = {"--hlsl", "--shader-model", "50", NULL};
+
 static KrsStatus make_hlsl(const Export *export, Text *to, Text *why)
 {
-    static const char *const options[] = {"--hlsl", "--shader-model", "50", NULL};
-    Text                     whole     = {.arena = to->arena};
-    const KrsStatus          status    = cross_compile(export->text, options, &whole, why);
+    Text            whole  = {.arena = to->arena};
+    const KrsStatus status = cross_compile(export->text, hlsl_options, &whole, why);
     if (status == KRS_OK)
         add_guarded(to, whole.bytes);
     return status;
+}
+
+/* Returns where an item of HLSL ends, behind its last line: a struct, a function, or a line. */
+static const char *end_of_hlsl(const char *from)
+{
+    const char *line  = strchr(from, '\n'),
+               *close = line && line[1] == '{' ? strstr(from, "\n}") : line;
+    const char *end   = close && close != line ? strchr(close + 1, '\n') : close;
+    return end ? end + 1 : from + strlen(from);
+}
+
+static bool begins(const char *text, const char *word)
+{
+    return strncmp(text, word, strlen(word)) == 0;
+}
+
+/* Returns the text without an entry point and what that alone needs. */
+static const char *without_entry(const Text *whole)
+{
+    static const char group[] = "static const uint3 gl_WorkGroupSize";
+    char *entry = strstr(whole->bytes, "\nvoid comp_main()"), *size = strstr(whole->bytes, group);
+    if (entry)
+        entry[1] = '\0';
+    if (size)
+        memmove(size, end_of_hlsl(size), strlen(end_of_hlsl(size)) + 1);
+    return whole->bytes;
+}
+
+static KrsStatus make_hlsl_part(const Export *export, Text *to, Text *why)
+{
+    Text            whole  = {.arena = to->arena};
+    const KrsStatus status = cross_compile(export->text, hlsl_options, &whole, why);
+    if (status == KRS_OK)
+        text_add(to, without_entry(&whole));
+    return status;
+}
+
+/* Adds HLSL in which globals and functions are members of a struct; constants and structs stand before it. */
+static KrsStatus make_hlsl_struct(const Export *export, Text *to, Text *why)
+{
+    static const char fixed[] = "static const ", global[] = "static ";
+    Text              whole = {.arena = to->arena}, members = whole;
+    const KrsStatus   status = make_hlsl_part(export, &whole, why);
+    if (status != KRS_OK)
+        return status;
+    for (const char *from = whole.bytes, *end; *from; from = end) {
+        end              = end_of_hlsl(from);
+        const bool outer = begins(from, fixed) || begins(from, "struct ");
+        const bool own   = !outer && begins(from, global);
+        text_add_bytes(outer ? to : &members, from + (own ? sizeof global - 1 : 0),
+                       (size_t)(end - from) - (own ? sizeof global - 1 : 0));
+    }
+    text_format(to, "struct Krs\n{\n%s};\n", members.bytes);
+    return KRS_OK;
 }
 
 static KrsStatus make_msl(const Export *export, Text *to, Text *why)
@@ -126,13 +181,15 @@ static const struct {
     void (*cut)(char *text);
     KrsStatus (*make)(const Export *export, Text *to, Text *why); /* NULL: it stays as it is */
 } languages[] = {
-    [EXPORT_IN_SHORT_ESSL] = {KRS_TARGET_ESSL, false, cut, NULL},
-    [EXPORT_IN_GLSL]       = {KRS_TARGET_GLSL, true, NULL, make_glsl},
-    [EXPORT_IN_ESSL]       = {KRS_TARGET_ESSL, true, NULL, NULL},
-    [EXPORT_IN_WGSL]       = {KRS_TARGET_WGSL, true, NULL, NULL},
-    [EXPORT_IN_HLSL]       = {KRS_TARGET_GLSL, true, NULL, make_hlsl},
-    [EXPORT_IN_MSL]        = {KRS_TARGET_GLSL, true, NULL, make_msl},
-    [EXPORT_IN_GDSHADER]   = {KRS_TARGET_ESSL, true, cut_block, make_gdshader},
+    [EXPORT_IN_SHORT_ESSL]  = {KRS_TARGET_ESSL, false, cut, NULL},
+    [EXPORT_IN_GLSL]        = {KRS_TARGET_GLSL, true, NULL, make_glsl},
+    [EXPORT_IN_ESSL]        = {KRS_TARGET_ESSL, true, NULL, NULL},
+    [EXPORT_IN_WGSL]        = {KRS_TARGET_WGSL, true, NULL, NULL},
+    [EXPORT_IN_HLSL]        = {KRS_TARGET_GLSL, true, NULL, make_hlsl},
+    [EXPORT_IN_MSL]         = {KRS_TARGET_GLSL, true, NULL, make_msl},
+    [EXPORT_IN_HLSL_PART]   = {KRS_TARGET_GLSL, true, cut_block, make_hlsl_part},
+    [EXPORT_IN_HLSL_STRUCT] = {KRS_TARGET_GLSL, true, cut_block, make_hlsl_struct},
+    [EXPORT_IN_GDSHADER]    = {KRS_TARGET_ESSL, true, cut_block, make_gdshader},
 };
 
 /* Fills the template that another language is made of, in GLSL. */

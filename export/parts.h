@@ -79,6 +79,21 @@ void add_half(Text *to, const Export *export);
 void add_center_numbers(Text *to, const Export *export);
 void add_size_numbers(Text *to, const Export *export);
 
+/* Returns a number of a colour picker for one of light. */
+double encode_light(double light);
+
+/* ---- unity.c ---- */
+void add_unity_properties(Text *to, const Export *export);
+void add_unity_uniforms(Text *to, const Export *export);
+void add_unity_parameters(Text *to, const Export *export);
+void add_unity_fields(Text *to, const Export *export);
+void add_unity_sets(Text *to, const Export *export);
+void add_unity_class(Text *to, const Export *export);
+void add_unity_center(Text *to, const Export *export);
+void add_unity_half(Text *to, const Export *export);
+void add_unreal_inputs(Text *to, const Export *export);
+void add_unreal_parameters(Text *to, const Export *export);
+
 /* ---- cross.c ---- */
 /* Adds GLSL in another language, by spirv-cross.  KRS_BAD_ARGUMENT: `why` says what is missing. */
 KrsStatus cross_compile(const char *glsl, const char *const *options, Text *to, Text *why);

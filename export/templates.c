@@ -121,6 +121,16 @@ static const struct Piece {
               {"half", add_half},
               {"center_numbers", add_center_numbers},
               {"size_numbers", add_size_numbers},
+              {"unity_properties", add_unity_properties},
+              {"unity_uniforms", add_unity_uniforms},
+              {"unity_parameters", add_unity_parameters},
+              {"unity_fields", add_unity_fields},
+              {"unity_sets", add_unity_sets},
+              {"unity_class", add_unity_class},
+              {"unity_center", add_unity_center},
+              {"unity_half", add_unity_half},
+              {"unreal_inputs", add_unreal_inputs},
+              {"unreal_parameters", add_unreal_parameters},
               {"godot_uniforms", add_godot_uniforms},
               {"godot_nodes", add_godot_nodes}};
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # export.sh: `krs export`: files are complete shaders, numbers of the scene are in them, and what cannot be is refused.
 . "$(dirname "$0")/common.sh"
-plan 29
+plan 35
 
 cat >ball.krs <<'END'
 param radius = 0.5 in [0.1, 1];
@@ -126,9 +126,50 @@ result $? "a scene for Godot names its shader and has its box"
 grep -q 'uniform float param_radius : hint_range(0.1, 1.0) = 0.5;' moon.gdshader && grep -q 'uniform vec3 param_tint : source_color = vec3(1.0, 0.50' moon.gdshader
 result $? "parameters are sliders and colours there"
 
+# ---- Unity and Unreal: HLSL with stand-ins for what the engines have ----
+
+if command -v spirv-cross >/dev/null && command -v glslangValidator >/dev/null; then
+    run export ball.krs --to unity
+    [ "$status" -eq 0 ] && head -n 1 ball.shader | grep -q untested && head -n 1 ball.hlsl | grep -q untested && head -n 1 ball.cs | grep -q untested
+    result $? "Unity has three files, which say that it has not seen them"
+    { cat "$root/tests/cli/export_unity.hlsl"
+      sed -n '/---- functions/,/---- passes/p' ball.shader | grep -v '#include'
+      sed -n '/^struct KrsSurface/,$p' ball.hlsl | sed '$d'; } >parts
+    # The functions come where they are included.
+    { sed '/CBUFFER_END/q' parts; sed -n '/^struct KrsSurface/,$p' parts; sed '1,/CBUFFER_END/d; /^struct KrsSurface/,$d' parts; } >unity.hlsl
+    for entry in KrsLit KrsDepthOnly KrsShadow; do
+        glslangValidator -D -V -S frag -e $entry -o unity.spv unity.hlsl >>out 2>&1 || break
+    done
+    [ "$entry" = KrsShadow ] && glslangValidator -D -V -S vert -e KrsBox -o unity.spv unity.hlsl >out 2>err
+    result $? "glslang compiles its passes"
+    run export ball.krs --to unreal
+    { sed '/---- the node/q' ball.unreal.hlsl
+      echo 'float3 Place, Eye, Ahead, param_tint; float Pixel, Seconds, param_radius;'
+      echo 'float3 node(out float3 Normal3, out float3 Emission, out float Rough, out float Metal, out float Opacity, out float Away) {'
+      sed '1,/---- the node/d' ball.unreal.hlsl
+      echo '} float4 main(float4 at : SV_Position) : SV_Target { float3 n, e; float r, m, o, a; float3 c = node(n, e, r, m, o, a); return float4(c + n + e, r + m + o + a); }'; } >unreal.hlsl
+    glslangValidator -D -V -S frag -e main -o unreal.spv unreal.hlsl >out 2>err
+    result $? "glslang compiles a node for Unreal"
+    sed 's/krs_seen(krs_eye/krs_seem(krs_eye/' unreal.hlsl >wrong.hlsl
+    ! glslangValidator -D -V -S frag -e main -o unreal.spv wrong.hlsl >/dev/null 2>&1
+    result $? "and refuses it with a wrong name"
+    grep -q 'param_radius: a number, 0.1 to 1, here 0.5' ball.unreal.hlsl && head -n 1 ball.unreal.hlsl | grep -q untested
+    result $? "its inputs have their ranges"
+else
+    for what in "Unity has three files" "glslang compiles its passes" "glslang compiles a node for Unreal" "and refuses it" "its inputs have their ranges"; do
+        skip "$what" "no spirv-cross or glslangValidator"
+    done
+fi
+if command -v mcs >/dev/null && [ -e ball.cs ]; then
+    mcs -target:library -out:unity.dll ball.cs "$root/tests/cli/export_unity.cs" >out 2>err
+    result $? "a compiler of C# takes the script for Unity, with a stand-in for that"
+else
+    skip "a compiler of C# takes the script for Unity" "no mcs, or no file"
+fi
+
 run export ball.krs
 said 2 "--to shadertoy" "what for must be said"
 run export ball.krs --to blender
-said 2 "shadertoy, three, glsl, essl, wgsl, hlsl, msl or godot" "other programs are told"
+said 2 "shadertoy, three, glsl, essl, wgsl, hlsl, msl, godot, unity or unreal" "other programs are told"
 run export ball.krs --to three -o missing/folder/x.mjs
 ended 73 "a folder that is not there is told"
