@@ -18,14 +18,19 @@ static const char *first_path(const Options *options)
     return path.bytes;
 }
 
-/* What comes before the endings of all files: the first has that of the target, or another. */
+static bool ends_with(const char *path, const char *ending)
+{
+    const size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcmp(path + length - tail, ending) == 0;
+}
+
+/* Returns what comes before the endings of all files: the first has that of the target, or another. */
 static const char *find_base(const Options *options, const char *path)
 {
-    const char  *ending = export_ending((ExportId)options->export_to);
-    const size_t length = strlen(path), tail = strlen(ending);
-    const char  *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash + 1 : path, '.');
-    if (length > tail && strcmp(path + length - tail, ending) == 0)
-        return arena_copy_text(options->arena, path, length - tail);
+    const char *ending = export_ending((ExportId)options->export_to);
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash + 1 : path, '.');
+    if (ends_with(path, ending))
+        return arena_copy_text(options->arena, path, strlen(path) - strlen(ending));
     return dot && dot > path ? arena_copy_text(options->arena, path, (size_t)(dot - path)) : path;
 }
 
@@ -76,7 +81,11 @@ KrsStatus command_export(Options *options)
     if (options->outputs.count > 1)
         return say_usage(options, "export wants one file");
     const char *path   = first_path(options);
-    KrsStatus   status = check_output(options, path);
+    const char *ending = export_ending((ExportId)options->export_to);
+    if (export_file_count((ExportId)options->export_to) > 1 && !ends_with(path, ending))
+        return say_usage(options, "files for %s name each other: -o must end with %s",
+                         export_targets[options->export_to].name, ending);
+    KrsStatus status = check_output(options, path);
     if (status == KRS_OK)
         status = scene_open(options, options->files.items[0], &scene);
     if (status != KRS_OK)

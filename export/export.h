@@ -57,8 +57,9 @@ typedef struct ExportFiles {
     size_t      count, capacity;
 } ExportFiles;
 
-/* Tells how a target's first file ends. */
+/* Tells how a target's first file ends, and how many there are beside tables. */
 const char *export_ending(ExportId target);
+size_t      export_file_count(ExportId target);
 
 typedef struct ExportWish {
     ExportId    target;

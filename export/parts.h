@@ -33,7 +33,8 @@ double find_rise(const KrsCamera *camera);
 void find_upright(const KrsCamera *camera, double up[3]);
 /* Returns how far from the eye there may be something. */
 double find_farthest(const Export *export);
-/* Finds the box of the scene; where that has no end, what the camera may see. */
+/* Finds the box of the scene; where that has no end, a hundred times as far as
+   the camera looks. */
 void find_box(const Export *export, double low[3], double high[3]);
 void add_constants(Text *to, const Export *export);
 void add_farthest(Text *to, const Export *export);

@@ -35,6 +35,14 @@ const char *export_ending(ExportId target)
     return files_of_targets[i].ending;
 }
 
+size_t export_file_count(ExportId target)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < FILE_ROWS; i++)
+        count += files_of_targets[i].target == target;
+    return count;
+}
+
 /* ---- pieces of templates ---- */
 
 /* Adds a name that stands in comments and strings, so it has no end of a line. */
@@ -188,7 +196,10 @@ static void tell_tabled(const Export *export, Text *why)
         krs_texture(export->scene, 0, &texture);
         text_format(why, "the picture `%s` is", texture.file);
     }
-    text_format(why, " read from tables, which %s has no room for", export->target->name);
+    text_format(why,
+                " read from tables, which %s has no room for; `krs mesh` and `krs grid` write "
+                "triangles and samples",
+                export->target->name);
 }
 
 /* Tells whether the target cannot have the scene, and why, in words of its author. */

@@ -27,7 +27,10 @@ double find_farthest(const Export *export)
 
 void find_box(const Export *export, double low[3], double high[3])
 {
-    const double *eye = export->view.camera.eye, far = find_farthest(export);
+    const KrsCamera *camera = &export->view.camera;
+    const double    *eye = camera->eye, way = distance_between(eye, camera->target);
+    const double     far = fmin(find_farthest(export),
+                                100 * way); /* rays begin there, in single precision */
     for (int k = 0; k < 3; k++) {
         low[k]  = fmax(export->scene->program.low[k], eye[k] - far);
         high[k] = fmin(export->scene->program.high[k], eye[k] + far);

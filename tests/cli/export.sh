@@ -1,7 +1,7 @@
 #!/bin/sh
 # export.sh: `krs export`: files are complete shaders, numbers of the scene are in them, and what cannot be is refused.
 . "$(dirname "$0")/common.sh"
-plan 35
+plan 36
 
 cat >ball.krs <<'END'
 param radius = 0.5 in [0.1, 1];
@@ -120,6 +120,8 @@ fi
 run export ball.krs --to godot -o game/../moon.gdshader
 [ "$status" -ne 0 ]
 result $? "a folder that is not there is told of several files"
+run export ball.krs --to godot -o moon.shader
+said 2 "-o must end with .gdshader" "files that name each other have their endings"
 run export ball.krs --to godot -o moon.gdshader
 head -n 1 moon.gdshader | grep -q untested && grep -q 'path="res://moon.gdshader"' moon.tscn && grep -q 'size = Vector3(2, 2, 2)' moon.tscn
 result $? "a scene for Godot names its shader and has its box"

@@ -1,6 +1,6 @@
 // export.mjs KRS FOLDER [SCREENSHOTS]: what `krs export` writes draws in Chromium, and hits where `krs query` does.
 //
-// A module for three.js gives its material to a stand-in for that: what three.js puts before the text is put there.
+// A module for three.js is shown by that, beside a wall of its own; THREE is the folder of its package, and without it this is left out.
 // A file for Shadertoy is drawn as its page would do it; then a main of the test stores how far its rays go.
 // A shader for Godot gets what the engine has built in from the test.  Functions say distances at points; HLSL goes through
 // glslang and spirv-cross to WebGL.  KRS_EXPORT_ENGINES are the scenes for engines.
@@ -35,23 +35,8 @@ void main()
     krs_out = vec4(hit ? t : -1.0, krs_distance(krs_look[0]), 0.0, 1.0);
 }`;
 
-// What a module makes of a library that keeps what it is given.
-class Kept { constructor(...given) { this.given = given; this.value = given[0]; } }
-const standIn = { GLSL3: '300 es', RGBAFormat: 'RGBA', FloatType: 'FLOAT', RGIntegerFormat: 'RG_INTEGER', UnsignedIntType: 'UNSIGNED_INT',
-    ...Object.fromEntries(['Vector2', 'Vector4', 'ShaderMaterial', 'BufferAttribute', 'DataTexture'].map(name => [name, class extends Kept {}])),
-    Matrix4: class { }, Mesh: class { constructor(geometry, material) { Object.assign(this, { geometry, material }); } },
-    BufferGeometry: class { setAttribute() { } } };
-const threeHeader = '#version 300 es\nprecision highp float; precision highp int;\n#define varying in\nuniform vec3 cameraPosition;\n';
-
-// The matrix from clip space to the world of a camera, column by column, whose far plane is that far away.
-function toWorld([eye, ahead, right, up], near, far)
-{
-    const w = [0, 0, -(far - near) / (2 * far * near), (far + near) / (2 * far * near)];
-    return [[...right, 0], [...up, 0], eye.map((x, k) => x * w[2]).concat(w[2]), eye.map((x, k) => x * w[3] + ahead[k]).concat(w[3])].flat();
-}
-
 // In the page: draws a fragment shader; an answer of floats, or a picture that stays.
-function draw({ source, width, height, floats, look, vertex, block, uniforms = {}, tables = [] })
+function draw({ source, width, height, floats, look, block })
 {
     document.body.innerHTML = '<canvas></canvas>';
     document.body.style.margin = 0;
@@ -66,27 +51,12 @@ function draw({ source, width, height, floats, look, vertex, block, uniforms = {
         gl.attachShader(program, shader);
     };
     add(gl.FRAGMENT_SHADER, source);
-    add(gl.VERTEX_SHADER, vertex ?? '#version 300 es\nvoid main() { vec2 p = vec2(float(gl_VertexID << 1 & 2), float(gl_VertexID & 2)); gl_Position = vec4(2.0 * p - 1.0, 0, 1); }');
+    add(gl.VERTEX_SHADER, '#version 300 es\nvoid main() { vec2 p = vec2(float(gl_VertexID << 1 & 2), float(gl_VertexID & 2)); gl_Position = vec4(2.0 * p - 1.0, 0, 1); }');
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS))
         throw new Error(gl.getProgramInfoLog(program));
     gl.useProgram(program);
     gl.uniform3f(gl.getUniformLocation(program, 'iResolution'), width, height, 1);
-    for (const [name, numbers] of Object.entries(uniforms))
-        if (numbers.length === 16)
-            gl.uniformMatrix4fv(gl.getUniformLocation(program, name), false, numbers);
-        else
-            gl[numbers.length === 2 ? 'uniform2fv' : 'uniform4fv'](gl.getUniformLocation(program, name), numbers);
-    tables.forEach(({ name, data, width, height, format, type, internalFormat }, i) => {
-        gl.activeTexture(gl.TEXTURE0 + i);
-        gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-        gl.texStorage2D(gl.TEXTURE_2D, 1, gl[internalFormat], width, height);
-        const texels = type === 'FLOAT' ? new Float32Array(data) : new Uint32Array(data);
-        gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl[format], gl[type], texels);
-        for (const parameter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
-            gl.texParameteri(gl.TEXTURE_2D, parameter, gl.NEAREST);
-        gl.uniform1i(gl.getUniformLocation(program, name), i);
-    });
     if (block && gl.getProgramParameter(program, gl.ACTIVE_UNIFORM_BLOCKS) > 0) {
         gl.uniformBlockBinding(program, 0, 0);
         gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, gl.createBuffer());
@@ -140,24 +110,65 @@ function queried(scene, rays, studio)
     return stdout.trim().split('\n').map(line => /^[-\d]/.test(line) ? Number(line.split(' ')[0]) : Infinity);
 }
 
-// Tells whether the material of a module has a picture of what is there.
+// In the page: what three.js shows of a module, as rows of bytes from the bottom: alone, with a wall across the picture at each of some distances,
+// and with its first number at the other end of its range.
+async function showThree({ module, width, height, look, fov, walls })
+{
+    const THREE = await import('/three/three.module.js'), scene = await import(module);
+    const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true, antialias: false }), gl = renderer.getContext(), world = new THREE.Scene();
+    const far = Math.max(...walls) * 100, view = new THREE.PerspectiveCamera(fov * 180 / Math.PI, width / height, far / 1e5, far);
+    const [eye, ahead, , up] = look.map(v => new THREE.Vector3(...v));
+    renderer.setPixelRatio(1);
+    renderer.setSize(width, height, false);
+    view.position.copy(eye);
+    view.up.copy(up);
+    view.lookAt(eye.clone().add(ahead));
+    const made = scene.makeScene(THREE);
+    world.add(made.mesh);
+    made.setTime(0);
+    const shot = () => {
+        const bytes = new Uint8Array(4 * width * height);
+        renderer.render(world, view);
+        gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+        return Array.from(bytes);
+    };
+    world.background = new THREE.Color(0, 1, 0);
+    const shots = { alone: shot(), walls: [] };
+    const wall = new THREE.Mesh(new THREE.PlaneGeometry(far, far), new THREE.MeshBasicMaterial({ color: new THREE.Color(1, 0, 1), side: THREE.DoubleSide }));
+    world.add(wall);
+    for (const distance of walls) {
+        wall.position.copy(eye).addScaledVector(ahead, distance);
+        wall.quaternion.copy(view.quaternion);
+        shots.walls.push(shot());
+    }
+    world.remove(wall);
+    const number = made.parameters.find(p => p.value.length === 1 && p.low[0] !== null && p.high[0] !== null);
+    if (number) {
+        made.material.uniforms.krs_parameter.value[number.slot].x = number.value[0] === number.high[0] ? number.low[0] : number.high[0];
+        shots.changed = shot();
+    }
+    renderer.dispose();
+    return shots;
+}
+
+// Tells whether three.js shows a module where rays hit, before what is behind it and behind what is before it.
 async function tryThree(name, module, truth)
 {
-    const { material } = module.makeScene(standIn), { uniforms, vertexShader, fragmentShader } = material.given[0];
-    const numbers = { krs_parameter: uniforms.krs_parameter.value.flatMap(slot => slot.given), krs_size: [width, height],
-        krs_to_world: toWorld(lookOf(module.camera), 0.01, 1e4), krs_to_clip: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1] };
-    const tables = ['krs_rows', 'krs_cells'].filter(table => uniforms[table]).map(table => {
-        const { value } = uniforms[table], [data, across, down, format, type] = value.given;
-        return { name: table, data: Array.from(data), width: across, height: down, format, type, internalFormat: value.internalFormat };
-    });
+    const look = lookOf(module.camera), rays = raysOf(look), depths = truth.map((t, i) => t * dot(rays[i].slice(3), look[1]));
+    const sorted = depths.filter(Number.isFinite).sort((a, b) => a - b), middle = sorted[sorted.length >> 1];
+    const walls = [0.5 * sorted[0], middle, 2 * sorted.at(-1)];
     try {
-        const picture = await page.evaluate(draw, { source: threeHeader + fragmentShader, vertex: threeHeader.replace('in\n', 'out\n') + vertexShader,
-            width, height, uniforms: numbers, tables });
-        const wrong = truth.filter((t, i) => (t !== Infinity) !== (picture[4 * i + 3] > 0));
-        ok(new Set(picture).size > 20 && wrong.length <= 0.02 * truth.length, `${name} is drawn for three.js where it is`,
-            `${wrong.length} of ${truth.length} differ`);
+        const shots = await three.evaluate(showThree, { module: `/scenes/${name}.three.mjs`, width, height, look, fov: module.camera.fov, walls });
+        const has = (shot, i, color) => color.every((byte, k) => shot[4 * i + k] === byte), green = [0, 255, 0], violet = [255, 0, 255];
+        const wrong = depths.filter((depth, i) => has(shots.alone, i, green) === Number.isFinite(depth));
+        ok(new Set(shots.alone).size > 20 && wrong.length <= 0.02 * truth.length, `three.js shows ${name} where it is`, `${wrong.length} of ${truth.length} differ`);
+        const hidden = walls.map((distance, k) => depths.filter((depth, i) => Math.abs(depth - distance) > 0.005 * distance && has(shots.walls[k], i, violet) !== depth > distance));
+        ok(hidden.every(list => list.length <= 0.02 * truth.length), `${name} hides in three.js what is behind it, and is hidden by what is before it`,
+            `${hidden.map(list => list.length)} of ${truth.length} differ`);
+        if (shots.changed)
+            ok(shots.changed.some((byte, i) => byte !== shots.alone[i]), `${name} changes with a uniform in three.js`);
     } catch (error) {
-        ok(false, `${name} is drawn for three.js`, error.message.slice(0, 2000));
+        ok(false, `three.js shows ${name}`, error.message.slice(0, 2000));
     }
 }
 
@@ -193,12 +204,13 @@ const precise = '#version 300 es\nprecision highp float; precision highp int; pr
 const godot = `
 #define TIME 0.0
 uniform vec3 krs_look[4];
+const float krs_size = SIZE;
 mat4 PROJECTION_MATRIX, VIEW_MATRIX, MODEL_MATRIX;
 vec3 VERTEX, ALBEDO, EMISSION, NORMAL, LIGHT_VERTEX;
 vec2 VIEWPORT_SIZE;
 float ROUGHNESS, METALLIC, DEPTH;
 `;
-const godotMain = `
+const godotMain = parallel => `
 out vec4 krs_out;
 void main()
 {
@@ -206,15 +218,12 @@ void main()
     vec3 back = -krs_look[1], right = normalize(krs_look[2]), up = normalize(krs_look[3]);
     VIEW_MATRIX = transpose(mat4(vec4(right, -dot(right, krs_look[0])), vec4(up, -dot(up, krs_look[0])), vec4(back, -dot(back, krs_look[0])), vec4(0.0, 0.0, 0.0, 1.0)));
     MODEL_MATRIX = mat4(vec4(1.0, 0.0, 0.0, 0.0), vec4(0.0, 1.0, 0.0, 0.0), vec4(0.0, 0.0, 1.0, 0.0), vec4(KRS_CENTER, 1.0));
-    PROJECTION_MATRIX = mat4(0.0);
-    PROJECTION_MATRIX[0][0] = 1.0 / length(krs_look[2]);
-    PROJECTION_MATRIX[1][1] = 1.0 / length(krs_look[3]);
-    PROJECTION_MATRIX[2] = vec4(0.0, 0.0, -1.0, -1.0);
-    PROJECTION_MATRIX[3][2] = -0.1;
+    vec2 half_size = vec2(length(krs_look[2]), length(krs_look[3]))${parallel ? ' * krs_size' : ''};
+    PROJECTION_MATRIX = mat4(vec4(1.0 / half_size.x, 0.0, 0.0, 0.0), vec4(0.0, 1.0 / half_size.y, 0.0, 0.0), ${parallel ? 'vec4(0.0, 0.0, -0.001, 0.0), vec4(0.0, 0.0, 0.0, 1.0)' : 'vec4(0.0, 0.0, -1.0, -1.0), vec4(0.0, 0.0, -0.1, 0.0)'});
     VIEWPORT_SIZE = size;
-    VERTEX = vec3(plane.x / PROJECTION_MATRIX[0][0], plane.y / PROJECTION_MATRIX[1][1], -1.0) * 10.0;
+    VERTEX = vec3(plane * half_size${parallel ? ', -1.0' : ' * 10.0, -10.0'});
     fragment();
-    krs_out = vec4(length(LIGHT_VERTEX), DEPTH, dot(NORMAL, NORMAL), 1.0);
+    krs_out = vec4(${parallel ? '-LIGHT_VERTEX.z' : 'length(LIGHT_VERTEX)'}, DEPTH - (${parallel ? '-0.001 * LIGHT_VERTEX.z' : '1.0 + 0.1 / LIGHT_VERTEX.z'}), dot(NORMAL, NORMAL), 1.0);
 }`;
 const withoutGodot = text => text.replace(/^(shader_type|render_mode).*$/gm, '')
     .replace(/^uniform (\w+ \w+)(?: : [^=]*)? = /gm, 'const $1 = ');
@@ -294,27 +303,37 @@ async function tryEngines(scene, name, camera)
     try {
         const text = fs.readFileSync(file, 'utf8'), rays = queried(scene, raysOf(look));
         ok(globals(text).length === 0 && globals(`${text}\nfloat a;`).length === 1, `${name} has no globals that change for Godot`, globals(text).join('; '));
-        const found = await page.evaluate(draw, { source: precise + godot + withoutGodot(text) + godotMain, width, height, floats: true, look: look.flat() });
-        const wrong = rays.filter((t, i) => t === Infinity ? found[4 * i + 3] > 0 : !(Math.abs(found[4 * i] - t) <= 0.002 * t));
-        ok(told.status === 0 && wrong.length <= 0.02 * rays.length, `${name} hits for Godot where the command says`, `${wrong.length} of ${rays.length} differ`);
+        // Rays of a camera, and those of a light that comes from there, which are parallel.
+        const size = Math.hypot(...minus(camera.eye, camera.target)), [eye, ahead, right, up] = look;
+        const parallel = raysOf(look).map((_, i) => [...eye.map((x, k) => x + size * ((2 * (i % width + 0.5) / width - 1) * right[k] +
+            (2 * (Math.floor(i / width) + 0.5) / height - 1) * up[k])), ...ahead]);
+        for (const [what, isParallel, expected] of [['hits', false, rays], ['casts shadows', true, queried(scene, parallel)]]) {
+            const found = await page.evaluate(draw, { source: precise + godot.replace('SIZE', size.toFixed(9)) + withoutGodot(text) + godotMain(isParallel), width, height, floats: true, look: look.flat() });
+            const wrong = expected.filter((t, i) => t === Infinity ? found[4 * i + 3] > 0
+                : !(Math.abs(found[4 * i] - t) <= 0.002 * t && Math.abs(found[4 * i + 1]) < 1e-4 && Math.abs(found[4 * i + 2] - 1) < 1e-3));
+            ok(told.status === 0 && wrong.length <= 0.02 * expected.length, `${name} ${what} for Godot where the command says, with depth and normal`, `${wrong.length} of ${expected.length} differ`);
+        }
     } catch (error) {
         ok(false, `${name} is drawn for Godot`, told.stderr + error.message.slice(0, 2000));
     }
 }
 
 const browser = await launch({ args: ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader'] }), page = await browser.open('about:blank');
-const server = await serve({ '/': 'tests/web/pages', '/scenes/': folder });
+const server = await serve({ '/': 'tests/web/pages', '/scenes/': folder, ...(process.env.THREE ? { '/three/': path.join(process.env.THREE, 'build') } : {}) });
 let wgpu = await browser.open(`${server.url}/wgsl.html`);
 if (await wgpu.until('window.ready') === 'no adapter')
     wgpu = null;
+const three = process.env.THREE ? await browser.open(`${server.url}/wgsl.html`) : null;
 const engines = (process.env.KRS_EXPORT_ENGINES ?? '').split(' ');
 for (const scene of process.env.KRS_EXPORT_SCENES.split(' ')) {
     const name = path.basename(scene, '.krs'), three = `${folder}/${name}.three.mjs`, toyFile = `${folder}/${name}.shadertoy.glsl`;
     const told = run('export', scene, '--to', 'three', '--studio', 'off', '-o', three);
     const module = told.status === 0 ? await import(path.resolve(three)) : null;
     const camera = module?.camera, truth = camera && queried(scene, raysOf(lookOf(camera)));
-    if (module)
+    if (module && three)
         await tryThree(name, module, truth);
+    else if (module)
+        ok(true, `three.js shows ${name} # SKIP npm has no three`);
     else
         ok(told.status === 1 && /cannot export/.test(told.stderr), `${name} is refused for three.js, with a reason`, told.stderr);
     if (module && engines.includes(scene))
@@ -348,7 +367,8 @@ for (const scene of process.env.KRS_EXPORT_SCENES.split(' ')) {
         ok(false, `${name} draws`, error.message.slice(0, 2000));
     }
 }
-ok(page.errors.length === 0, 'the page has no errors', page.errors.join('\n'));
+const errors = [...page.errors, ...(three?.errors ?? [])];
+ok(errors.length === 0, 'the pages have no errors', errors.join('\n'));
 await browser.close();
 server.close();
 console.log(`1..${count}`);
