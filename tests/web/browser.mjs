@@ -86,11 +86,14 @@ class Browser {
             this.#sessions.get(sessionId)?.take(method, params);
     }
 
-    async open(url, { width = 1280, height = 720 } = {}) {
+    // `inWorkers` is a script that workers run before their own; `page.workers` are asked by `evaluate`.
+    async open(url, { width = 1280, height = 720, inWorkers } = {}) {
         const { targetId } = await this.send('Target.createTarget', { url: 'about:blank' });
         const { sessionId } = await this.send('Target.attachToTarget', { targetId, flatten: true });
         const page = new Page(this, sessionId, targetId);
         this.#sessions.set(sessionId, page);
+        if (inWorkers)
+            await page.prepareWorkers(inWorkers);
         for (const domain of ['Page', 'Runtime', 'Log'])
             await page.send(`${domain}.enable`);
         await page.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false });
@@ -112,6 +115,7 @@ class Browser {
 class Page {
     errors = [];
     said = [];
+    workers = [];
     #loaded = null;
 
     constructor(browser, session, target) { Object.assign(this, { browser, session, target }); }
@@ -120,7 +124,9 @@ class Page {
 
     take(method, params) {
         const text = args => args.map(arg => arg.value ?? arg.description ?? '').join(' ');
-        if (method === 'Page.loadEventFired')
+        if (method === 'Target.attachedToTarget')
+            this.prepareWorker(params);
+        else if (method === 'Page.loadEventFired')
             this.#loaded?.();
         else if (method === 'Runtime.consoleAPICalled')
             (params.type === 'error' ? this.errors : this.said).push(text(params.args));
@@ -128,6 +134,16 @@ class Page {
             this.errors.push(params.exceptionDetails.exception?.description ?? params.exceptionDetails.text);
         else if (method === 'Log.entryAdded' && params.entry.level === 'error')
             this.errors.push(`${params.entry.text} ${params.entry.url ?? ''}`);
+    }
+
+    async prepareWorkers(script) {
+        this.prepareWorker = async ({ sessionId, targetInfo }) => {
+            const worker = new Page(this.browser, sessionId, targetInfo.targetId);
+            this.workers.push(worker);
+            await worker.evaluate(script);
+            await worker.send('Runtime.runIfWaitingForDebugger');
+        };
+        await this.send('Target.setAutoAttach', { autoAttach: true, waitForDebuggerOnStart: true, flatten: true });
     }
 
     async go(url) {

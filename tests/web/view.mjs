@@ -12,7 +12,14 @@ const report = (good, what) => {
 
 const server = await serve({ '/': 'tests/web/pages', '/krs/': process.argv[2], '/examples/': 'examples' });
 const browser = await launch();
-const page = await browser.open(`${server.url}/view.html`);
+// What workers do is logged: messages, programs that are linked, tiles that are read, pictures that begin.
+const page = await browser.open(`${server.url}/view.html`, { inWorkers: `
+    self.log = [];
+    for (const [name, what] of Object.entries({ linkProgram: 'program', readPixels: 'tile', clearBufferfv: 'begin' })) {
+        const call = WebGL2RenderingContext.prototype[name];
+        WebGL2RenderingContext.prototype[name] = function (...values) { log.push(what); return call.apply(this, values); };
+    }
+    addEventListener('message', ({ data }) => log.push(data.call));` });
 await page.until('window.krs');
 
 // The mean colour of a part of the picture as it is shown, from 0 to 255.
@@ -47,6 +54,42 @@ const started = await page.evaluate(async text => {
 }, scene);
 report(started.ok && started.middle[0] > 100 && started.middle[0] > 2 * started.middle[1] && started.corner.every(c => c < 8),
     `a red ball is in the middle (${started.middle.map(Math.round)}), and black around it`);
+
+// The log of the worker that draws, since it was asked last.
+async function logged() {
+    const logs = await Promise.all(page.workers.map(worker => worker.evaluate('log.splice(0)')));
+    return logs.find(log => log.some(what => what === 'state' || what === 'scene')) ?? [];
+}
+await logged();
+const followed = await page.evaluate(async text => {
+    const first = await view.update(text.replace('[0, 0, 5]', '[0, 0, 4.5]')), { change } = await view.update(text);
+    await settled();
+    return [first.change, change];
+}, scene);
+const edited = await logged();
+report(followed.join() === 'values,values' && edited.includes('state') && !edited.includes('program'),
+    `an edit of a number, also the first, links no program (${followed})`);
+await page.evaluate(async text => {
+    await view.update(text.replace('sphere(radius)', '(sphere(radius) | box([0.5, 2, 0.5]))'));
+    await settled();
+    await view.update(text);
+    await settled();
+}, scene);
+report((await logged()).filter(what => what === 'program').length >= 4, 'an edit of the structure links some');
+
+report(await page.evaluate(async text => {
+    const wide = text.replace('fov: 40deg', 'fov: 100deg');
+    await view.update(wide);
+    await view.update(wide.replace('radius = 1 in [0.2, 1.5]', 'radius = 4 in [3, 4.5]'));
+    await settled();
+    const large = await mean(30, 40, 10, 10);
+    await view.update(text.replace('camera {', 'image { exposure: -20 } camera {'));
+    await settled();
+    const dark = await mean(75, 40, 10, 10);
+    await view.update(text);
+    await settled();
+    return large[0] > 30 && dark[0] < 8;
+}, scene), 'edits of numbers make things larger, and pictures darker');
 
 report(await page.evaluate(async () => {
     await view.scene.set('radius', 0.2);
@@ -119,8 +162,8 @@ const heavy = await page.evaluate(async () => {
     view.style.width = '640px';
     view.style.height = '360px';
     view.samples = 64;
-    frames.length = 0;
     await view.update(await (await fetch('/examples/12-fractals.krs')).text(), { name: '12-fractals.krs', base: '/examples/' });
+    frames.length = 0;
     while (!(frames.length > 0 && frames.at(-1).samples > 0))
         await new Promise(resolve => view.addEventListener('krs-frame', resolve, { once: true }));
     const coarse = frames.at(-1);
@@ -142,6 +185,21 @@ const heavy = await page.evaluate(async () => {
     return { coarse, page, moved: performance.now() - begun };
 });
 report(heavy.coarse.samples < 1, `a scene that is heavy is coarse at first (${heavy.coarse.samples} of a sample, after ${Math.round(heavy.coarse.elapsed)} ms)`);
+const light = 'show box([1, 1, 1]);';
+await page.evaluate(async text => {
+    view.samples = 100000;
+    await view.update(text, { name: 'box.krs' });
+    frames.length = 0;
+    while (!(frames.at(-1)?.samples >= 2 && frames.at(-1).wanted === 100000))
+        await new Promise(resolve => view.addEventListener('krs-frame', resolve, { once: true }));
+}, light);
+await logged();
+await page.evaluate(() => new Promise(resolve => {
+    view.camera = { fov: 0.9 * view.camera.fov };
+    view.addEventListener('krs-frame', ({ detail }) => detail.samples < 1 && resolve());
+}));
+const moves = await logged(), moved = moves.indexOf('state'), old = moves.slice(moved, moves.indexOf('begin', moved)).filter(what => what === 'tile').length;
+report(moved >= 0 && moves.slice(0, moved).includes('tile') && old <= 1, `a picture that goes on for long ends when the camera moves (${old} tiles later)`);
 console.log(`# the page was held up for ${Math.round(heavy.page)} ms at most; a moved camera showed after ${Math.round(heavy.moved)} ms`);
 
 report(page.errors.length === 0, `the console has no errors ${page.errors.join('; ').slice(0, 500)}`);

@@ -179,6 +179,8 @@ export interface Scene extends EventTarget {
     readonly diagnostics: Diagnostic[];
     /** The last text that was accepted. */
     readonly text: string;
+    /** That of the options. */
+    readonly name: string;
     readonly parameters: readonly Parameter[];
     readonly components: readonly Component[];
     /** At the values of parameters, at time 0. */

@@ -230,6 +230,8 @@ export class KrsViewElement extends HTMLElement {
     #update(what) {
         this.#restartReady();
         this.#dirty = what === 'scene' || this.#dirty === 'scene' ? 'scene' : 'state';
+        if (what === 'scene')
+            this.#first = this.#number + 1;
         if (!this.#asking && this.#painter && this.#scene?.ok)
             this.#send();
     }
@@ -255,7 +257,6 @@ export class KrsViewElement extends HTMLElement {
         this.#shown = this.#named(view.cameras);
         this.#sent = { parameters, values, tables: { version: tables.version }, view, about: { image, shaders }, time };
         const state = this.#stateAt({ tables });
-        this.#first = text ? state.number : this.#first;
         this.#paint(text ? { call: 'scene', scene: { key: text, text, about: scene.about }, state } : { call: 'state', state });
     }
 
