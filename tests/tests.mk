@@ -60,7 +60,7 @@ BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/se
 # else, and `make test-all` both (docs/building.md says what costs what).  The sanitizers, clang and the fuzzers belong
 # to it, as they compile everything once more, the judge of meshes, whose headers take a minute, and what
 # compares switches of `krs help render --all` with each other.
-LONG        := $(addprefix tests/, web/many.sh web/pictures.sh web/wgsl_many.sh web/exports.sh web/playground_long.sh web/python.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
+LONG        := $(addprefix tests/, web/many.sh web/pictures.sh web/wgsl_many.sh web/replay.sh web/exports.sh web/playground_long.sh web/python.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
                $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_csg.sh mesh_judges.sh outputs.sh \
                pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
                $(addprefix unit/, arguments compiled instance_grid drivers film light_groups memory mesh_proofs methods noise paths \
@@ -114,6 +114,11 @@ $(B)/tests/%: $(B)/tests/%.o $(LINKED)
 # What node compares with.
 $(B)/tests/web/texts $(B)/tests/web/points: %: %.o $(B)/tests/oracle/oracle.a $(LINKED)
 	@$(LINK)
+# record.c is called before these.
+RECORDED    := layouts_create buffer_create buffer_destroy set_bind shader_load_all gpu_copy gpu_fill gpu_write gpu_dispatch \
+               gpu_dispatch_counted gpu_finish
+$(B)/tests/web/record: %: %.o $(LINKED)
+	@$(LINK) $(RECORDED:%=-Wl,--wrap=%)
 IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_open_surfaces
 $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o $(B)/tests/oracle/pov_trees.o \
         $(B)/import.a $(LINKED)
@@ -205,7 +210,7 @@ test:      SET := short
 test-long: SET := long
 test-all:  SET := all
 # What scripts of tests/web use, which run side by side, where test-deps could install what builds it.  They tell what is missing.
-web        = $(if $(and $(shell command -v emcc),$(shell command -v node)),web $(B)/tests/web/texts $(B)/tests/web/points)
+web        = $(if $(and $(shell command -v emcc),$(shell command -v node)),web $(B)/tests/web/texts $(B)/tests/web/points $(B)/tests/web/record)
 played     = $(if $(and $(web),$(shell command -v npm),$(shell command -v esbuild)),playground kernels)
 scripts    = $(call scripts_$(SET), $(1))
 programs   = $(patsubst %,$(B)/%,$(programs_$(SET)))
