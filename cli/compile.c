@@ -7,6 +7,7 @@
 
 #include "cli/shell/commands.h"
 #include "cli/shell/console.h"
+#include "cli/info.h"
 #include "cli/modules.h"
 #include "cli/shell/supervise.h"
 
@@ -66,50 +67,56 @@ static KrsStatus write_tables(const Options *options, const KrsScene *scene, con
     return status;
 }
 
-static void add_table_json(Text *json, const char *name, const TableFile *file, size_t texels,
+static void add_table_json(Json *json, const char *name, const TableFile *file, size_t texels,
                            KrsTarget target)
 {
-    Text path = {.arena = json->arena};
+    Text path = {.arena = json->text.arena};
     text_format(&path, "%s%s", name, file->ending);
-    text_format(json, "{\"name\": \"%s\", ", file->buffer);
-    if (target == KRS_TARGET_ESSL)
-        text_format(json, "\"width\": %d, ", KRS_TEXTURE_WIDTH);
-    else
-        text_format(json, "\"%s\": 0, \"binding\": %u, ",
-                    target == KRS_TARGET_WGSL ? "group" : "set", file->binding);
-    text_format(json, "\"format\": \"%s\", \"texels\": %zu, \"file\": ", file->format, texels);
-    text_json(json, path.bytes);
-    text_add(json, "}");
+    json_open(json, NULL, "{");
+    json_string(json, "name", file->buffer);
+    if (target == KRS_TARGET_ESSL) {
+        json_whole(json, "width", KRS_TEXTURE_WIDTH);
+    } else {
+        json_whole(json, target == KRS_TARGET_WGSL ? "group" : "set", 0);
+        json_whole(json, "binding", file->binding);
+    }
+    json_string(json, "format", file->format);
+    json_whole(json, "texels", texels);
+    json_string(json, "file", path.bytes);
+    json_close(json, "}");
 }
 
-static void add_tables_json(Text *json, const KrsScene *scene, const char *name, KrsTarget target)
+static void add_tables_json(Json *json, const KrsScene *scene, const char *name, KrsTarget target)
 {
-    size_t rows = krs_table_rows(scene), cells = krs_table_cells(scene);
-    text_format(json, ", \"table_rows\": %zu, \"table_cells\": %zu, \"texel_buffers\": [", rows,
-                cells);
+    const size_t rows = krs_table_rows(scene), cells = krs_table_cells(scene);
+    json_whole(json, "table_rows", rows);
+    json_whole(json, "table_cells", cells);
+    json_open(json, "texel_buffers", "[");
     if (cells > 0) {
         add_table_json(json, name, &rows_file, rows, target);
-        text_add(json, ", ");
         add_table_json(json, name, &cells_file, cells, target);
     }
-    text_add(json, "]");
+    json_close(json, "]");
 }
 
-static void add_textures_json(Text *json, const KrsScene *scene)
+static void add_textures_json(Json *json, const KrsScene *scene)
 {
-    text_add(json, ", \"textures\": [");
+    json_open(json, "textures", "[");
     for (size_t i = 0; i < krs_texture_count(scene); i++) {
         KrsTexture texture;
         krs_texture(scene, i, &texture);
-        text_add(json, i ? ", {\"file\": " : "{\"file\": ");
-        text_json(json, texture.file);
-        text_format(json, ", \"width\": %u, \"height\": %u, \"levels\": %u, ", texture.width,
-                    texture.height, texture.levels);
-        text_format(json, "\"texel\": \"%s\", \"buffer\": \"%s\", \"header\": %zu, \"first\": %zu}",
-                    texture.gray ? "RG32F" : "RGBA16F", cells_file.buffer, texture.header,
-                    texture.first);
+        json_open(json, NULL, "{");
+        json_string(json, "file", texture.file);
+        json_whole(json, "width", texture.width);
+        json_whole(json, "height", texture.height);
+        json_whole(json, "levels", texture.levels);
+        json_string(json, "texel", texture.gray ? "RG32F" : "RGBA16F");
+        json_string(json, "buffer", cells_file.buffer);
+        json_whole(json, "header", texture.header);
+        json_whole(json, "first", texture.first);
+        json_close(json, "}");
     }
-    text_add(json, "]");
+    json_close(json, "]");
 }
 
 /* ---- all files ---- */
@@ -117,22 +124,21 @@ static void add_textures_json(Text *json, const KrsScene *scene)
 static KrsStatus write_description(const Options *options, const KrsScene *scene,
                                    const Modules *modules, const char *base, const char *name)
 {
-    Text json = {.arena = options->arena};
-    text_add(&json, "{\"name\": ");
-    text_json(&json, name);
-    text_add(&json, ", ");
+    Json json = {.text = {.arena = options->arena}, .spaced = true};
+    json_open(&json, NULL, "{");
+    json_string(&json, "name", name);
     info_add_json(&json, scene);
-    text_format(&json, ", \"parameter_slots\": %zu, \"value_slots\": %zu",
-                krs_parameter_slots(scene), krs_value_slots(scene));
+    json_whole(&json, "parameter_slots", krs_parameter_slots(scene));
+    json_whole(&json, "value_slots", krs_value_slots(scene));
     add_tables_json(&json, scene, name, (KrsTarget)options->language);
     add_textures_json(&json, scene);
-    text_add(&json, ", \"entries\": [");
-    for (size_t i = 0; i < modules->count; i++) {
-        text_add(&json, i == 0 ? "" : ", ");
+    json_open(&json, "entries", "[");
+    for (size_t i = 0; i < modules->count; i++)
         module_add_json(&json, &modules->items[i]);
-    }
-    text_add(&json, "]}\n");
-    return write_output_file(options, base, ".json", json.bytes, json.length);
+    json_close(&json, "]");
+    json_close(&json, "}");
+    text_add(&json.text, "\n");
+    return write_output_file(options, base, ".json", json.text.bytes, json.text.length);
 }
 
 /* Writes the entry points, and what they call. */

@@ -8,6 +8,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/console.h"
 #include "cli/shell/supervise.h"
+#include "compiler/base/json.h"
 
 static const char *const kind_names[] = {[KRS_DEVICE_OTHER]      = "other",
                                          [KRS_DEVICE_CPU]        = "cpu",
@@ -37,20 +38,25 @@ static void print_text(const KrsDevice *devices, size_t count)
 
 static void print_json(Arena *arena, const KrsDevice *devices, size_t count)
 {
-    Text json = {.arena = arena};
-    text_add(&json, "{\"devices\": [");
+    Json json = {.text = {.arena = arena}, .spaced = true};
+    json_open(&json, NULL, "{");
+    json_open(&json, "devices", "[");
     for (size_t i = 0; i < count; i++) {
         Version version = unpack(devices[i].api_version);
-        text_format(&json, "%s{\"index\": %zu, \"name\": ", i == 0 ? "" : ", ", i);
-        text_json(&json, devices[i].name);
-        text_format(&json,
-                    ", \"kind\": \"%s\", \"vulkan\": \"%u.%u.%u\", \"usable\": %s, "
-                    "\"preferred\": %s}",
-                    kind_names[devices[i].kind], version.major, version.minor, version.patch,
-                    devices[i].usable ? "true" : "false", devices[i].preferred ? "true" : "false");
+        Text    vulkan  = {.arena = arena};
+        text_format(&vulkan, "%u.%u.%u", version.major, version.minor, version.patch);
+        json_open(&json, NULL, "{");
+        json_whole(&json, "index", i);
+        json_string(&json, "name", devices[i].name);
+        json_string(&json, "kind", kind_names[devices[i].kind]);
+        json_string(&json, "vulkan", vulkan.bytes);
+        json_truth(&json, "usable", devices[i].usable);
+        json_truth(&json, "preferred", devices[i].preferred);
+        json_close(&json, "}");
     }
-    text_add(&json, "]}");
-    puts(json.bytes);
+    json_close(&json, "]");
+    json_close(&json, "}");
+    puts(json.text.bytes);
 }
 
 KrsStatus command_devices(Options *options)

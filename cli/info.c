@@ -186,138 +186,134 @@ static void print_text(const KrsScene *scene)
     printf("\nhash %s\n", krs_scene_hash(scene));
 }
 
-static void add_bound(Text *json, const KrsBound *bound)
+static void add_bound(Json *json, const KrsBound *bound)
 {
-    text_format(json, "{\"depth\": %u, \"name\": ", bound->depth);
-    text_json(json, bound->name);
-    text_add(json, ", \"source\": ");
-    text_json(json, bound->source);
-    text_format(json, ", \"line\": %u, \"column\": %u, \"rule\": ", bound->line, bound->column);
-    text_json(json, bound->rule);
-    text_add(json, ", \"slope\": ");
-    json_number(json, bound->slope);
-    text_add(json, ", \"low\": ");
-    json_vector(json, bound->low, 3);
-    text_add(json, ", \"high\": ");
-    json_vector(json, bound->high, 3);
-    text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
-                bound->exact ? "true" : "false", bound->estimate ? "true" : "false", bound->levels);
-    json_number(json, bound->instances);
-    text_format(json, ", \"similar\": %u, \"same\": %zu}", bound->similar, bound->same);
+    json_open(json, NULL, "{");
+    json_whole(json, "depth", bound->depth);
+    json_string(json, "name", bound->name);
+    json_string(json, "source", bound->source);
+    json_whole(json, "line", bound->line);
+    json_whole(json, "column", bound->column);
+    json_string(json, "rule", bound->rule);
+    json_number(json, "slope", bound->slope);
+    json_numbers(json, "low", bound->low, 3);
+    json_numbers(json, "high", bound->high, 3);
+    json_truth(json, "exact", bound->exact);
+    json_truth(json, "estimate", bound->estimate);
+    json_whole(json, "levels", bound->levels);
+    json_number(json, "instances", bound->instances);
+    json_whole(json, "similar", bound->similar);
+    json_whole(json, "same", bound->same);
+    json_close(json, "}");
 }
 
 /* Adds the tree of a component as a list, parents first; `same` counts its entries from 1. */
-static void add_bounds(Text *json, const KrsScene *scene, size_t component)
+static void add_bounds(Json *json, const KrsScene *scene, size_t component)
 {
     size_t more, count = krs_bound_count(scene, component, &more);
-    text_add(json, ", \"shapes\": [");
+    json_open(json, "shapes", "[");
     for (size_t i = 0; i < count; i++) {
         KrsBound bound;
         krs_bound(scene, component, i, &bound);
-        text_add(json, i ? ", " : "");
         add_bound(json, &bound);
     }
-    text_format(json, "], \"more_shapes\": %zu", more);
+    json_close(json, "]");
+    json_whole(json, "more_shapes", more);
 }
 
-static void add_components(Text *json, const KrsScene *scene)
+static void add_components(Json *json, const KrsScene *scene)
 {
-    text_add(json, "\"components\": [");
+    json_open(json, "components", "[");
     for (size_t i = 0; i < krs_component_count(scene); i++) {
         KrsComponent component;
         krs_component(scene, i, &component);
-        text_add(json, i == 0 ? "{\"name\": " : ", {\"name\": ");
-        text_json(json, component.name);
-        text_add(json, ", \"low\": ");
-        json_vector(json, component.low, 3);
-        text_add(json, ", \"high\": ");
-        json_vector(json, component.high, 3);
-        text_add(json, ", \"slope\": ");
-        json_number(json, component.slope);
-        text_format(json, ", \"figure\": %s, \"per_frame\": %s",
-                    component.figure ? "true" : "false", component.per_state ? "true" : "false");
-        text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
-                    component.exact ? "true" : "false", component.estimate ? "true" : "false",
-                    component.levels);
-        json_number(json, component.instances);
-        text_format(json, ", \"inversions\": %u, \"flops\": ", component.inversions);
-        json_number(json, component.flops);
+        json_open(json, NULL, "{");
+        json_string(json, "name", component.name);
+        json_numbers(json, "low", component.low, 3);
+        json_numbers(json, "high", component.high, 3);
+        json_number(json, "slope", component.slope);
+        json_truth(json, "figure", component.figure);
+        json_truth(json, "per_frame", component.per_state);
+        json_truth(json, "exact", component.exact);
+        json_truth(json, "estimate", component.estimate);
+        json_whole(json, "levels", component.levels);
+        json_number(json, "instances", component.instances);
+        json_whole(json, "inversions", component.inversions);
+        json_number(json, "flops", component.flops);
         add_bounds(json, scene, i);
-        text_add(json, "}");
+        json_close(json, "}");
     }
-    text_add(json, "]");
+    json_close(json, "]");
 }
 
-static void add_parameters(Text *json, const KrsScene *scene)
+static void add_parameters(Json *json, const KrsScene *scene)
 {
-    text_add(json, "\"parameters\": [");
+    json_open(json, "parameters", "[");
     for (size_t i = 0; i < krs_parameter_count(scene); i++) {
         KrsParameter parameter;
         krs_parameter(scene, i, &parameter);
-        text_add(json, i == 0 ? "{\"name\": " : ", {\"name\": ");
-        text_json(json, parameter.name);
-        text_add(json, ", \"value\": ");
-        json_vector(json, parameter.value, parameter.components);
-        text_add(json, ", \"low\": ");
-        json_vector(json, parameter.low, parameter.components);
-        text_add(json, ", \"high\": ");
-        json_vector(json, parameter.high, parameter.components);
-        text_add(json, "}");
+        json_open(json, NULL, "{");
+        json_string(json, "name", parameter.name);
+        json_numbers(json, "value", parameter.value, parameter.components);
+        json_numbers(json, "low", parameter.low, parameter.components);
+        json_numbers(json, "high", parameter.high, parameter.components);
+        json_close(json, "}");
     }
-    text_add(json, "]");
+    json_close(json, "]");
 }
 
 /* Adds the slopes that the host finds for each frame, each with its slot in the GLSL. */
-static void add_slopes(Text *json, const KrsScene *scene)
+static void add_slopes(Json *json, const KrsScene *scene)
 {
-    text_add(json, "\"frame_slopes\": [");
+    json_open(json, "frame_slopes", "[");
     for (size_t i = 0; i < krs_state_slope_count(scene); i++) {
         KrsStateSlope slope;
         krs_state_slope(scene, i, &slope);
-        text_format(json, "%s{\"slot\": %u, \"place\": ", i == 0 ? "" : ", ", slope.slot);
-        text_json(json, slope.location);
-        text_add(json, ", \"low\": ");
-        json_vector(json, slope.low, 3);
-        text_add(json, ", \"high\": ");
-        json_vector(json, slope.high, 3);
-        text_add(json, "}");
+        json_open(json, NULL, "{");
+        json_whole(json, "slot", slope.slot);
+        json_string(json, "place", slope.location);
+        json_numbers(json, "low", slope.low, 3);
+        json_numbers(json, "high", slope.high, 3);
+        json_close(json, "}");
     }
-    text_add(json, "]");
+    json_close(json, "]");
 }
 
-/* Adds the members that `krs info --json` and the NAME.json of `krs compile` have in common. */
-void info_add_json(Text *json, const KrsScene *scene)
+void info_add_json(Json *json, const KrsScene *scene)
 {
     const KrsProgram *program = krs_scene_program(scene);
-    text_add(json, "\"krs\": ");
-    text_json(json, KRS_VERSION);
-    text_add(json, ", \"hash\": ");
-    text_json(json, krs_scene_hash(scene));
-    text_add(json, ", \"bounds\": {\"low\": ");
-    json_vector(json, program->low, 3);
-    text_add(json, ", \"high\": ");
-    json_vector(json, program->high, 3);
-    text_format(json, "}, \"zones\": %zu", krs_zone_count(scene));
-    text_format(json, ", \"tables\": {\"kinds\": %zu, \"rows\": %zu, \"bytes\": %zu}",
-                program->table_count, program->table_instances, table_bytes(program));
-    text_format(json, ", \"operations\": %zu, \"flops_per_evaluation\": ", program->operations);
-    json_number(json, program->flops);
-    text_format(json, ", \"too_large\": %s", krs_scene_too_large(scene) ? "true" : "false");
-    text_add(json, ", ");
+    info_begin_json(json, scene);
+    json_open(json, "bounds", "{");
+    json_numbers(json, "low", program->low, 3);
+    json_numbers(json, "high", program->high, 3);
+    json_close(json, "}");
+    json_whole(json, "zones", krs_zone_count(scene));
+    json_open(json, "tables", "{");
+    json_whole(json, "kinds", program->table_count);
+    json_whole(json, "rows", program->table_instances);
+    json_whole(json, "bytes", table_bytes(program));
+    json_close(json, "}");
+    json_whole(json, "operations", program->operations);
+    json_number(json, "flops_per_evaluation", program->flops);
+    json_truth(json, "too_large", krs_scene_too_large(scene));
     add_components(json, scene);
-    text_add(json, ", ");
     add_parameters(json, scene);
-    text_add(json, ", ");
     add_slopes(json, scene);
+}
+
+void info_begin_json(Json *json, const KrsScene *scene)
+{
+    json_string(json, "krs", KRS_VERSION);
+    json_string(json, "hash", krs_scene_hash(scene));
 }
 
 static void print_json(const Options *options, const KrsScene *scene)
 {
-    Text json = {.arena = options->arena};
-    text_add(&json, "{");
+    Json json = {.text = {.arena = options->arena}, .spaced = true};
+    json_open(&json, NULL, "{");
     info_add_json(&json, scene);
-    text_add(&json, "}");
-    puts(json.bytes);
+    json_close(&json, "}");
+    puts(json.text.bytes);
 }
 
 /* Options that have a meaning with one of two others alone. */

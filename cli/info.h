@@ -7,6 +7,7 @@
 
 #include "cli/shell/commands.h"
 #include "cli/shell/console.h"
+#include "compiler/base/json.h"
 
 /* Refuses options that have no meaning without --print, or without --cost. */
 KrsStatus info_check_options(const Options *options);
@@ -14,5 +15,9 @@ KrsStatus info_check_options(const Options *options);
 KrsStatus info_print(const Options *options, const KrsScene *scene);
 /* Times the parts of the scene, and prints what each costs. */
 KrsStatus info_cost(const Options *options, const KrsScene *scene);
+/* Adds the members that `krs info --json` and the NAME.json of `krs compile` have in common. */
+void info_add_json(Json *json, const KrsScene *scene);
+/* Adds the version and the hash of a scene, with which each answer begins. */
+void info_begin_json(Json *json, const KrsScene *scene);
 
 #endif

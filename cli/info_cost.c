@@ -120,70 +120,65 @@ static void print_text(const Costing *costing)
 
 /* ---- JSON ---- */
 
-static void add_number(Text *json, const char *name, double number)
+static void add_cost(Json *json, const PartCost *cost)
 {
-    text_format(json, ", \"%s\": ", name);
-    json_number(json, number);
+    json_number(json, "flops", cost->flops);
+    json_number(json, "operations", cost->operations);
+    json_number(json, "glsl_bytes", cost->glsl_bytes);
 }
 
-static void add_cost(Text *json, const PartCost *cost)
-{
-    add_number(json, "flops", cost->flops);
-    add_number(json, "operations", cost->operations);
-    add_number(json, "glsl_bytes", cost->glsl_bytes);
-}
-
-static void add_part(Text *json, const ProfileRow *row)
+static void add_part(Json *json, const ProfileRow *row)
 {
     const KrsLocation *location = &row->part->location;
-    text_add(json, "{\"name\": ");
-    text_json(json, row->part->name);
-    text_add(json, ", \"source\": ");
-    text_json(json, location->source);
-    text_format(json,
-                ", \"line\": %u, \"column\": %u, \"start\": %u, \"end\": %u, \"count\": %zu, "
-                "\"rest\": %s",
-                location->line, location->column, location->start, location->end, row->part->count,
-                row->rest ? "true" : "false");
-    add_number(json, "share", row->share);
-    add_number(json, "ms", row->ms);
+    json_open(json, NULL, "{");
+    json_string(json, "name", row->part->name);
+    json_string(json, "source", location->source);
+    json_whole(json, "line", location->line);
+    json_whole(json, "column", location->column);
+    json_whole(json, "start", location->start);
+    json_whole(json, "end", location->end);
+    json_whole(json, "count", row->part->count);
+    json_truth(json, "rest", row->rest);
+    json_number(json, "share", row->share);
+    json_number(json, "ms", row->ms);
     add_cost(json, &row->cost);
-    text_add(json, "}");
+    json_close(json, "}");
 }
 
-static void add_parts(Text *json, const char *name, const ProfileRow *rows, size_t count)
+static void add_parts(Json *json, const char *name, const ProfileRow *rows, size_t count)
 {
-    text_format(json, ", \"%s\": [", name);
-    for (size_t i = 0; i < count; i++) {
-        text_add(json, i > 0 ? ", " : "");
+    json_open(json, name, "[");
+    for (size_t i = 0; i < count; i++)
         add_part(json, &rows[i]);
-    }
-    text_add(json, "]");
+    json_close(json, "]");
 }
 
 static void print_json(const Costing *costing)
 {
     const Profile    *profile = &costing->profile;
     const ProfileRow *others  = &profile->rows[profile->others];
-    Text              json    = {.arena = costing->options->arena};
-    text_add(&json, "{\"krs\": ");
-    text_json(&json, KRS_VERSION);
-    text_add(&json, ", \"hash\": ");
-    text_json(&json, krs_scene_hash(costing->scene));
-    text_add(&json, ", \"cost\": {\"device\": ");
-    text_json(&json, costing->device);
-    text_format(&json, ", \"width\": %u, \"height\": %u", profile->width, profile->height);
-    text_format(&json, ", \"of_processors\": %s", profile->of_processors ? "true" : "false");
-    add_number(&json, "frame_ms", profile->frame_ms);
+    Json              json    = {.text = {.arena = costing->options->arena}, .spaced = true};
+    json_open(&json, NULL, "{");
+    info_begin_json(&json, costing->scene);
+    json_open(&json, "cost", "{");
+    json_string(&json, "device", costing->device);
+    json_whole(&json, "width", profile->width);
+    json_whole(&json, "height", profile->height);
+    json_truth(&json, "of_processors", profile->of_processors);
+    json_number(&json, "frame_ms", profile->frame_ms);
     add_cost(&json, &profile->whole);
     add_parts(&json, "parts", profile->rows, profile->others);
     add_parts(&json, "shared", others + 1, profile->row_count - profile->others - 1);
-    text_add(&json, ", \"others\": {\"share\": ");
-    json_number(&json, others->share);
-    add_number(&json, "ms", others->ms);
+    json_open(&json, "others", "{");
+    json_number(&json, "share", others->share);
+    json_number(&json, "ms", others->ms);
     add_cost(&json, &others->cost);
-    text_format(&json, "}, \"timed\": %zu, \"untimed\": %zu}}", profile->timed, profile->untimed);
-    puts(json.bytes);
+    json_close(&json, "}");
+    json_whole(&json, "timed", profile->timed);
+    json_whole(&json, "untimed", profile->untimed);
+    json_close(&json, "}");
+    json_close(&json, "}");
+    puts(json.text.bytes);
 }
 
 /* ---- what is asked for ---- */

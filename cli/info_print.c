@@ -139,93 +139,81 @@ static void print_text(const Printing *printing)
 
 /* ---- JSON ---- */
 
-static void add_number(Text *json, const char *name, double number)
+static void add_orientation(Json *json, const char *name, const KrsOrientation *orientation)
 {
-    text_format(json, ", \"%s\": ", name);
-    json_number(json, number);
+    json_open(json, name, "{");
+    json_numbers(json, "up", orientation->up, 3);
+    json_number(json, "height", orientation->height);
+    json_number(json, "base", orientation->base);
+    json_number(json, "overhang", orientation->overhang);
+    json_truth(json, "stands", orientation->stands);
+    json_close(json, "}");
 }
 
-static void add_vector(Text *json, const char *name, const double vector[3])
-{
-    text_format(json, ", \"%s\": ", name);
-    json_vector(json, vector, 3);
-}
-
-static void add_orientation(Text *json, const KrsOrientation *orientation)
-{
-    text_add(json, "{\"up\": ");
-    json_vector(json, orientation->up, 3);
-    add_number(json, "height", orientation->height);
-    add_number(json, "base", orientation->base);
-    add_number(json, "overhang", orientation->overhang);
-    text_format(json, ", \"stands\": %s}", orientation->stands ? "true" : "false");
-}
-
-static void add_solid(Text *json, const Printing *printing)
+static void add_solid(Json *json, const Printing *printing)
 {
     const KrsMeasures *m = printing->measures;
-    text_add(json, ", \"bounds\": {\"low\": ");
-    json_vector(json, m->low, 3);
-    add_vector(json, "high", m->high);
-    text_add(json, "}");
-    add_number(json, "volume", m->volume);
-    add_number(json, "volume_error", m->volume_error);
-    add_number(json, "volume_change", m->volume_change);
-    add_number(json, "volume_cm3", m->volume * pow(printing->cm, 3));
-    add_vector(json, "center", m->center);
-    add_number(json, "center_error", m->center_error);
+    json_open(json, "bounds", "{");
+    json_numbers(json, "low", m->low, 3);
+    json_numbers(json, "high", m->high, 3);
+    json_close(json, "}");
+    json_number(json, "volume", m->volume);
+    json_number(json, "volume_error", m->volume_error);
+    json_number(json, "volume_change", m->volume_change);
+    json_number(json, "volume_cm3", m->volume * pow(printing->cm, 3));
+    json_numbers(json, "center", m->center, 3);
+    json_number(json, "center_error", m->center_error);
     if (printing->options->density > 0) {
-        add_number(json, "density", printing->options->density);
-        add_number(json, "mass_g", mass_of(printing, m->volume));
-        add_number(json, "mass_error_g", mass_of(printing, m->volume_error));
+        json_number(json, "density", printing->options->density);
+        json_number(json, "mass_g", mass_of(printing, m->volume));
+        json_number(json, "mass_error_g", mass_of(printing, m->volume_error));
     }
-    add_number(json, "area", m->area);
-    add_number(json, "mesh_error", m->error);
+    json_number(json, "area", m->area);
+    json_number(json, "mesh_error", m->error);
 }
 
-static void add_walls(Text *json, const Printing *printing)
+static void add_walls(Json *json, const Printing *printing)
 {
     const KrsMeasures *m = printing->measures;
     if (isinf(m->wall.thickness)) {
-        text_add(json, ", \"wall\": null");
+        json_ready(json, "wall", "null");
     } else {
-        text_add(json, ", \"wall\": {\"thickness\": ");
-        json_number(json, m->wall.thickness);
-        add_vector(json, "from", m->wall.from);
-        add_vector(json, "to", m->wall.to);
-        text_add(json, "}");
+        json_open(json, "wall", "{");
+        json_number(json, "thickness", m->wall.thickness);
+        json_numbers(json, "from", m->wall.from, 3);
+        json_numbers(json, "to", m->wall.to, 3);
+        json_close(json, "}");
     }
-    add_number(json, "spacing", m->spacing);
+    json_number(json, "spacing", m->spacing);
     if (printing->options->nozzle > 0) {
-        add_number(json, "nozzle", printing->options->nozzle);
-        add_number(json, "thin_area", m->thin_area);
+        json_number(json, "nozzle", printing->options->nozzle);
+        json_number(json, "thin_area", m->thin_area);
     }
 }
 
 static void print_json(const Printing *printing)
 {
     const KrsMeasures *m    = printing->measures;
-    Text               json = {.arena = printing->options->arena};
-    text_add(&json, "{\"krs\": ");
-    text_json(&json, KRS_VERSION);
-    text_add(&json, ", \"hash\": ");
-    text_json(&json, krs_scene_hash(printing->scene));
-    text_format(&json, ", \"print\": {\"units\": \"%s\"", printing->unit);
+    Json               json = {.text = {.arena = printing->options->arena}, .spaced = true};
+    json_open(&json, NULL, "{");
+    info_begin_json(&json, printing->scene);
+    json_open(&json, "print", "{");
+    json_string(&json, "units", printing->unit);
     add_solid(&json, printing);
     add_walls(&json, printing);
-    add_number(&json, "overhang_degrees", printing->options->overhang);
-    text_add(&json, ", \"lies\": ");
-    add_orientation(&json, &m->as_is);
-    text_add(&json, ", \"orientations\": [");
-    for (size_t i = 0; i < m->orientation_count; i++) {
-        text_add(&json, i ? ", " : "");
-        add_orientation(&json, &m->orientations[i]);
-    }
-    text_format(&json, "], \"unresolved\": %zu", m->unresolved);
+    json_number(&json, "overhang_degrees", printing->options->overhang);
+    add_orientation(&json, "lies", &m->as_is);
+    json_open(&json, "orientations", "[");
+    for (size_t i = 0; i < m->orientation_count; i++)
+        add_orientation(&json, NULL, &m->orientations[i]);
+    json_close(&json, "]");
+    json_whole(&json, "unresolved", m->unresolved);
     if (m->unresolved > 0)
-        add_vector(&json, "unresolved_at", m->unresolved_at);
-    text_format(&json, ", \"estimate\": %s}}", m->estimate ? "true" : "false");
-    puts(json.bytes);
+        json_numbers(&json, "unresolved_at", m->unresolved_at, 3);
+    json_truth(&json, "estimate", m->estimate);
+    json_close(&json, "}");
+    json_close(&json, "}");
+    puts(json.text.bytes);
 }
 
 /* ---- what is asked for ---- */

@@ -124,27 +124,32 @@ static const char *binding_name(const IdInfo *ids, const IdInfo *variable)
     return name ? name : "";
 }
 
-void module_add_json(Text *json, const SpirvModule *module)
+void module_add_json(Json *json, const SpirvModule *module)
 {
     uint32_t bound = module->words[BOUND_WORD], size[3] = {1, 1, 1};
-    IdInfo  *ids = arena_new_array(json->arena, IdInfo, bound);
+    IdInfo  *ids = arena_new_array(json->text.arena, IdInfo, bound);
     for (size_t at = HEADER_WORDS; at < module->word_count;) {
         const uint32_t *word = &module->words[at];
         read_instruction(word, *word & 0xffff, ids, size);
         at += *word >> 16;
     }
 
-    text_add(json, "{\"entry\": ");
-    text_json(json, module->entry);
-    text_format(json, ", \"workgroup\": [%u, %u, %u], \"bindings\": [", size[0], size[1], size[2]);
-    const char *separator = "";
-    for (uint32_t id = 0; id < bound; id++)
-        if (ids[id].bound) {
-            text_format(json, "%s{\"set\": %u, \"binding\": %u, \"name\": ", separator, ids[id].set,
-                        ids[id].binding);
-            text_json(json, binding_name(ids, &ids[id]));
-            text_add(json, "}");
-            separator = ", ";
-        }
-    text_add(json, "]}");
+    json_open(json, NULL, "{");
+    json_string(json, "entry", module->entry);
+    json_open(json, "workgroup", "[");
+    for (int i = 0; i < 3; i++)
+        json_whole(json, NULL, size[i]);
+    json_close(json, "]");
+    json_open(json, "bindings", "[");
+    for (uint32_t id = 0; id < bound; id++) {
+        if (!ids[id].bound)
+            continue;
+        json_open(json, NULL, "{");
+        json_whole(json, "set", ids[id].set);
+        json_whole(json, "binding", ids[id].binding);
+        json_string(json, "name", binding_name(ids, &ids[id]));
+        json_close(json, "}");
+    }
+    json_close(json, "]");
+    json_close(json, "}");
 }

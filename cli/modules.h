@@ -5,6 +5,7 @@
 #define KRS_MODULES_H
 
 #include "cli/shell/commands.h"
+#include "compiler/base/json.h"
 
 typedef struct SpirvModule {
     const char *entry; /* "trace" */
@@ -27,6 +28,6 @@ KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules
 void      modules_free(Modules *modules);
 
 /* Appends {"entry": "trace", "workgroup": [8, 8, 1], "bindings": [{"set": 0, ...}, ...]}. */
-void module_add_json(Text *json, const SpirvModule *module);
+void module_add_json(Json *json, const SpirvModule *module);
 
 #endif

@@ -103,11 +103,11 @@ void add_parameters_json(Text *to, const Export *export)
         text_add(to, i ? ",\n    { name: " : "\n    { name: ");
         text_json(to, parameter.name);
         text_format(to, ", slot: %zu, value: ", 1 + i);
-        json_vector(to, parameter.value, parameter.components);
+        text_json_vector(to, parameter.value, parameter.components);
         text_add(to, ", low: ");
-        json_vector(to, parameter.low, parameter.components);
+        text_json_vector(to, parameter.low, parameter.components);
         text_add(to, ", high: ");
-        json_vector(to, parameter.high, parameter.components);
+        text_json_vector(to, parameter.high, parameter.components);
         text_add(to, " }");
     }
     text_add(to, "]");
@@ -118,7 +118,7 @@ void add_block(Text *to, const Export *export)
     text_add(to, "[");
     for (size_t i = 0; i < 4 * krs_parameter_slots(export->scene); i++) {
         text_add(to, i ? ", " : "");
-        json_number(to, (double)export->block[i / 4][i % 4]);
+        text_json_number(to, (double)export->block[i / 4][i % 4]);
     }
     text_add(to, "]");
 }

@@ -81,11 +81,11 @@ static void add_tracer(Text *to, const Export *export)
 }
 static void add_low(Text *to, const Export *export)
 {
-    json_vector(to, export->scene->program.low, 3);
+    text_json_vector(to, export->scene->program.low, 3);
 }
 static void add_high(Text *to, const Export *export)
 {
-    json_vector(to, export->scene->program.high, 3);
+    text_json_vector(to, export->scene->program.high, 3);
 }
 static void add_low_vector(Text *to, const Export *export)
 {

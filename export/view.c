@@ -163,12 +163,12 @@ void add_camera(Text *to, const Export *export)
 {
     const KrsCamera *camera = &export->view.camera;
     text_add(to, "{ eye: ");
-    json_vector(to, camera->eye, 3);
+    text_json_vector(to, camera->eye, 3);
     text_add(to, ", target: ");
-    json_vector(to, camera->target, 3);
+    text_json_vector(to, camera->target, 3);
     text_add(to, ", up: ");
-    json_vector(to, camera->up, 3);
+    text_json_vector(to, camera->up, 3);
     text_add(to, ", fov: ");
-    json_number(to, 2 * atan(find_rise(camera)));
+    text_json_number(to, 2 * atan(find_rise(camera)));
     text_add(to, " }");
 }

@@ -7,8 +7,11 @@
  */
 #include "cli/picture/cryptomatte.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "compiler/base/json.h"
 
 static const char *const layer_names[KRS_MATTE_COUNT] = {[KRS_MATTE_COMPONENTS] = "CryptoComponent",
                                                          [KRS_MATTE_INSTANCES]  = "CryptoInstance",
@@ -108,18 +111,18 @@ static Parts list_parts(const KrsPicture *picture, KrsMatteKind kind)
 /* Returns the manifest, {"tree": "1a2b3c4d", ...}; sets the identifiers. */
 static const char *manifest_of(Arena *arena, const KrsScene *scene, Parts *parts, KrsMatteKind kind)
 {
-    Text manifest = {.arena = arena};
-    text_add(&manifest, "{");
+    Json manifest = {.text = {.arena = arena}, .spaced = true};
+    json_open(&manifest, NULL, "{");
     for (size_t i = 0; i < parts->count; i++) {
+        char identifier[9];
         Text name = {.arena = arena};
         name_of(scene, &parts->items[i].part, kind, &name);
         parts->items[i].identifier = matte_identifier(murmur_hash(name.bytes));
-        text_add(&manifest, i ? ", " : "");
-        text_json(&manifest, name.bytes);
-        text_format(&manifest, ": \"%08x\"", parts->items[i].identifier);
+        snprintf(identifier, sizeof identifier, "%08x", parts->items[i].identifier);
+        json_string(&manifest, name.bytes, identifier);
     }
-    text_add(&manifest, "}");
-    return manifest.bytes;
+    json_close(&manifest, "}");
+    return manifest.text.bytes;
 }
 
 /* Adds the texts of a layer under keys such as "cryptomatte/1a2b3c4/name", whose digits are the

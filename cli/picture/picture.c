@@ -54,7 +54,7 @@ static const char *describe_parameters(const Options *options, const KrsScene *s
         if (parameter.components == 1)
             text_number(&text, values[0]);
         else
-            json_vector(&text, values, parameter.components);
+            text_json_vector(&text, values, parameter.components);
     }
     return text.bytes;
 }
@@ -65,7 +65,7 @@ static const char *describe_zones(const Options *options)
     Text text = {.arena = options->arena};
     for (size_t i = 0; i < options->zone_count; i++) {
         text_add(&text, i == 0 ? "" : " ");
-        json_vector(&text, options->zones[i], 4);
+        text_json_vector(&text, options->zones[i], 4);
     }
     return text.bytes;
 }

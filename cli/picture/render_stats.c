@@ -5,32 +5,41 @@
 
 #include <stdio.h>
 
-static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsProgram *program)
+#include "compiler/base/json.h"
+
+static void add_stats_json(Json *json, const KrsRenderStats *stats, const KrsProgram *program)
 {
-    text_format(json,
-                "\"compile\": {\"front\": %.3f, \"glsl\": %.3f, \"spirv\": %.3f, "
-                "\"pipeline\": %.3f, \"passes\": {",
-                program->front_ms, program->glsl_ms, stats->spirv_ms, stats->pipeline_ms);
+    json_open(json, "compile", "{");
+    json_rounded(json, "front", program->front_ms);
+    json_rounded(json, "glsl", program->glsl_ms);
+    json_rounded(json, "spirv", stats->spirv_ms);
+    json_rounded(json, "pipeline", stats->pipeline_ms);
+    json_open(json, "passes", "{");
     for (size_t i = 0; krs_pass(i); i++)
-        text_format(json, "%s\"%s\": %.3f", i ? ", " : "", krs_pass(i)->name, program->pass_ms[i]);
-    text_add(json, "}}, \"render\": {");
+        json_rounded(json, krs_pass(i)->name, program->pass_ms[i]);
+    json_close(json, "}");
+    json_close(json, "}");
+    json_open(json, "render", "{");
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
-        text_format(json, "\"%s\": %.3f, ", krs_phase_names[phase], stats->phase_ms[phase]);
-    text_format(json,
-                "\"total\": %.3f, \"wall\": %.3f}, \"device_time\": %s, \"executor\": \"%s\", "
-                "\"rays\": %llu, "
-                "\"evaluations\": %llu, \"evaluations_per_ray\": {\"mean\": %.3f, "
-                "\"maximum\": %u}, \"flops_per_evaluation\": %.3f, \"gflops\": %.3f, "
-                "\"unresolved\": %llu, \"clamped\": %llu, \"submissions\": %llu, \"device\": ",
-                stats->total_ms, stats->wall_ms, stats->device_time ? "true" : "false",
-                krs_executor_names[stats->executor], (unsigned long long)stats->rays,
-                (unsigned long long)stats->evaluations, stats->evaluations_per_ray,
-                stats->max_evaluations_per_ray, stats->flops_per_evaluation, stats->gflops,
-                (unsigned long long)stats->unresolved, (unsigned long long)stats->clamped,
-                (unsigned long long)stats->submissions);
-    text_json(json, stats->device);
-    text_format(json, ", \"peak_memory_bytes\": %llu",
-                (unsigned long long)stats->peak_memory_bytes);
+        json_rounded(json, krs_phase_names[phase], stats->phase_ms[phase]);
+    json_rounded(json, "total", stats->total_ms);
+    json_rounded(json, "wall", stats->wall_ms);
+    json_close(json, "}");
+    json_truth(json, "device_time", stats->device_time);
+    json_string(json, "executor", krs_executor_names[stats->executor]);
+    json_whole(json, "rays", stats->rays);
+    json_whole(json, "evaluations", stats->evaluations);
+    json_open(json, "evaluations_per_ray", "{");
+    json_rounded(json, "mean", stats->evaluations_per_ray);
+    json_whole(json, "maximum", stats->max_evaluations_per_ray);
+    json_close(json, "}");
+    json_rounded(json, "flops_per_evaluation", stats->flops_per_evaluation);
+    json_rounded(json, "gflops", stats->gflops);
+    json_whole(json, "unresolved", stats->unresolved);
+    json_whole(json, "clamped", stats->clamped);
+    json_whole(json, "submissions", stats->submissions);
+    json_string(json, "device", stats->device);
+    json_whole(json, "peak_memory_bytes", stats->peak_memory_bytes);
 }
 
 /* The most shaders that statistics list: those of a picture are fewer. */
@@ -42,19 +51,21 @@ static size_t read_shaders(const KrsRendering *rendering, KrsShaderStats shaders
     return count < MAX_SHADERS ? count : MAX_SHADERS;
 }
 
-static void add_shaders_json(Text *json, const KrsRendering *rendering)
+static void add_shaders_json(Json *json, const KrsRendering *rendering)
 {
     KrsShaderStats shaders[MAX_SHADERS];
     const size_t   count = read_shaders(rendering, shaders);
-    text_add(json, ", \"kernels\": [");
-    for (size_t i = 0; i < count; i++)
-        text_format(json,
-                    "%s{\"name\": \"%s\", \"glsl_bytes\": %llu, \"spirv_ms\": %.3f, "
-                    "\"driver_ms\": %.3f, \"cached\": %s}",
-                    i ? ", " : "", shaders[i].name, (unsigned long long)shaders[i].glsl_bytes,
-                    shaders[i].spirv_ms, shaders[i].driver_ms,
-                    shaders[i].cached ? "true" : "false");
-    text_add(json, "]");
+    json_open(json, "kernels", "[");
+    for (size_t i = 0; i < count; i++) {
+        json_open(json, NULL, "{");
+        json_string(json, "name", shaders[i].name);
+        json_whole(json, "glsl_bytes", shaders[i].glsl_bytes);
+        json_rounded(json, "spirv_ms", shaders[i].spirv_ms);
+        json_rounded(json, "driver_ms", shaders[i].driver_ms);
+        json_truth(json, "cached", shaders[i].cached);
+        json_close(json, "}");
+    }
+    json_close(json, "]");
 }
 
 static void print_shaders(const KrsRendering *rendering)
@@ -102,12 +113,12 @@ void render_stats_show(const Options *options, const KrsRendering *rendering,
         print_shaders(rendering);
     if (options->stats != STATS_JSON)
         return;
-    Text json = {.arena = options->arena};
-    text_add(&json, "{");
+    Json json = {.text = {.arena = options->arena}, .spaced = true};
+    json_open(&json, NULL, "{");
     if (options->animated)
-        text_format(&json, "\"frame\": %u, ", frame);
+        json_whole(&json, "frame", frame);
     add_stats_json(&json, stats, program);
     add_shaders_json(&json, rendering);
-    text_add(&json, "}");
-    puts(json.bytes);
+    json_close(&json, "}");
+    puts(json.text.bytes);
 }

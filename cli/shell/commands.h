@@ -89,7 +89,4 @@ KrsStatus open_renderer(const Options *options, KrsRenderer **renderer);
 KrsStatus open_renderer_early(const Options *options, KrsRenderer **renderer);
 KrsStatus opened_renderer(KrsStatus status, KrsRenderer **renderer);
 
-/* info.c: the members that `krs info --json` and `krs compile` have in common. */
-void info_add_json(Text *json, const KrsScene *scene);
-
 #endif

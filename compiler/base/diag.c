@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "compiler/base/json.h"
+
 #define SEVERITY_ERROR   DIAG_ERROR
 #define SEVERITY_WARNING DIAG_WARNING
 #define SEVERITY_NOTE    DIAG_NOTE
@@ -133,78 +135,77 @@ void diags_sort(Diags *diags)
 
 /* ---- JSON ---- */
 
-static void json_position(const Source *source, uint32_t offset, Text *out)
+static void json_position(Json *json, const char *name, const Source *source, uint32_t offset)
 {
-    const Utf16Position at = source_utf16_position(source, offset);
-    text_format(out, "{\"line\":%u,\"character\":%u}", at.line, at.character);
+    const Utf16Position at = source ? source_utf16_position(source, offset) : (Utf16Position){0};
+    json_open(json, name, "{");
+    json_whole(json, "line", at.line);
+    json_whole(json, "character", at.character);
+    json_close(json, "}");
 }
 
-static void json_location(const Diags *diags, Span span, Text *out)
+void diag_json_range(Json *json, const char *name, const Source *source, uint32_t start,
+                     uint32_t end)
 {
-    if (span.source == 0) {
-        text_add(out, "\"uri\":\"\",\"range\":{\"start\":{\"line\":0,\"character\":0},"
-                      "\"end\":{\"line\":0,\"character\":0}}");
-        return;
-    }
-    const Source *source = &diags->sources->items[span.source];
-    text_add(out, "\"uri\":");
-    text_json(out, source->name);
-    text_add(out, ",\"range\":{\"start\":");
-    json_position(source, span.start, out);
-    text_add(out, ",\"end\":");
-    json_position(source, span.end, out);
-    text_add(out, "}");
+    json_open(json, name, "{");
+    json_position(json, "start", source, start);
+    json_position(json, "end", source, end);
+    json_close(json, "}");
 }
 
-static void json_related(const Diags *diags, const Diag *diag, Text *out)
+static void json_location(const Diags *diags, Span span, Json *json)
 {
-    text_add(out, ",\"relatedInformation\":[");
+    const Source *source = span.source ? &diags->sources->items[span.source] : NULL;
+    json_string(json, "uri", source ? source->name : "");
+    diag_json_range(json, "range", source, span.start, span.end);
+}
+
+static void json_related(const Diags *diags, const Diag *diag, Json *json)
+{
+    json_open(json, "relatedInformation", "[");
     for (size_t i = 0; i < diag->secondary.count; i++) {
-        text_add(out, i ? ",{\"location\":{" : "{\"location\":{");
-        json_location(diags, diag->secondary.items[i].span, out);
-        text_add(out, "},\"message\":");
-        text_json(out, diag->secondary.items[i].label ? diag->secondary.items[i].label : "");
-        text_add(out, "}");
+        const char *label = diag->secondary.items[i].label;
+        json_open(json, NULL, "{");
+        json_open(json, "location", "{");
+        json_location(diags, diag->secondary.items[i].span, json);
+        json_close(json, "}");
+        json_string(json, "message", label ? label : "");
+        json_close(json, "}");
     }
-    text_add(out, "]");
-}
-
-static void json_member(const char *name, const char *value, const char **separator, Text *out)
-{
-    if (!value)
-        return;
-    text_format(out, "%s\"%s\":", *separator, name);
-    text_json(out, value);
-    *separator = ",";
+    json_close(json, "]");
 }
 
 /* The Language Server Protocol has no fields for these values.  It leaves `data` to each server. */
-static void json_data(const Diag *diag, Text *out)
+static void json_data(const Diag *diag, Json *json)
 {
-    const char *separator = "";
-    text_add(out, ",\"data\":{");
-    json_member("label", diag->label, &separator, out);
-    json_member("help", diag->help, &separator, out);
-    json_member("replacement", diag->replacement, &separator, out);
-    text_format(out, "%s\"notes\":[", separator);
-    for (size_t i = 0; i < diag->notes.count; i++) {
-        text_add(out, i ? "," : "");
-        text_json(out, diag->notes.items[i]);
-    }
-    text_add(out, "]}");
+    json_open(json, "data", "{");
+    if (diag->label)
+        json_string(json, "label", diag->label);
+    if (diag->help)
+        json_string(json, "help", diag->help);
+    if (diag->replacement)
+        json_string(json, "replacement", diag->replacement);
+    json_open(json, "notes", "[");
+    for (size_t i = 0; i < diag->notes.count; i++)
+        json_string(json, NULL, diag->notes.items[i]);
+    json_close(json, "]");
+    json_close(json, "}");
 }
 
 void diag_json_one(const Diags *diags, const Diag *diag, Text *out)
 {
     const DiagInfo *info = &diag_info[diag->code];
-    text_add(out, "{");
-    json_location(diags, diag->span, out);
-    text_format(out, ",\"severity\":%d,\"code\":\"%s\",\"source\":\"krs\",\"message\":",
-                (int)info->severity + 1, info->code);
-    text_json(out, diag->message);
-    json_related(diags, diag, out);
-    json_data(diag, out);
-    text_add(out, "}");
+    Json            json = {.text = *out};
+    json_open(&json, NULL, "{");
+    json_location(diags, diag->span, &json);
+    json_whole(&json, "severity", (uint64_t)info->severity + 1);
+    json_string(&json, "code", info->code);
+    json_string(&json, "source", "krs");
+    json_string(&json, "message", diag->message);
+    json_related(diags, diag, &json);
+    json_data(diag, &json);
+    json_close(&json, "}");
+    *out = json.text;
 }
 
 void diags_print_json(const Diags *diags, Text *out)

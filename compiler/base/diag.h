@@ -11,6 +11,8 @@
 #include "compiler/base/source.h"
 #include "compiler/base/text.h"
 
+struct Json;
+
 typedef enum DiagSeverity { DIAG_ERROR, DIAG_WARNING, DIAG_NOTE } DiagSeverity;
 
 typedef enum DiagCode {
@@ -88,6 +90,9 @@ void diags_print_json(const Diags *diags, Text *out);
 /* Writes one diagnostic alone, as the two functions above do. */
 void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out);
 void diag_json_one(const Diags *diags, const Diag *diag, Text *out);
+/* Writes a range of a source as the Language Server Protocol has it; NULL: it is at the start. */
+void diag_json_range(struct Json *json, const char *name, const Source *source, uint32_t start,
+                     uint32_t end);
 
 /* Returns "error", "warning" or "note". */
 const char *diag_severity(DiagCode code);

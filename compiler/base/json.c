@@ -7,13 +7,12 @@
 static void begin(Json *json, const char *name)
 {
     if (json->more)
-        text_add(&json->text, ",");
+        text_add(&json->text, json->spaced ? ", " : ",");
     json->more = true;
     if (!name)
         return;
-    text_add(&json->text, "\"");
-    text_add(&json->text, name);
-    text_add(&json->text, "\":");
+    text_json(&json->text, name);
+    text_add(&json->text, json->spaced ? ": " : ":");
 }
 
 void json_open(Json *json, const char *name, const char *bracket)
@@ -38,9 +37,9 @@ void json_string(Json *json, const char *name, const char *string)
         text_add(&json->text, "null");
 }
 
-void json_whole(Json *json, const char *name, uint32_t number)
+void json_whole(Json *json, const char *name, uint64_t number)
 {
-    char   digits[10];
+    char   digits[20];
     size_t first = sizeof digits;
     begin(json, name);
     do
@@ -53,6 +52,26 @@ void json_truth(Json *json, const char *name, bool truth)
 {
     begin(json, name);
     text_add(&json->text, truth ? "true" : "false");
+}
+
+void json_number(Json *json, const char *name, double number)
+{
+    begin(json, name);
+    text_json_number(&json->text, number);
+}
+
+void json_numbers(Json *json, const char *name, const double *numbers, size_t count)
+{
+    json_open(json, name, "[");
+    for (size_t i = 0; i < count; i++)
+        json_number(json, NULL, numbers[i]);
+    json_close(json, "]");
+}
+
+void json_rounded(Json *json, const char *name, double number)
+{
+    begin(json, name);
+    text_format(&json->text, "%.3f", number);
 }
 
 void json_ready(Json *json, const char *name, const char *value)

@@ -202,21 +202,21 @@ void text_json(Text *text, const char *string)
     text_add(text, "\"");
 }
 
-void json_number(Text *json, double number)
+void text_json_number(Text *text, double number)
 {
     if (isfinite(number))
-        text_number(json, number);
+        text_number(text, number);
     else
-        text_add(json, "null");
+        text_add(text, "null");
 }
 
-void json_vector(Text *json, const double *values, size_t count)
+void text_json_vector(Text *text, const double *values, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        text_add(json, i == 0 ? "[" : ", ");
-        json_number(json, values[i]);
+        text_add(text, i == 0 ? "[" : ", ");
+        text_json_number(text, values[i]);
     }
-    text_add(json, "]");
+    text_add(text, "]");
 }
 
 /* ---- names ---- */

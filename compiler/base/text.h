@@ -32,8 +32,8 @@ double text_decimal(Text *scratch, const char *bytes, size_t length);
 /* Adds a JSON string with its quotes; bytes that are not UTF-8 become U+FFFD. */
 void text_json(Text *text, const char *string);
 /* Numbers in JSON; what is not finite becomes null. */
-void json_number(Text *json, double number);
-void json_vector(Text *json, const double *values, size_t count);
+void text_json_number(Text *text, double number);
+void text_json_vector(Text *text, const double *values, size_t count);
 
 /* Decodes the UTF-8 character at `bytes` and returns how many bytes it has.  `length`, at least 1,
    is the number of bytes that may be read.  Returns 0, and U+FFFD, when they are not UTF-8. */

@@ -103,7 +103,7 @@ bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, bool 
 
 /* words.c: a scene that uses all files of the library; words that are built in, and those of these files, as JSON. */
 void words_use_library(Text *scene);
-void words_print(Compilation *c, Text *json);
+void words_print(Compilation *c, Text *out);
 
 /* limits.c: refuses the scene, of which a component needs too much to be lowered. */
 void refuse_component(Compilation *c, size_t component);

@@ -21,7 +21,7 @@ void answer_colors(const Here *here, const ServiceQuestion *about, Json *json)
         if (token->kind != TOKEN_COLOUR)
             continue;
         json_open(json, NULL, "{");
-        add_range(json, "range", here->source, token->span.start, token->span.end);
+        diag_json_range(json, "range", here->source, token->span.start, token->span.end);
         json_open(json, "color", "{");
         for (int k = 0; k < 3; k++) {
             Text number = {.arena = &here->service->arena};
@@ -57,7 +57,7 @@ void answer_color(const Here *here, const ServiceQuestion *about, Json *json)
 static void add_edit(const Here *here, Json *json, uint32_t start, uint32_t end, const char *text)
 {
     json_open(json, NULL, "{");
-    add_range(json, "range", here->source, start, end);
+    diag_json_range(json, "range", here->source, start, end);
     json_string(json, "newText", text);
     json_close(json, "}");
 }
@@ -77,12 +77,7 @@ static void begin_action(const Here *here, Json *json, const char *title, const 
     }
     json_open(json, "edit", "{");
     json_open(json, "changes", "{");
-    Json uri = {.text = {.arena = &here->service->arena}};
-    add_uri(here->service, &uri, NULL, here->document->path);
-    text_add(&json->text, uri.text.bytes);
-    text_add(&json->text, ":");
-    json->more = false;
-    json_open(json, NULL, "[");
+    json_open(json, uri_of(here->service, here->document->path), "[");
 }
 
 static void end_action(Json *json)

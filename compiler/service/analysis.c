@@ -405,30 +405,13 @@ Asked value_of(const Here *here, const Syntax *definition)
 
 /* ---- JSON ---- */
 
-static void add_position(Json *json, const char *name, const Source *source, uint32_t offset)
-{
-    const Utf16Position at = source_utf16_position(source, offset);
-    json_open(json, name, "{");
-    json_whole(json, "line", at.line);
-    json_whole(json, "character", at.character);
-    json_close(json, "}");
-}
-
-void add_range(Json *json, const char *name, const Source *source, uint32_t start, uint32_t end)
-{
-    json_open(json, name, "{");
-    add_position(json, "start", source, start);
-    add_position(json, "end", source, end);
-    json_close(json, "}");
-}
-
-void add_uri(Service *service, Json *json, const char *name, const char *path)
+const char *uri_of(Service *service, const char *path)
 {
     const Document *document = find_document(service, path);
     const char     *uri      = document ? document->uri : NULL;
     if (!uri && service->host.uri)
         uri = service->host.uri(service->host.user, path);
-    json_string(json, name, uri ? uri : path);
+    return uri ? uri : path;
 }
 
 void add_location(Service *service, Json *json, const char *name, const Source *source, Span span)
@@ -438,7 +421,7 @@ void add_location(Service *service, Json *json, const char *name, const Source *
         text_add(&path, "library:");
     text_add(&path, source->name);
     json_open(json, name, "{");
-    add_uri(service, json, "uri", path.bytes);
-    add_range(json, "range", source, span.start, span.end);
+    json_string(json, "uri", uri_of(service, path.bytes));
+    diag_json_range(json, "range", source, span.start, span.end);
     json_close(json, "}");
 }

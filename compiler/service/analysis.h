@@ -136,8 +136,8 @@ void signature_of_function(const Analysis *analysis, const Syntax *function, Sig
 void signature_of_word(const BuiltinWord *word, Signature *signature);
 
 /* ---- JSON ---- */
-void add_range(Json *json, const char *name, const Source *source, uint32_t start, uint32_t end);
-void add_uri(Service *service, Json *json, const char *name, const char *path);
+/* Returns the URI of a document or file, or its path if the host knows none. */
+const char *uri_of(Service *service, const char *path);
 /* Adds the path of a source, which is its name; {"uri", "range"}. */
 void add_location(Service *service, Json *json, const char *name, const Source *source, Span span);
 

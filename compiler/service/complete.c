@@ -62,7 +62,7 @@ static void add_item(const Completion *c, Item item)
     if (item.insert) { /* else the word at the place becomes the label */
         json_string(json, "filterText", item.insert);
         json_open(json, "textEdit", "{");
-        add_range(json, "range", c->here->source, c->start, c->end);
+        diag_json_range(json, "range", c->here->source, c->start, c->end);
         json_string(json, "newText", item.insert);
         json_close(json, "}");
     }

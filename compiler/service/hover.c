@@ -235,6 +235,6 @@ void answer_hover(const Here *here, const ServiceQuestion *about, Json *json)
     json_string(json, "kind", "markdown");
     json_string(json, "value", text.bytes);
     json_close(json, "}");
-    add_range(json, "range", here->source, span.start, span.end);
+    diag_json_range(json, "range", here->source, span.start, span.end);
     json_close(json, "}");
 }

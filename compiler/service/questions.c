@@ -288,9 +288,9 @@ static void add_with_uris(Service *service, const char *json, Text *out)
         while (*end && *end != '"')
             end += *end == '\\' && end[1] ? 2 : 1;
         text_add_bytes(out, json, (size_t)(at - json));
-        Json uri = {.text = {.arena = &service->arena}};
-        add_uri(service, &uri, "uri", arena_copy_text(&service->arena, path, (size_t)(end - path)));
-        text_add(out, uri.text.bytes);
+        const char *given = arena_copy_text(&service->arena, path, (size_t)(end - path));
+        text_add(out, "\"uri\":");
+        text_json(out, uri_of(service, given));
         json = *end ? end + 1 : end;
     }
     text_add(out, json);
@@ -313,7 +313,7 @@ static void add_foreign(const Diagnosed *d, const char *source, const char *seve
     text_format(&text, "%s: %s", source, message);
     json_open(json, NULL, "{");
     const Source *own = &d->analysis->sources.items[d->analysis->files.items[0]->source];
-    add_range(json, "range", own, use ? use->span.start : 0, use ? use->span.end : 0);
+    diag_json_range(json, "range", own, use ? use->span.start : 0, use ? use->span.end : 0);
     json_ready(json, "severity", severity);
     json_string(json, "code", code);
     json_string(json, "source", "krs");

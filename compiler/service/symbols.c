@@ -73,8 +73,8 @@ static void add_symbol(const Here *here, const Syntax *syntax, SymbolKind kind, 
     json_string(json, "detail",
                 signature.label.bytes ? signature.label.bytes : syntax_kind_name(syntax->kind));
     json_whole(json, "kind", kind);
-    add_range(json, "range", here->source, syntax->span.start, syntax->span.end);
-    add_range(json, "selectionRange", here->source, name.start, name.end);
+    diag_json_range(json, "range", here->source, syntax->span.start, syntax->span.end);
+    diag_json_range(json, "selectionRange", here->source, name.start, name.end);
     json_close(json, "}");
 }
 
@@ -172,7 +172,7 @@ static void add_selection(const Here *here, const Way *way, size_t count, Json *
 {
     const Span span = way->items[count - 1]->span;
     json_open(json, count == way->count ? NULL : "parent", "{");
-    add_range(json, "range", here->source, span.start, span.end);
+    diag_json_range(json, "range", here->source, span.start, span.end);
     if (count > 1)
         add_selection(here, way, count - 1, json);
     json_close(json, "}");

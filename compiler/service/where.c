@@ -184,7 +184,7 @@ void answer_highlights(const Here *here, const ServiceQuestion *about, Json *jso
         if (other->meaning != use->meaning || (!use->meaning && other->name != use->name))
             continue;
         json_open(json, NULL, "{");
-        add_range(json, "range", here->source, other->span.start, other->span.end);
+        diag_json_range(json, "range", here->source, other->span.start, other->span.end);
         json_ready(json, "kind", other->defines ? "3" : "2"); /* write, read */
         json_close(json, "}");
     }
@@ -213,7 +213,7 @@ void answer_renamed(const Here *here, const ServiceQuestion *about, Json *json)
     if (!find_renamed(here, &target))
         return;
     json_open(json, NULL, "{");
-    add_range(json, "range", here->source, target.span.start, target.span.end);
+    diag_json_range(json, "range", here->source, target.span.start, target.span.end);
     json_string(json, "placeholder", target.name);
     json_close(json, "}");
 }
@@ -387,17 +387,11 @@ void answer_rename(const Here *here, const ServiceQuestion *about, Json *json)
     json_open(json, "changes", "{");
     for (size_t i = 0; i < places.count;) {
         const Source *source = places.items[i].source;
-        Json          uri    = {.text = {.arena = &here->service->arena}};
-        add_uri(here->service, &uri, NULL, source->name);
-        /* The name of this member is a string already. */
-        text_add(&json->text, json->more ? "," : "");
-        text_add(&json->text, uri.text.bytes);
-        text_add(&json->text, ":");
-        json->more = false;
-        json_open(json, NULL, "[");
+        json_open(json, uri_of(here->service, source->name), "[");
         for (; i < places.count && strcmp(places.items[i].source->name, source->name) == 0; i++) {
             json_open(json, NULL, "{");
-            add_range(json, "range", source, places.items[i].span.start, places.items[i].span.end);
+            diag_json_range(json, "range", source, places.items[i].span.start,
+                            places.items[i].span.end);
             json_string(json, "newText", about->word);
             json_close(json, "}");
         }
@@ -426,8 +420,8 @@ void answer_links(const Here *here, const ServiceQuestion *about, Json *json)
         text_add(&path, source->library ? "library:" : "");
         text_add(&path, source->name);
         json_open(json, NULL, "{");
-        add_range(json, "range", here->source, span.start, span.end);
-        add_uri(here->service, json, "target", path.bytes);
+        diag_json_range(json, "range", here->source, span.start, span.end);
+        json_string(json, "target", uri_of(here->service, path.bytes));
         json_close(json, "}");
     }
     json_close(json, "]");

@@ -3,7 +3,7 @@
  */
 #include "web/core/answers.h"
 
-#include "compiler/base/text.h"
+#include "compiler/base/json.h"
 #include "compiler/scene/compiled.h"
 
 /* ---- the answer ---- */
@@ -12,16 +12,16 @@
 static struct Answer {
     Memory memory;
     Arena  arena;
-    Text   text;
-    bool   more; /* something stands before what comes next */
+    Json   json;
 } answer;
+
+static Json *const to = &answer.json;
 
 static void begin(void)
 {
     arena_free(&answer.arena);
     answer.arena = (Arena){.memory = &answer.memory};
-    answer.text  = (Text){.arena = &answer.arena};
-    answer.more  = false;
+    answer.json  = (Json){.text = {.arena = &answer.arena}, .spaced = true};
 }
 
 /* Runs what writes an answer; where memory runs out, there is none. */
@@ -35,80 +35,14 @@ static void begin(void)
             begin();                          \
     } while (0)
 
-const char *answer_text(void) { return answer.text.bytes ? answer.text.bytes : "{\"status\": 71}"; }
-
-/* ---- members ---- */
-
-static void enter(const char *bracket)
-{
-    text_add(&answer.text, bracket);
-    answer.more = false;
-}
-
-static void leave(const char *bracket)
-{
-    text_add(&answer.text, bracket);
-    answer.more = true;
-}
-
-static void separate(void)
-{
-    if (answer.more)
-        text_add(&answer.text, ", ");
-    answer.more = true;
-}
-
-static void name(const char *member)
-{
-    separate();
-    text_format(&answer.text, "\"%s\": ", member);
-}
-
-static void open_member(const char *member, const char *bracket)
-{
-    name(member);
-    enter(bracket);
-}
-
-static void open_element(void)
-{
-    separate();
-    enter("{");
-}
-
-static void add_numbers(const char *member, const double *numbers, size_t count)
-{
-    name(member);
-    json_vector(&answer.text, numbers, count);
-}
-
-static void add_number(const char *member, double number)
-{
-    name(member);
-    json_number(&answer.text, number);
-}
-
-static void add_truth(const char *member, bool truth)
-{
-    name(member);
-    text_add(&answer.text, truth ? "true" : "false");
-}
-
-static void add_string(const char *member, const char *string)
-{
-    name(member);
-    if (string)
-        text_json(&answer.text, string);
-    else
-        text_add(&answer.text, "null");
-}
+const char *answer_text(void) { return to->text.bytes ? to->text.bytes : "{\"status\": 71}"; }
 
 /* ---- compilations ---- */
 
 static void write_begin(void)
 {
-    enter("{");
-    open_member("diagnostics", "[");
+    json_open(to, NULL, "{");
+    json_open(to, "diagnostics", "[");
 }
 
 void answer_begin_compilation(void)
@@ -119,8 +53,7 @@ void answer_begin_compilation(void)
 
 static void write_diagnostic(const KrsDiagnostic *diagnostic)
 {
-    separate();
-    text_add(&answer.text, diagnostic->json);
+    json_ready(to, NULL, diagnostic->json);
 }
 
 void answer_diagnostic(void *user, const KrsDiagnostic *diagnostic)
@@ -132,21 +65,21 @@ void answer_diagnostic(void *user, const KrsDiagnostic *diagnostic)
 static void write_end(KrsStatus status, const KrsChanges *changes)
 {
     static const char *const kinds[] = {"nothing", "values", "structure"};
-    leave("]");
-    add_number("status", status);
+    json_close(to, "]");
+    json_number(to, "status", status);
     if (changes && status == KRS_OK) {
-        open_member("changes", "{");
-        add_string("kind", kinds[changes->kind]);
-        add_truth("parameters", changes->parameters);
-        add_truth("components", changes->components);
-        add_truth("cameras", changes->cameras);
-        add_truth("lights", changes->lights);
-        add_truth("image", changes->image);
-        add_truth("solids", changes->solids);
-        add_truth("surfaces", changes->surfaces);
-        leave("}");
+        json_open(to, "changes", "{");
+        json_string(to, "kind", kinds[changes->kind]);
+        json_truth(to, "parameters", changes->parameters);
+        json_truth(to, "components", changes->components);
+        json_truth(to, "cameras", changes->cameras);
+        json_truth(to, "lights", changes->lights);
+        json_truth(to, "image", changes->image);
+        json_truth(to, "solids", changes->solids);
+        json_truth(to, "surfaces", changes->surfaces);
+        json_close(to, "}");
     }
-    leave("}");
+    json_close(to, "}");
 }
 
 void answer_end_compilation(KrsStatus status, const KrsChanges *changes)
@@ -160,74 +93,74 @@ static void write_parameter(const KrsScene *scene, size_t index)
 {
     KrsParameter p;
     krs_parameter(scene, index, &p);
-    open_element();
-    add_string("name", p.name);
-    add_numbers("value", p.value, p.components);
-    add_numbers("low", p.low, p.components);
-    add_numbers("high", p.high, p.components);
-    add_truth("degrees", p.degrees);
-    add_truth("color", p.color);
-    add_truth("whole", p.whole);
-    add_string("doc", p.doc);
-    add_string("source", p.source);
-    add_number("start", p.start);
-    add_number("end", p.end);
-    leave("}");
+    json_open(to, NULL, "{");
+    json_string(to, "name", p.name);
+    json_numbers(to, "value", p.value, p.components);
+    json_numbers(to, "low", p.low, p.components);
+    json_numbers(to, "high", p.high, p.components);
+    json_truth(to, "degrees", p.degrees);
+    json_truth(to, "color", p.color);
+    json_truth(to, "whole", p.whole);
+    json_string(to, "doc", p.doc);
+    json_string(to, "source", p.source);
+    json_number(to, "start", p.start);
+    json_number(to, "end", p.end);
+    json_close(to, "}");
 }
 
 static void write_component(const KrsScene *scene, size_t index)
 {
     KrsComponent c;
     krs_component(scene, index, &c);
-    open_element();
-    add_string("name", c.name);
-    add_numbers("low", c.low, 3);
-    add_numbers("high", c.high, 3);
-    add_truth("exact", c.exact);
-    add_truth("estimate", c.estimate);
-    add_truth("figure", c.figure);
-    add_number("flops", c.flops);
-    leave("}");
+    json_open(to, NULL, "{");
+    json_string(to, "name", c.name);
+    json_numbers(to, "low", c.low, 3);
+    json_numbers(to, "high", c.high, 3);
+    json_truth(to, "exact", c.exact);
+    json_truth(to, "estimate", c.estimate);
+    json_truth(to, "figure", c.figure);
+    json_number(to, "flops", c.flops);
+    json_close(to, "}");
 }
 
 static void write_texture(const KrsScene *scene, size_t index)
 {
     KrsTexture t;
     krs_texture(scene, index, &t);
-    open_element();
-    add_string("file", t.file);
-    add_number("width", t.width);
-    add_number("height", t.height);
-    add_number("levels", t.levels);
-    add_truth("gray", t.gray);
-    add_number("header", (double)t.header);
-    add_number("first", (double)t.first);
-    leave("}");
+    json_open(to, NULL, "{");
+    json_string(to, "file", t.file);
+    json_number(to, "width", t.width);
+    json_number(to, "height", t.height);
+    json_number(to, "levels", t.levels);
+    json_truth(to, "gray", t.gray);
+    json_number(to, "header", (double)t.header);
+    json_number(to, "first", (double)t.first);
+    json_close(to, "}");
 }
 
 static void write_image(const KrsScene *scene)
 {
     const KrsImage image = krs_scene_image(scene);
-    open_member("image", "{");
-    add_number("width", image.width);
-    add_number("height", image.height);
-    add_number("samples", image.samples);
-    add_string("integrator", image.integrator);
-    add_number("exposure", image.exposure);
-    add_string("tone_map", image.tone_map);
-    add_string("pixel_filter", image.pixel_filter);
-    add_numbers("white_balance", image.white_balance, 2);
-    leave("}");
+    json_open(to, "image", "{");
+    json_number(to, "width", image.width);
+    json_number(to, "height", image.height);
+    json_number(to, "samples", image.samples);
+    json_string(to, "integrator", image.integrator);
+    json_number(to, "exposure", image.exposure);
+    json_string(to, "tone_map", image.tone_map);
+    json_string(to, "pixel_filter", image.pixel_filter);
+    json_numbers(to, "white_balance", image.white_balance, 2);
+    json_close(to, "}");
 }
 
 /* Writes what a program that draws the scene chooses its shaders by. */
 static void write_shaders(const KrsScene *scene)
 {
     const KrsProgram *program = krs_scene_program(scene);
-    open_member("shaders", "{");
-    add_numbers("low", program->low, 3);
-    add_numbers("high", program->high, 3);
-#define ADD_TRUTH(member) add_truth(#member, program->member);
+    json_open(to, "shaders", "{");
+    json_numbers(to, "low", program->low, 3);
+    json_numbers(to, "high", program->high, 3);
+#define ADD_TRUTH(member) json_truth(to, #member, program->member);
     ADD_TRUTH(open_surfaces)
     ADD_TRUTH(gradients)
     ADD_TRUTH(algebraic)
@@ -242,37 +175,37 @@ static void write_shaders(const KrsScene *scene)
     ADD_TRUTH(views)
     ADD_TRUTH(emits)
 #undef ADD_TRUTH
-    add_truth("panoramas", krs_scene_is_panoramic(scene));
-    add_truth("lenses", krs_scene_has_lens(scene));
-    add_truth("affordable", krs_structure_is_affordable(scene));
-    leave("}");
+    json_truth(to, "panoramas", krs_scene_is_panoramic(scene));
+    json_truth(to, "lenses", krs_scene_has_lens(scene));
+    json_truth(to, "affordable", krs_structure_is_affordable(scene));
+    json_close(to, "}");
 }
 
 static void write_scene(const KrsScene *scene)
 {
     const KrsDiagnostic *too_large = krs_scene_too_large(scene);
-    enter("{");
-    add_string("version", krs_version());
-    open_member("parameters", "[");
+    json_open(to, NULL, "{");
+    json_string(to, "version", krs_version());
+    json_open(to, "parameters", "[");
     for (size_t i = 0; i < krs_parameter_count(scene); i++)
         write_parameter(scene, i);
-    leave("]");
-    open_member("components", "[");
+    json_close(to, "]");
+    json_open(to, "components", "[");
     for (size_t i = 0; i < krs_component_count(scene); i++)
         write_component(scene, i);
-    leave("]");
-    open_member("textures", "[");
+    json_close(to, "]");
+    json_open(to, "textures", "[");
     for (size_t i = 0; i < krs_texture_count(scene); i++)
         write_texture(scene, i);
-    leave("]");
+    json_close(to, "]");
     write_image(scene);
     write_shaders(scene);
-    add_number("parameter_slots", (double)krs_parameter_slots(scene));
-    add_number("value_slots", (double)krs_value_slots(scene));
-    add_number("table_rows", (double)krs_table_rows(scene));
-    add_number("table_cells", (double)krs_table_cells(scene));
-    add_string("too_large", too_large ? too_large->message : NULL);
-    leave("}");
+    json_number(to, "parameter_slots", (double)krs_parameter_slots(scene));
+    json_number(to, "value_slots", (double)krs_value_slots(scene));
+    json_number(to, "table_rows", (double)krs_table_rows(scene));
+    json_number(to, "table_cells", (double)krs_table_cells(scene));
+    json_string(to, "too_large", too_large ? too_large->message : NULL);
+    json_close(to, "}");
 }
 
 void answer_scene(const KrsScene *scene)
@@ -286,9 +219,9 @@ void answer_scene(const KrsScene *scene)
 static void add_member(const char *member, const double *numbers, size_t count)
 {
     if (count == 1)
-        add_number(member, *numbers);
+        json_number(to, member, *numbers);
     else
-        add_numbers(member, numbers, count);
+        json_numbers(to, member, numbers, count);
 }
 
 /* Writes a member of a struct, a number or several. */
@@ -300,12 +233,12 @@ static void write_camera(KrsState *state, const char *given, size_t index)
     KrsCamera camera;
     if (krs_state_camera(state, index, &camera) != KRS_OK)
         return;
-    open_element();
-    add_string("name", given);
+    json_open(to, NULL, "{");
+    json_string(to, "name", given);
 #define KRS_CAMERA(member, ...)       ADD_MEMBER(&camera, member);
-#define KRS_CAMERA_FIXED(member, ...) add_number(#member, camera.member);
+#define KRS_CAMERA_FIXED(member, ...) json_number(to, #member, camera.member);
 #include "krs/camera.def"
-    leave("}");
+    json_close(to, "}");
 }
 
 static void write_light(KrsState *state, const char *given, size_t index)
@@ -313,18 +246,18 @@ static void write_light(KrsState *state, const char *given, size_t index)
     KrsLight light;
     if (krs_state_light(state, index, &light) != KRS_OK)
         return;
-    open_element();
-    add_string("name", given);
-    add_truth("positional", light.positional);
-    add_truth("shadow", light.shadow);
-    add_truth("spot", light.spot);
-    add_number("type", light.type);
+    json_open(to, NULL, "{");
+    json_string(to, "name", given);
+    json_truth(to, "positional", light.positional);
+    json_truth(to, "shadow", light.shadow);
+    json_truth(to, "spot", light.spot);
+    json_number(to, "type", light.type);
     ADD_MEMBER(&light, axis);
     ADD_MEMBER(&light, right);
     ADD_MEMBER(&light, up);
 #define KRS_LIGHT(member, ...) ADD_MEMBER(&light, member);
 #include "krs/lights.def"
-    leave("}");
+    json_close(to, "}");
 }
 
 static void write_sky(KrsState *state)
@@ -332,20 +265,20 @@ static void write_sky(KrsState *state)
     KrsSky sky;
     if (krs_state_sky(state, &sky) != KRS_OK)
         return;
-    open_member("sky", "{");
+    json_open(to, "sky", "{");
     ADD_MEMBER(&sky, zenith);
     ADD_MEMBER(&sky, horizon);
     ADD_MEMBER(&sky, ground);
     ADD_MEMBER(&sky, rotation);
     ADD_MEMBER(&sky, intensity);
     if (sky.map) {
-        open_member("map", "{");
-        add_number("width", sky.map->width);
-        add_number("height", sky.map->height);
-        add_number("texels", (double)(uintptr_t)sky.map->texels);
-        leave("}");
+        json_open(to, "map", "{");
+        json_number(to, "width", sky.map->width);
+        json_number(to, "height", sky.map->height);
+        json_number(to, "texels", (double)(uintptr_t)sky.map->texels);
+        json_close(to, "}");
     }
-    leave("}");
+    json_close(to, "}");
 }
 
 static void write_fog(KrsState *state)
@@ -353,28 +286,28 @@ static void write_fog(KrsState *state)
     KrsFog fog;
     if (krs_state_fog(state, &fog) != KRS_OK)
         return;
-    open_member("fog", "{");
+    json_open(to, "fog", "{");
     ADD_MEMBER(&fog, color);
     ADD_MEMBER(&fog, density);
     ADD_MEMBER(&fog, fall);
     ADD_MEMBER(&fog, base);
-    leave("}");
+    json_close(to, "}");
 }
 
 static void write_view(KrsState *state, const KrsScene *scene)
 {
-    enter("{");
-    open_member("cameras", "[");
+    json_open(to, NULL, "{");
+    json_open(to, "cameras", "[");
     for (size_t i = 0; i < krs_camera_count(scene); i++)
         write_camera(state, krs_camera_name(scene, i), i);
-    leave("]");
-    open_member("lights", "[");
+    json_close(to, "]");
+    json_open(to, "lights", "[");
     for (size_t i = 0; i < krs_light_count(scene); i++)
         write_light(state, krs_light_name(scene, i), i);
-    leave("]");
+    json_close(to, "]");
     write_sky(state);
     write_fog(state);
-    leave("}");
+    json_close(to, "}");
 }
 
 void answer_view(const KrsScene *scene, KrsState *state)
@@ -387,29 +320,29 @@ void answer_view(const KrsScene *scene, KrsState *state)
 
 static void write_hit(const KrsHit *hit)
 {
-    open_element();
-    add_truth("hit", hit->hit);
-    add_truth("unresolved", hit->unresolved);
+    json_open(to, NULL, "{");
+    json_truth(to, "hit", hit->hit);
+    json_truth(to, "unresolved", hit->unresolved);
     ADD_MEMBER(hit, t);
     ADD_MEMBER(hit, point);
     ADD_MEMBER(hit, distance);
     ADD_MEMBER(hit, normal);
-#define KRS_IDENTITY(member, ...) add_number(#member, hit->member);
+#define KRS_IDENTITY(member, ...) json_number(to, #member, hit->member);
 #include "krs/surface.def"
 #define KRS_MATERIAL(member, ...) ADD_MEMBER(hit, member);
 #include "krs/surface.def"
-    leave("}");
+    json_close(to, "}");
 }
 
 static void write_hits(KrsStatus status, const KrsHit *hits, size_t count)
 {
-    enter("{");
-    add_number("status", status);
-    open_member("hits", "[");
+    json_open(to, NULL, "{");
+    json_number(to, "status", status);
+    json_open(to, "hits", "[");
     for (size_t i = 0; i < count && status == KRS_OK; i++)
         write_hit(&hits[i]);
-    leave("]");
-    leave("}");
+    json_close(to, "]");
+    json_close(to, "}");
 }
 
 void answer_hits(KrsStatus status, const KrsHit *hits, size_t count)
@@ -420,19 +353,19 @@ void answer_hits(KrsStatus status, const KrsHit *hits, size_t count)
 
 static void write_mesh(KrsStatus status, const KrsMesh *mesh)
 {
-    enter("{");
-    add_number("status", status);
+    json_open(to, NULL, "{");
+    json_number(to, "status", status);
     if (mesh) {
-        add_number("vertices", (double)(uintptr_t)mesh->vertices);
-        add_number("vertex_count", (double)mesh->vertex_count);
-        add_number("triangles", (double)(uintptr_t)mesh->triangles);
-        add_number("triangle_count", (double)mesh->triangle_count);
-        add_number("error", mesh->error);
-        add_number("unresolved", (double)mesh->unresolved);
-        add_truth("estimate", mesh->estimate);
-        add_truth("steps", mesh->steps);
+        json_number(to, "vertices", (double)(uintptr_t)mesh->vertices);
+        json_number(to, "vertex_count", (double)mesh->vertex_count);
+        json_number(to, "triangles", (double)(uintptr_t)mesh->triangles);
+        json_number(to, "triangle_count", (double)mesh->triangle_count);
+        json_number(to, "error", mesh->error);
+        json_number(to, "unresolved", (double)mesh->unresolved);
+        json_truth(to, "estimate", mesh->estimate);
+        json_truth(to, "steps", mesh->steps);
     }
-    leave("}");
+    json_close(to, "}");
 }
 
 void answer_mesh(KrsStatus status, const KrsMesh *mesh)
