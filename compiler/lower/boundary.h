@@ -9,7 +9,6 @@
 #define KRS_BOUNDARY_H
 
 #include "compiler/lower/context.h"
-#include "compiler/outline/path.h"
 
 /* Makes what is known of a CSG node's boundary, which is looked for when it is first needed. */
 struct Boundary *boundary_new(Arena *arena);
@@ -18,8 +17,5 @@ struct Boundary *boundary_new(Arena *arena);
    the true one there, and the boundary is known, it gets the distance to that, with the sign of the parts. */
 Lowered lower_within_boundary(Lowering *l, const Shape *csg_node, LowerContext context,
                               LowerShape *by_parts);
-
-/* Finds the outline of a figure, with the inside on its left; false: it is not known. */
-bool boundary_outline(Graph *graph, const Shape *figure, Arena *arena, Curves *curves);
 
 #endif

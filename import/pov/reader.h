@@ -221,6 +221,10 @@ bool pov_value_follows(PovReader *reader);
 bool pov_value(PovReader *reader, PovValue *value);
 /* Does the same between parentheses, where values may be compared. */
 bool pov_condition(PovReader *reader, PovValue *value);
+/* Returns an element of an array that was filled. */
+const PovCell *pov_first_element(const PovCell *array);
+/* Reads the next argument of a function. */
+bool pov_next_argument(PovReader *reader, PovValue *value);
 bool pov_string_follows(PovReader *reader);
 bool pov_string(PovReader *reader, const char **string);
 bool pov_number(PovReader *reader, double *number);

@@ -1,5 +1,5 @@
 /*
- * values.c: numbers, vectors and strings of POV-Ray, and arithmetic with them.
+ * values.c: numbers and vectors of POV-Ray, and arithmetic with them.
  *
  *     condition = either [ "?" condition ":" condition ]; either joins comparisons by | and &
  *     value     = product { ("+" | "-") product }
@@ -121,15 +121,14 @@ static int find_function(const char *name)
     return -1;
 }
 
-/* Returns an element of an array that was filled. */
-static const PovCell *first_element(const PovCell *array)
+const PovCell *pov_first_element(const PovCell *array)
 {
     int count = 1;
     for (int i = 0; i < array->dimensions; i++)
         count *= array->sizes[i];
     for (int i = 0; i < count; i++)
         if (array->items[i]->kind == POV_ARRAY)
-            return first_element(array->items[i]);
+            return pov_first_element(array->items[i]);
         else if (array->items[i]->kind != POV_NOTHING)
             return array->items[i];
     return NULL;
@@ -164,7 +163,7 @@ bool pov_value_follows(PovReader *reader)
         return false;
     const PovCell *own = pov_find(reader, words->word.text);
     for (int i = 0; own && own->kind == POV_ARRAY && i < 1; i++)
-        own = first_element(own);
+        own = pov_first_element(own);
     if (own)
         return own->kind == POV_VALUE || own->kind == POV_FUNCTION || own->kind == POV_NOTHING;
     return find_constant(words->word.text) >= 0 || find_function(words->word.text) >= 0 ||
@@ -248,7 +247,7 @@ static double next_random(PovCell *stream)
     return state / 4294967296.0;
 }
 
-static bool next_argument(PovReader *reader, PovValue *value)
+bool pov_next_argument(PovReader *reader, PovValue *value)
 {
     word_accept(&reader->words, ",");
     return pov_condition(reader, value);
@@ -269,8 +268,8 @@ static void rotate_about(const double v[3], const double axis[3], double degrees
 static bool vector_rotated(PovReader *reader, bool by_axis, PovValue *value)
 {
     PovValue by, angle = {.count = 1};
-    if (!pov_condition(reader, value) || !next_argument(reader, &by) ||
-        (by_axis && !next_argument(reader, &angle)))
+    if (!pov_condition(reader, value) || !pov_next_argument(reader, &by) ||
+        (by_axis && !pov_next_argument(reader, &angle)))
         return false;
     pov_promote(value, 3);
     pov_promote(&by, 3);
@@ -291,7 +290,7 @@ static bool of_array(PovReader *reader, bool size, PovValue *value)
     PovValue which = {.v = {1}, .count = 1};
     if (!array)
         return word_refuse(&reader->words, "an array");
-    if (size && !next_argument(reader, &which))
+    if (size && !pov_next_argument(reader, &which))
         return false;
     int index   = (int)which.v[0] - 1;
     *value      = (PovValue){.count = 1};
@@ -599,100 +598,5 @@ bool pov_vector(PovReader *reader, double v[3])
         return false;
     pov_promote(&value, 3);
     memcpy(v, value.v, 3 * sizeof *v);
-    return true;
-}
-
-/* ---- strings ---- */
-
-static const char *const string_functions[] = {"concat", "str",    "chr",  "substr",
-                                               "strupr", "strlwr", "vstr", "datetime"};
-
-bool pov_string_follows(PovReader *reader)
-{
-    const WordReader *words = &reader->words;
-    if (words->word.kind == IMPORT_WORD_STRING)
-        return true;
-    if (words->word.kind != IMPORT_WORD_NAME)
-        return false;
-    const PovCell *own = pov_find(reader, words->word.text);
-    if (own && own->kind == POV_ARRAY)
-        own = first_element(own);
-    if (own)
-        return own->kind == POV_STRING;
-    for (size_t i = 0; i < sizeof string_functions / sizeof *string_functions - 1; i++)
-        if (word_is(words, string_functions[i]))
-            return true;
-    return false;
-}
-
-/* Reads `str(number, least length, digits)`. */
-static bool number_string(PovReader *reader, Text *text)
-{
-    PovValue value, length, digits;
-    if (!pov_condition(reader, &value) || !next_argument(reader, &length) ||
-        !next_argument(reader, &digits))
-        return false;
-    int places = (int)fmin(fmax(digits.v[0], -1), 20);
-    int wide   = (int)fmin(fmax(length.v[0], -40), 40);
-    if (wide < 0)
-        text_format(text, "%0*.*f", -wide, places < 0 ? 6 : places, value.v[0]);
-    else
-        text_format(text, "%*.*f", wide, places < 0 ? 6 : places, value.v[0]);
-    return true;
-}
-
-static bool string_function(PovReader *reader, const char *name, Text *text)
-{
-    const char *part;
-    PovValue    from, count;
-    if (strcmp(name, "str") == 0)
-        return number_string(reader, text);
-    if (strcmp(name, "chr") == 0) {
-        if (!pov_condition(reader, &from))
-            return false;
-        text_add_bytes(text, (char[]){(char)fmin(fmax(from.v[0], 1), 126)}, 1);
-        return true;
-    }
-    if (strcmp(name, "vstr") == 0)
-        return word_refuse(&reader->words, "a string that is not made by `vstr`");
-    do {
-        if (!pov_string(reader, &part))
-            return false;
-        if (strcmp(name, "substr") != 0)
-            text_add(text, part);
-    } while (strcmp(name, "concat") == 0 && word_accept(&reader->words, ","));
-    if (strcmp(name, "substr") != 0)
-        return true;
-    if (!next_argument(reader, &from) || !next_argument(reader, &count))
-        return false;
-    size_t length = strlen(part), first = (size_t)fmin(fmax(from.v[0] - 1, 0), (double)length);
-    text_add_bytes(text, part + first, (size_t)fmin(fmax(count.v[0], 0), (double)(length - first)));
-    return true;
-}
-
-bool pov_string(PovReader *reader, const char **string)
-{
-    WordReader *words = &reader->words;
-    Text        text  = {.arena = reader->import->arena};
-    if (!pov_release(reader))
-        return false;
-    *string = words->word.text;
-    if (words->word.kind == IMPORT_WORD_STRING) {
-        words_advance(words);
-        return true;
-    }
-    PovCell *own = pov_take(reader, POV_STRING);
-    if (own) {
-        *string = own->string;
-        return true;
-    }
-    if (!pov_string_follows(reader))
-        return word_refuse(words, "a string");
-    const char *name = words->word.text;
-    words_advance(words);
-    if (!word_expect(words, "(") || !string_function(reader, name, &text) ||
-        !word_expect(words, ")"))
-        return false;
-    *string = text.length > 0 ? text.bytes : "";
     return true;
 }

@@ -2,7 +2,7 @@
 #include "compiler/base/elementary.h"
 #include "compiler/eval/builtins/builtins.h"
 #include "compiler/family/family.h"
-#include "compiler/lower/boundary.h"
+#include "compiler/lower/figure_outline.h"
 
 /* The distance of parabolas from arcs that is permitted, in sizes of the figure. */
 static const double TOLERANCE = 1e-6;
@@ -48,8 +48,9 @@ static bool is_drawn(const Shape *figure)
 const Shape *grown_outline(Elaboration *e, const Shape *figure, const Shape *grown)
 {
     Curves found = {0}, curves = {0};
+    bool   changed;
     if (!e->outlines || !grown->figure || !is_drawn(figure) ||
-        !boundary_outline(e->graph, grown, e->scratch, &found) || found.count == 0)
+        !figure_outline(e->graph, grown, e->scratch, &found, &changed) || found.count == 0)
         return grown;
     double size = 0;
     for (size_t i = 0; i < found.count; i++)
