@@ -7,7 +7,7 @@
 
 # What tests of several kinds share; nothing of it knows what is tested.
 SUPPORT     := $(addprefix tests/support/, agreement.c bench.c instance_texts.c device.c folder.c random.c \
-               renderer.c same_scene.c scarce.c scattered.c)
+               renderer.c same_scene.c scarce.c scattered.c triangles.c)
 # What tests of one kind share.
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
                formulas.c montecarlo.c quaternions.c chain.c chain_random.c map_chain.c \

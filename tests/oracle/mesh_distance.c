@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tests/support/triangles.h"
+
 /* ---- triangles by where they are ---- */
 
 enum { CELLS = 32 }; /* along a side */
@@ -92,28 +94,6 @@ void mesh_grid_free(MeshGrid *grid)
     free(grid);
 }
 
-static double distance_to_segment(Vec p, Vec a, Vec b)
-{
-    Vec    along = vec_sub(b, a);
-    double size  = vec_dot(along, along);
-    double t     = size > 0 ? fmax(0, fmin(1, vec_dot(vec_sub(p, a), along) / size)) : 0;
-    return vec_distance(p, vec_mix(a, b, t));
-}
-
-/* The foot on the plane, if it is inside of all three sides; else the nearest side. */
-static double distance_to_triangle(Vec p, Vec a, Vec b, Vec c)
-{
-    Vec    normal = vec_cross(vec_sub(b, a), vec_sub(c, a));
-    double size   = vec_length(normal), least;
-    least         = fmin(distance_to_segment(p, a, b),
-                         fmin(distance_to_segment(p, b, c), distance_to_segment(p, c, a)));
-    if (size > 0 && vec_dot(vec_cross(vec_sub(b, a), vec_sub(p, a)), normal) >= 0 &&
-        vec_dot(vec_cross(vec_sub(c, b), vec_sub(p, b)), normal) >= 0 &&
-        vec_dot(vec_cross(vec_sub(a, c), vec_sub(p, c)), normal) >= 0)
-        least = fmin(least, fabs(vec_dot(vec_sub(p, a), normal)) / size);
-    return least;
-}
-
 double mesh_grid_distance(const MeshGrid *grid, Vec p)
 {
     const double at[3] = {p.x, p.y, p.z};
@@ -122,10 +102,11 @@ double mesh_grid_distance(const MeshGrid *grid, Vec p)
     for (int k = 0; k < 3; k++)
         cell = cell * CELLS + (size_t)cell_of(grid, at[k], k);
     for (uint32_t i = grid->first[cell]; i < grid->first[cell + 1]; i++) {
-        uint32_t t = grid->items[i];
-        least      = fmin(least,
-                          distance_to_triangle(p, vertex(grid->mesh, t, 0), vertex(grid->mesh, t, 1),
-                                               vertex(grid->mesh, t, 2)));
+        double corners[3][3];
+        for (int c = 0; c < 3; c++)
+            memcpy(corners[c], grid->mesh->vertices[grid->mesh->triangles[grid->items[i]][c]],
+                   sizeof corners[c]);
+        least = fmin(least, distance_to_triangle((const double(*)[3])corners, at));
     }
     return least <= grid->reach ? least : HUGE_VAL;
 }

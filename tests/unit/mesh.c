@@ -15,6 +15,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/field/bvh.h"
+#include "tests/support/triangles.h"
 #include "tests/unit/crossings.h"
 #include "tests/unit/queried.h"
 
@@ -87,10 +88,9 @@ static double distance_to_mesh(const KrsMesh *mesh, const double point[3])
 {
     double least = INFINITY;
     for (size_t i = 0; i < mesh->triangle_count; i++) {
-        double corners[3][3], nearest[3];
+        double corners[3][3];
         corners_of(mesh, i, corners);
-        triangle_nearest((const double(*)[3])corners, point, nearest);
-        least = fmin(least, distance3(nearest, point));
+        least = fmin(least, distance_to_triangle((const double(*)[3])corners, point));
     }
     return least;
 }

@@ -14,6 +14,7 @@
 #include "mesh/simplify/blocks.h"
 #include "mesh/simplify/fans.h"
 #include "tests/support/random.h"
+#include "tests/support/triangles.h"
 
 enum { AROUND = 24, COUNT = AROUND * AROUND, TRIANGLES = 2 * COUNT };
 
@@ -81,12 +82,6 @@ static bool goes_on(void *user, double part)
     return part <= 1;
 }
 
-static void count_report(void *user, uint32_t triangle)
-{
-    (void)triangle;
-    (*(size_t *)user)++;
-}
-
 static size_t collapse(Ring *ring)
 {
     CollapseRules rules = {.kept      = ring->kept,
@@ -99,14 +94,15 @@ static size_t collapse(Ring *ring)
                            .user      = ring};
     for (size_t i = 0; i < TRIANGLES; i++)
         ring->off[i] = ring->missed[i] = ring->apart;
-    size_t left = collapse_edges((const double(*)[3])ring->vertices, COUNT, ring->triangles,
-                                 TRIANGLES, &rules, &ring->arena),
-           open = 0, used = 0;
-    TriangleEdges edges = sort_edges((const uint32_t(*)[3])ring->triangles, left, &ring->arena);
-    report_open(&edges, count_report, &open);
-    assert_int_equal(open, 0);
-    for (size_t i = 0; i < edges.vertex_count; i++)
-        used += edges.begins[i + 1] > edges.begins[i];
+    size_t left      = collapse_edges((const double(*)[3])ring->vertices, COUNT, ring->triangles,
+                                      TRIANGLES, &rules, &ring->arena),
+           used      = 0;
+    bool uses[COUNT] = {false};
+    assert_int_equal(count_open_sides((const uint32_t(*)[3])ring->triangles, left), 0);
+    for (size_t i = 0; i < 3 * left; i++)
+        uses[ring->triangles[i / 3][i % 3]] = true;
+    for (size_t i = 0; i < COUNT; i++)
+        used += uses[i];
     assert_int_equal(2 * used, left); /* the Euler number is 0 */
     return left;
 }
@@ -160,11 +156,11 @@ static void vertices_are_near(void **state)
         for (size_t i = 0; i < COUNT; i++) {
             double least = INFINITY;
             for (size_t k = 0; k < left; k++) {
-                double corners[3][3], nearest[3];
+                double corners[3][3];
                 for (int c = 0; c < 3; c++)
                     memcpy(corners[c], ring->vertices[ring->triangles[k][c]], sizeof corners[c]);
-                triangle_nearest((const double(*)[3])corners, ring->vertices[i], nearest);
-                least = fmin(least, distance3(nearest, ring->vertices[i]));
+                least = fmin(least,
+                             distance_to_triangle((const double(*)[3])corners, ring->vertices[i]));
             }
             assert_true(least <= error * (1 + 1e-9));
         }
@@ -189,11 +185,10 @@ static double max_apart(const double (*vertices)[3], const uint32_t (*from)[3], 
                                 (STEPS - a - b) * vertices[from[i][2]][k]) /
                                STEPS;
                 for (size_t n = 0; n < to_count; n++) {
-                    double corners[3][3], nearest[3];
+                    double corners[3][3];
                     for (int c = 0; c < 3; c++)
                         memcpy(corners[c], vertices[to[n][c]], sizeof corners[c]);
-                    triangle_nearest((const double(*)[3])corners, point, nearest);
-                    least = fmin(least, distance3(nearest, point));
+                    least = fmin(least, distance_to_triangle((const double(*)[3])corners, point));
                 }
                 most = fmax(most, least);
             }
@@ -318,33 +313,33 @@ static void blocks_meet_at_their_borders(void **state)
                             .missed    = large->missed,
                             .is_wanted = goes_on};
     const double(*at)[3] = (const double(*)[3])large->vertices;
-    size_t open = 0, used = 0, gone = 0;
+    bool  *uses          = calloc(MANY, sizeof *uses);
+    size_t used = 0, gone = 0;
     (void)state;
     size_t left = collapse_blocks(at, MANY, (const uint32_t(*)[3])large->triangles, 2 * MANY,
                                   large->order, &rules, large->left, &arena);
     assert_true(left > 100 && left < 2 * MANY / 3);
-    TriangleEdges edges = sort_edges((const uint32_t(*)[3])large->left, left, &arena);
-    report_open(&edges, count_report, &open);
-    assert_int_equal(open, 0);
+    assert_int_equal(count_open_sides((const uint32_t(*)[3])large->left, left), 0);
+    for (size_t i = 0; i < 3 * left; i++)
+        uses[large->left[i / 3][i % 3]] = true;
     for (uint32_t i = 0; i < MANY; i++) {
-        bool uses = i < edges.vertex_count && edges.begins[i + 1] > edges.begins[i];
-        used += uses;
-        assert_int_equal(large->below[i] == UINT32_MAX, uses);
-        if (uses)
+        used += uses[i];
+        assert_int_equal(large->below[i] == UINT32_MAX, uses[i]);
+        if (uses[i])
             continue;
-        double corners[3][3], nearest[3];
+        double corners[3][3];
         gone++;
         assert_true(large->below[i] < left);
         for (int c = 0; c < 3; c++)
             memcpy(corners[c], at[large->left[large->below[i]][c]], sizeof corners[c]);
-        triangle_nearest((const double(*)[3])corners, at[i], nearest);
-        assert_true(distance3(nearest, at[i]) <= error * (1 + 1e-9));
+        assert_true(distance_to_triangle((const double(*)[3])corners, at[i]) <= error * (1 + 1e-9));
     }
     for (size_t i = 0; i < left; i++)
         assert_true(large->off[i] <= error && large->missed[i] <= error);
     assert_int_equal(2 * used, left); /* the Euler number is 0 */
     print_message("# %zu of %d triangles, %zu vertices gone\n", left, 2 * MANY, gone);
     arena_free(&arena);
+    free(uses);
     free(large);
 }
 

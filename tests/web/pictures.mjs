@@ -35,14 +35,18 @@ async function show(name, width, height) {
     return { ok: update.ok && frames.at(-1)?.samples >= 1, said: update.diagnostics.map(d => d.message).join('; ') };
 }
 
-// Where rays hit: depth along the view, and the component there, or 0.
+// Where rays hit: depth along the view, and the component there, or 0.  Which way rays go is found here once more.
 async function hits(width, height) {
-    const { basisOf, rayOf } = await import('/krs/frame.mjs'), rays = await view.rays(width, height), { camera } = view;
-    const { forward } = basisOf(camera), depths = [], points = [], dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
+    const rays = await view.rays(width, height), { camera } = view, depths = [], points = [];
+    const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0), unit = a => a.map(x => x / Math.sqrt(dot(a, a)));
+    const cross = (a, b) => [0, 1, 2].map(k => a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    const forward = unit(camera.target.map((x, k) => x - camera.eye[k])), right = unit(cross(forward, camera.up)), up = cross(right, forward);
+    const flat = camera.projection === 'orthographic', half = flat ? camera.height / 2 : Math.tan(camera.fov / 2);
     for (let i = 0; i < width * height; i++) {
-        const [t, , state] = rays.subarray(4 * i, 4 * i + 3), x = i % width, y = Math.floor(i / width);
-        const { origin, direction } = rayOf(camera, width, height, 2 * (x + 0.5) / width - 1, 1 - 2 * (y + 0.5) / height);
-        const point = origin.map((o, k) => o + t / Math.hypot(...direction) * direction[k]);
+        const [t, , state] = rays.subarray(4 * i, 4 * i + 3), x = 2 * (i % width + 0.5) - width, y = height - 2 * (Math.floor(i / width) + 0.5);
+        const beside = right.map((r, k) => half / height * (x * r + y * up[k]));
+        const origin = camera.eye.map((e, k) => e + (flat ? beside[k] : 0)), ahead = unit(forward.map((f, k) => f + (flat ? 0 : beside[k])));
+        const point = origin.map((o, k) => o + t * ahead[k]);
         depths.push(state === 1 ? dot(point.map((p, k) => p - camera.eye[k]), forward) : null);
         if (state === 1)
             points.push(point);
