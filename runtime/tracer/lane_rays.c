@@ -8,17 +8,20 @@
 #include "runtime/tracer/lane_rays.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <string.h>
 #include <time.h>
 
-#include "compiler/base/parallel.h"
-#include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/lane_deal.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/rendering.h"
 #include "runtime/tracer/view.h"
 
-enum { SIDE = 64, BLOCK_SIDE = 4, RAYS_OF_WAVE = BLOCKS_OF_WAVE * RAYS_OF_BLOCK };
+enum {
+    SIDE          = 64,
+    BLOCK_SIDE    = 4,
+    RAYS_OF_WAVE  = BLOCKS_OF_WAVE * RAYS_OF_BLOCK,
+    BYTES_OF_PART = BLOCKS_OF_WAVE * sizeof(RayBlock)
+};
 static_assert(SIDE * SIDE == BLOCKS_OF_TILE * RAYS_OF_BLOCK &&
                   BLOCK_SIDE * BLOCK_SIDE == RAYS_OF_BLOCK,
               "rays.h");
@@ -65,26 +68,14 @@ typedef struct Slice {
     const Job       *job;
     RayField        *field;
     const WorkBlock *work;
-    const uint32_t  *slots;      /* of pixels whose paths go on */
-    FrameBlock       box;        /* around what is marched */
-    uint32_t    across, tile[2]; /* of all tiles: in a row, and the first one's column and row */
-    uint32_t    items;           /* of rays of hits, or of paths */
-    atomic_uint next;
-    uint32_t    end;
-    RayBlock   *blocks[MAX_PARTS]; /* of each part */
-    uint64_t    evaluations[MAX_PARTS];
-    uint32_t    max_steps[MAX_PARTS];
+    const uint32_t  *slots;   /* of pixels whose paths go on */
+    FrameBlock       box;     /* around what is marched */
+    uint32_t across, tile[2]; /* of all tiles: in a row, and the first one's column and row */
+    uint32_t items;           /* of rays of hits, or of paths */
+    LaneDeal deal;
+    uint64_t evaluations[MAX_PARTS];
+    uint32_t max_steps[MAX_PARTS];
 } Slice;
-
-/* Returns the even and the odd bits of a number: column and row in the order in which quarters of
-   quarters follow each other. */
-static uint32_t column_of(uint32_t number)
-{
-    uint32_t column = 0;
-    for (uint32_t bit = 0; bit < 16; bit++)
-        column |= (number >> 2 * bit & 1) << bit;
-    return column;
-}
 
 /* The first pixel of a block, counted in the picture. */
 typedef struct Corner {
@@ -94,8 +85,9 @@ typedef struct Corner {
 static Corner corner_of(const Slice *slice, uint32_t tile, uint32_t block)
 {
     return (Corner){
-        {SIDE * (slice->tile[0] + tile % slice->across) + BLOCK_SIDE * column_of(block),
-         SIDE * (slice->tile[1] + tile / slice->across) + BLOCK_SIDE * column_of(block >> 1)}};
+        {SIDE * (slice->tile[0] + tile % slice->across) + BLOCK_SIDE * lane_rays_column(block),
+         SIDE * (slice->tile[1] + tile / slice->across) +
+             BLOCK_SIDE * lane_rays_column(block >> 1)}};
 }
 
 /* Finds the pixel of a ray, counted in the band; false: it is outside of that. */
@@ -161,6 +153,14 @@ static void begin_block(const Slice *slice, Corner corner, RayBlock *block)
         if (there)
             clip(slice->box.low, slice->box.high, slice->job->frame.farthest, block, i);
     }
+}
+
+uint32_t lane_rays_column(uint32_t number)
+{
+    uint32_t column = 0;
+    for (uint32_t bit = 0; bit < 16; bit++)
+        column |= (number >> 2 * bit & 1) << bit;
+    return column;
 }
 
 void lane_rays_pixel(const WorkBlock *work, uint32_t slot, uint32_t pixel[2])
@@ -249,9 +249,9 @@ static void march_tiles(void *task, size_t part, size_t parts)
 {
     Slice        *slice  = task;
     const RayRule rule   = rule_of(slice->job, false);
-    RayBlock     *blocks = slice->blocks[part];
+    RayBlock     *blocks = slice->deal.memory[part];
     (void)parts;
-    for (uint32_t tile; (tile = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+    for (uint32_t tile; lane_deal_next(&slice->deal, &tile);) {
         begin_blocks(slice, part, tile, 0, BLOCKS_OF_TILE, blocks);
         slice->evaluations[part] += ray_field_march(slice->field, part, blocks, BLOCKS_OF_TILE,
                                                     &rule);
@@ -271,9 +271,9 @@ static void march_paths(void *task, size_t part, size_t parts)
 {
     Slice        *slice  = task;
     const RayRule rule   = rule_of(slice->job, true);
-    RayBlock     *blocks = slice->blocks[part];
+    RayBlock     *blocks = slice->deal.memory[part];
     (void)parts;
-    for (uint32_t wave; (wave = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+    for (uint32_t wave; lane_deal_next(&slice->deal, &wave);) {
         const uint32_t *slots = slice->slots + wave * RAYS_OF_WAVE,
                        items  = count_of_wave(slice, wave),
                        count  = (items + RAYS_OF_BLOCK - 1) / RAYS_OF_BLOCK;
@@ -334,12 +334,12 @@ static void march_items(void *task, size_t part, size_t parts)
 {
     Slice          *slice  = task;
     const BlockRule rule   = block_rule_of(slice->job);
-    RayBlock       *blocks = slice->blocks[part];
+    RayBlock       *blocks = slice->deal.memory[part];
     float(*rows)[4]        = slice->job->rendering->band.hits.bytes;
     rows += (size_t)(HIT_ROWS + (slice->job->rendering->program->mirrors ? PATH_ROWS : 0)) * TILE *
             TILE * tiles_of_band(slice->work);
     (void)parts;
-    for (uint32_t wave; (wave = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+    for (uint32_t wave; lane_deal_next(&slice->deal, &wave);) {
         const uint32_t first = wave * RAYS_OF_WAVE, items = count_of_wave(slice, wave),
                        count = (items + RAYS_OF_BLOCK - 1) / RAYS_OF_BLOCK;
         for (uint32_t i = 0; i < count * RAYS_OF_BLOCK; i++)
@@ -378,30 +378,6 @@ static void place_box(Slice *slice)
         view_place_box(&job->view, low, high, &slice->box);
 }
 
-/* Deals tiles out, in slices. */
-static bool run_slices(Job *job, Slice *slice, KrsPhase phase, uint32_t tiles,
-                       void (*run)(void *task, size_t part, size_t parts))
-{
-    RayBlock *blocks  = gpu_alloc(job->gpu, parallel_parts() * BLOCKS_OF_WAVE, sizeof *blocks,
-                                  "march rays");
-    uint32_t  at_once = (uint32_t)parallel_parts();
-    bool      good    = blocks != NULL;
-    for (size_t i = 0; i < parallel_parts() && good; i++)
-        slice->blocks[i] = blocks + i * BLOCKS_OF_WAVE;
-    for (uint32_t begin = 0; begin < tiles && good; begin = slice->end) {
-        const double start = clock_ms();
-        slice->next        = begin;
-        slice->end         = tiles - begin < at_once ? tiles : begin + at_once;
-        run_in_parallel(run, slice);
-        const double ms = clock_ms() - start;
-        job->stats->phase_ms[phase] += ms;
-        at_once = ms > job->options.slice_ms ? (at_once + 1) / 2 : 2 * at_once;
-        good    = dispatch_report(job, (double)slice->end / tiles);
-    }
-    gpu_release(job->gpu, blocks);
-    return good;
-}
-
 static uint32_t waves_of(uint32_t items) { return (items + RAYS_OF_WAVE - 1) / RAYS_OF_WAVE; }
 
 static bool march_camera_rays(Job *job, Slice *slice)
@@ -413,7 +389,8 @@ static bool march_camera_rays(Job *job, Slice *slice)
         tiles[k]       = (work->corner[k] + work->extent[k] - 1) / SIDE - slice->tile[k] + 1;
     }
     slice->across = tiles[0];
-    return run_slices(job, slice, KRS_PHASE_PRIMARY, tiles[0] * tiles[1], march_tiles);
+    return lane_deal(job, &slice->deal, KRS_PHASE_PRIMARY, tiles[0] * tiles[1], BYTES_OF_PART,
+                     march_tiles, slice);
 }
 
 bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const LanePaths *paths)
@@ -424,8 +401,8 @@ bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const Lan
         slice.slots = paths->slots;
         slice.items = paths->count;
     }
-    const bool good = paths ? run_slices(job, &slice, KRS_PHASE_BOUNCES, waves_of(paths->count),
-                                         march_paths)
+    const bool good = paths ? lane_deal(job, &slice.deal, KRS_PHASE_BOUNCES, waves_of(paths->count),
+                                        BYTES_OF_PART, march_paths, &slice)
                             : march_camera_rays(job, &slice);
     add_counts(job, &slice);
     return good;
@@ -477,5 +454,5 @@ bool lane_rays_march_secondary(Job *job, RayField *field, KrsPhase phase, uint32
                                const WorkBlock *work)
 {
     Slice slice = {.job = job, .field = field, .work = work, .items = items};
-    return run_slices(job, &slice, phase, waves_of(items), march_items);
+    return lane_deal(job, &slice.deal, phase, waves_of(items), BYTES_OF_PART, march_items, &slice);
 }

@@ -41,5 +41,8 @@ const float (*lane_rays_path(const Job *job, const WorkBlock *work, const uint32
    hit_lists.glsl. */
 void     lane_rays_pixel(const WorkBlock *work, uint32_t slot, uint32_t pixel[2]);
 uint32_t lane_rays_slot(const WorkBlock *work, const uint32_t pixel[2]);
+/* Returns the column of a number in the order in which quarters of quarters follow each other: its even bits.  The row is
+   that of half of the number. */
+uint32_t lane_rays_column(uint32_t number);
 
 #endif

@@ -7,15 +7,17 @@
 #include "runtime/tracer/lane_surfaces.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <string.h>
 
-#include "compiler/base/parallel.h"
-#include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/lane_deal.h"
 #include "runtime/tracer/lane_fields.h"
 #include "runtime/tracer/rendering.h"
 
-enum { SIDE = 128, OCCLUDERS_AT_ONCE = 4096 };
+enum {
+    SIDE              = 128,
+    OCCLUDERS_AT_ONCE = 4096,
+    BYTES_OF_PART     = SURFACES_AT_ONCE * sizeof(SurfacePoint)
+};
 static_assert(SIDE * SIDE == SURFACES_AT_ONCE, "surfaces.h");
 static_assert((int)PLAIN_SURFACE_NUMBERS == 4 * (int)PLAIN_SURFACE_ROWS &&
                   (int)SURFACE_NUMBERS <= 4 * (int)SURFACE_ROWS &&
@@ -44,34 +46,8 @@ typedef struct Slice {
     const LanePaths    *paths;       /* that have hit; NULL: hits are the camera's */
     uint32_t            across;      /* squares in a row */
     uint32_t            list, count; /* where the list of occluders begins, and how many they are */
-    atomic_uint         next;
-    uint32_t            end;
-    SurfacePoint       *points[MAX_PARTS]; /* of each part */
+    LaneDeal            deal;
 } Slice;
-
-/* Runs `work` on numbers up to `all`, in slices that end often enough. */
-static bool deal(Job *job, Slice *slice, KrsPhase phase, uint32_t all,
-                 void (*work)(void *task, size_t part, size_t parts))
-{
-    SurfacePoint *points  = gpu_alloc(job->gpu, parallel_parts() * SURFACES_AT_ONCE, sizeof *points,
-                                      "find surfaces");
-    uint32_t      at_once = (uint32_t)parallel_parts();
-    bool          good    = points != NULL;
-    for (size_t i = 0; i < parallel_parts() && good; i++)
-        slice->points[i] = points + i * SURFACES_AT_ONCE;
-    for (uint32_t begin = 0; begin < all && good; begin = slice->end) {
-        const double start = clock_ms();
-        slice->next        = begin;
-        slice->end         = all - begin < at_once ? all : begin + at_once;
-        run_in_parallel(work, slice);
-        const double ms = clock_ms() - start;
-        job->stats->phase_ms[phase] += ms;
-        at_once = ms > job->options.slice_ms ? (at_once + 1) / 2 : 2 * at_once;
-        good    = dispatch_report(job, (double)slice->end / all);
-    }
-    gpu_release(job->gpu, points);
-    return good;
-}
 
 /* ---- hits ---- */
 
@@ -145,25 +121,16 @@ static void place_hit(const Slice *slice, const uint32_t pixel[2], SurfacePoint 
                 4 * (size_t)lane_surfaces_rows(slice->job->rendering) * slot;
 }
 
-/* Returns the even bits of a number. */
-static uint32_t even_bits(uint32_t number)
-{
-    uint32_t bits = 0;
-    for (uint32_t bit = 0; bit < 16; bit++)
-        bits |= (number >> 2 * bit & 1) << bit;
-    return bits;
-}
-
 static void find_squares(void *task, size_t part, size_t parts)
 {
     Slice        *slice  = task;
-    SurfacePoint *points = slice->points[part];
+    SurfacePoint *points = slice->deal.memory[part];
     (void)parts;
-    for (uint32_t square; (square = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+    for (uint32_t square; lane_deal_next(&slice->deal, &square);) {
         size_t count = 0;
         for (uint32_t i = 0; i < SIDE * SIDE; i++) {
-            const uint32_t pixel[2] = {SIDE * (square % slice->across) + even_bits(i),
-                                       SIDE * (square / slice->across) + even_bits(i >> 1)};
+            const uint32_t pixel[2] = {SIDE * (square % slice->across) + lane_rays_column(i),
+                                       SIDE * (square / slice->across) + lane_rays_column(i >> 1)};
             if (pixel[0] < slice->work->extent[0] && pixel[1] < slice->work->extent[1] &&
                 is_hit(end_of(slice, pixel)))
                 place_hit(slice, pixel, &points[count++]);
@@ -175,9 +142,9 @@ static void find_squares(void *task, size_t part, size_t parts)
 static void find_of_paths(void *task, size_t part, size_t parts)
 {
     Slice        *slice  = task;
-    SurfacePoint *points = slice->points[part];
+    SurfacePoint *points = slice->deal.memory[part];
     (void)parts;
-    for (uint32_t run; (run = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+    for (uint32_t run; lane_deal_next(&slice->deal, &run);) {
         const uint32_t first = run * SURFACES_AT_ONCE, left = slice->paths->count - first;
         const uint32_t count = left < SURFACES_AT_ONCE ? left : SURFACES_AT_ONCE;
         for (uint32_t i = 0; i < count; i++) {
@@ -199,9 +166,11 @@ bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *wo
                             .work   = work,
                             .paths  = paths,
                             .across = (work->extent[0] + SIDE - 1) / SIDE};
-    return paths ? deal(job, &slice, KRS_PHASE_BOUNCES,
-                        (paths->count + SURFACES_AT_ONCE - 1) / SURFACES_AT_ONCE, find_of_paths)
-                 : deal(job, &slice, KRS_PHASE_SHADING, slice.across * down, find_squares);
+    return paths ? lane_deal(job, &slice.deal, KRS_PHASE_BOUNCES,
+                             (paths->count + SURFACES_AT_ONCE - 1) / SURFACES_AT_ONCE,
+                             BYTES_OF_PART, find_of_paths, &slice)
+                 : lane_deal(job, &slice.deal, KRS_PHASE_SHADING, slice.across * down,
+                             BYTES_OF_PART, find_squares, &slice);
 }
 
 /* ---- occluders ---- */
@@ -319,11 +288,11 @@ static float luminance_of(const float color[3])
 static void find_occluders(void *task, size_t part, size_t parts)
 {
     Slice          *slice  = task;
-    SurfacePoint   *points = slice->points[part];
+    SurfacePoint   *points = slice->deal.memory[part];
     const uint32_t *lists = slice->job->rendering->band.queue.bytes, *list = lists + slice->list;
     float           colors[OCCLUDERS_AT_ONCE][3];
     (void)parts;
-    for (uint32_t run; (run = atomic_fetch_add(&slice->next, 1)) < slice->end;) {
+    for (uint32_t run; lane_deal_next(&slice->deal, &run);) {
         const uint32_t first = run * OCCLUDERS_AT_ONCE, left = slice->count - first;
         const uint32_t count = left < OCCLUDERS_AT_ONCE ? left : OCCLUDERS_AT_ONCE;
         for (uint32_t i = 0; i < count; i++)
@@ -344,6 +313,7 @@ bool lane_surfaces_find_occluders(Job *job, const SurfaceField *field, uint32_t 
     const ControlBlock *control = job->rendering->control.bytes;
     Slice               slice   = {
                         .job = job, .field = field, .work = work, .list = list, .count = control->remaining};
-    return deal(job, &slice, KRS_PHASE_OCCLUSION,
-                (slice.count + OCCLUDERS_AT_ONCE - 1) / OCCLUDERS_AT_ONCE, find_occluders);
+    return lane_deal(job, &slice.deal, KRS_PHASE_OCCLUSION,
+                     (slice.count + OCCLUDERS_AT_ONCE - 1) / OCCLUDERS_AT_ONCE, BYTES_OF_PART,
+                     find_occluders, &slice);
 }
