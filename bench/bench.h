@@ -34,7 +34,7 @@ _Noreturn void fail(const char *format, ...) __attribute__((format(printf, 1, 2)
 /* What is being done now, for who waits. */
 void tell(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* A file as text; a file that cannot be read is a failure. */
+/* Returns a file as text; a file that cannot be read is a failure. */
 char *read_file(Arena *arena, const char *path);
 
 #endif

@@ -125,7 +125,7 @@ static double coverage_of(Bench *bench, const Handwritten *written)
     return coverage;
 }
 
-/* The shader by hand as it is, and with the largest error that covers what it should. */
+/* Adds the shader by hand as it is, and with the largest error that covers what it should. */
 static void add_handwritten(Bench *bench, Contest *contest, const Subject *subject)
 {
     for (size_t i = 0; i < ERRORS && !contest->same_coverage; i++) {

@@ -59,7 +59,8 @@ void contest_run(Bench *bench, const SceneRow *row, Contest *contest);
 /* What is not as it should be, a line each; none when all is right. */
 void contest_judge(const Bench *bench, const Contest *contest, Text *faults);
 
-/* How many times longer the shader by hand takes for what both do: by medians, and by the least. */
+/* Returns how many times longer the shader by hand takes for what both do: by medians, and by the
+   least. */
 double contest_ratio(const Contest *contest, const Entry *written);
 double contest_least_ratio(const Contest *contest, const Entry *written);
 /* Returns by how much of the reference's coverage this one is above it. */

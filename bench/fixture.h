@@ -19,7 +19,8 @@ typedef struct Fixture {
 /* Prints what went wrong, and ends the process: so does all else here that fails. */
 _Noreturn void give_up(const char *what, const char *why);
 
-/* The device that KRS_DEVICE names, in the words of `krs --device`, else that which krs takes. */
+/* Returns the device that KRS_DEVICE names, in the words of `krs --device`, else that which krs
+   takes. */
 KrsRenderer *device_open(void);
 
 /* Compiles a text, or the file of this name where that is NULL.  `gradients`: normals by

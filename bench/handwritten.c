@@ -13,7 +13,7 @@ static void define_vector(Text *text, const char *name, const double v[3])
     text_format(text, "#define %s vec3(%.9g, %.9g, %.9g)\n", name, v[0], v[1], v[2]);
 }
 
-/* What stands for view.glsl: literals throughout. */
+/* Returns what stands for view.glsl: literals throughout. */
 static char *view_text(Bench *bench, const KrsView *view, double error, bool count)
 {
     if (view->light_count != 1 || view->lights->positional ||

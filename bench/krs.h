@@ -77,7 +77,7 @@ typedef struct PaperRow {
 enum { PAPER_ROWS = 4 };
 extern const PaperRow paper_rows[PAPER_ROWS];
 
-/* The kiloflops that ours could do while it traces a ray; NAN when it did not run. */
+/* Returns the kiloflops that ours could do while it traces a ray; NAN when it did not run. */
 double paper_row_ours(const Bench *bench, const Sequences *sequences, const PaperRow *row,
                       double peak_gflops);
 

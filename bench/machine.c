@@ -18,8 +18,8 @@
 #define COMPILER "gcc " __VERSION__
 #endif
 
-/* The rest of the first line of a file that begins with `key`, without what `trimmed` has at its
-   ends; "unknown" when there is none. */
+/* Returns the rest of the first line of a file that begins with `key`, without what `trimmed` has
+   at its ends; "unknown" when there is none. */
 static const char *find_line(Bench *bench, const char *path, const char *key, const char *trimmed)
 {
     char  line[512];
@@ -86,7 +86,7 @@ static const char *describe_driver(Bench *bench)
     return text.bytes;
 }
 
-/* How busy the machine was before: figures of a shared one tell less. */
+/* Returns how busy the machine was before: figures of a shared one tell less. */
 static const char *describe_load(Bench *bench)
 {
     double load = 0;

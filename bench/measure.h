@@ -20,11 +20,11 @@ double times_without_secondary(const Times *times);
 /* Member by member the median of so many; an even number has the mean of the middle two. */
 Times times_median(const Times *times, size_t count);
 
-/* The least that any of so many took, without shadows and occlusion: what disturbs a run only
-   makes it longer, so this tells more when the machine was busy with other things as well. */
+/* Returns the least that any of so many took, without shadows and occlusion: what disturbs a run
+   only makes it longer, so this tells more when the machine was busy with other things as well. */
 double times_least(const Times *times, size_t count);
 
-/* The median of so many numbers, which are put into order. */
+/* Returns the median of so many numbers, which are put into order. */
 double median(double *numbers, size_t count);
 
 /* Milliseconds that the threads of this process have computed. */

@@ -22,8 +22,8 @@ typedef struct StandIn {
     const char *name, *text;
 } StandIn;
 
-/* The text of a shader file with its includes: stand-ins (a last one without a name ends them),
-   files of runtime/shaders, or files beside this one. */
+/* Returns the text of a shader file with its includes: stand-ins (a last one without a name ends
+   them), files of runtime/shaders, or files beside this one. */
 char *bench_shader_text(Bench *bench, const char *path, const StandIn *stand_ins);
 
 /* Compiles a text; `name` is used in messages.  The buffer is binding 1 (0 would be parameters of

@@ -17,7 +17,7 @@ static void hear_message(void *user, const KrsDiagnostic *diagnostic)
     fprintf(stderr, "%s\n", diagnostic->text);
 }
 
-/* The scene with another number of levels. */
+/* Returns the scene with another number of levels. */
 static char *with_levels(Bench *bench, const char *text, const char *path, uint32_t levels)
 {
     static const char before[] = "\nlet levels = ";

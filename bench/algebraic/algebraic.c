@@ -160,7 +160,7 @@ static KrsPicture *shoot(const Fixture *fixture, const struct Variant *variant)
     return picture;
 }
 
-/* What all threads of this process have computed. */
+/* Returns what all threads of this process have computed. */
 static double cpu_ms(void)
 {
     struct timespec now;
@@ -288,7 +288,7 @@ static void run_processes(const char *krs, size_t repeats, const char *only,
         julias_run(julias, krs, repeats);
 }
 
-/* What is measured in this process. */
+/* Prints what is measured in this process. */
 static void print_all_tracers(KrsRenderer *renderer, size_t repeats, const char *only,
                               Frame frames[SUBJECTS])
 {

@@ -43,7 +43,7 @@ _Noreturn void give_up(const char *what, const char *why);
 /* Prints, and keeps it for the results. */
 void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* The median of numbers, which are put into order. */
+/* Returns the median of numbers, which are put into order. */
 double middle(double *numbers, size_t count);
 
 /* ---- programs.c ---- */

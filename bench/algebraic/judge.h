@@ -13,7 +13,7 @@ typedef enum Drawn { CUT_SOLID, OPEN_SURFACE } Drawn;
 /* One pixel in sixteen is judged, where it sees something. */
 enum { STRIDE = 4, SEEN_ROWS = HEIGHT / STRIDE, SEEN_COLUMNS = WIDTH / STRIDE };
 
-/* The ray of a pixel. */
+/* Finds the ray of a pixel. */
 void find_ray(const View *view, int x, int y, Vec *origin, Vec *direction);
 
 /* Counts one pixel, of those that are looked at. */

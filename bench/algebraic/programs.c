@@ -68,7 +68,7 @@ bool run_command(char *const *arguments, const char *output, Run *run)
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/* The next number of the head, behind P6, blanks and comments. */
+/* Reads the next number of the head, behind P6, blanks and comments. */
 static bool read_number(FILE *file, int *number)
 {
     char line[256];
@@ -181,7 +181,7 @@ static void write_products(FILE *file, const char *from, const char *to)
     }
 }
 
-/* The coefficients of total degree n and less, by falling powers of x, then y, then z. */
+/* Writes the coefficients of total degree n and less, by falling powers of x, then y, then z. */
 static void write_coefficients(FILE *file, const Subject *subject)
 {
     Polynomial p = polynomial_read(subject->text, definitions);

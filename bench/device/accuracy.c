@@ -215,7 +215,7 @@ static int glsl_length(const char *text)
     return length;
 }
 
-/* The functions that the operation calls. */
+/* Writes the functions that the operation calls. */
 static void write_helpers(const Operation *operation, FILE *out)
 {
     jmp_buf exhausted;
@@ -290,7 +290,7 @@ static void fill(const Operation *operation, float (*numbers)[4])
     }
 }
 
-/* A unit in the last place of a float of this size. */
+/* Returns a unit in the last place of a float of this size. */
 static double unit_of(double value)
 {
     int exponent;

@@ -51,7 +51,7 @@ static double now(void) { return read_clock(CLOCK_MONOTONIC); }
 
 /* ---- the numbers ---- */
 
-/* One in each third of the text, where there is one. */
+/* Finds one in each third of the text, where there is one. */
 static void find_numbers(Trial *trial)
 {
     const KrsOptions with     = {.specialize = KRS_SPECIALIZE_STRUCTURE, .studio = true};
@@ -90,7 +90,7 @@ static void await_picture(const Trial *trial)
     give_up(trial->scene, "there is no picture");
 }
 
-/* The frame's own time, from a line of --stats json. */
+/* Returns the frame's own time, from a line of --stats json. */
 static double read_frame(const Trial *trial, FILE *stats)
 {
     char       *line = NULL;
@@ -145,7 +145,7 @@ static pid_t start(const Trial *trial, const char *command, const char *option, 
     return process;
 }
 
-/* The clock of processors of the process that works: the command's only child. */
+/* Returns the clock of processors of the process that works: the command's only child. */
 static clockid_t find_clock(const Trial *trial, pid_t process)
 {
     char      path[64];
@@ -238,7 +238,7 @@ static double median(const Edit *edits, size_t count, size_t step, Edit weight)
 static const Edit whole = {1, 0, 0}, frame_alone = {0, 1, 0}, without_frame = {1, -1, 0},
                   used = {0, 0, 1};
 
-/* The slowest number's median. */
+/* Returns the slowest number's median. */
 static double find_slowest(const Edit *edits, size_t count, size_t numbers)
 {
     double most = 0;
@@ -249,7 +249,7 @@ static double find_slowest(const Edit *edits, size_t count, size_t numbers)
     return most;
 }
 
-/* What the slowest number takes beyond its frame. */
+/* Returns what the slowest number takes beyond its frame. */
 static double measure(const Sheet *sheet, Trial *trial)
 {
     Edit        edits[MAX_EDITS];

@@ -83,7 +83,7 @@ static double exit_of_ball(const Ray *ray)
     return -along + sqrt(along * along - square);
 }
 
-/* A ray from the ball around all towards a point near the middle. */
+/* Returns a ray from the ball around all towards a point near the middle. */
 static Ray ray_inwards(void)
 {
     Ray    ray;
@@ -100,7 +100,7 @@ static Ray ray_inwards(void)
     return ray;
 }
 
-/* A ray that has just entered the solid. */
+/* Returns a ray that has just entered the solid. */
 static Ray entering_ray(KrsState *state)
 {
     for (;;) {

@@ -30,7 +30,7 @@ static const char *const scenes[] = {"examples/27-city.krs", "examples/35-jewel.
                                      "examples/36-jewels.krs", "examples/38-dodecahedron.krs"};
 enum { SCENES = sizeof scenes / sizeof *scenes };
 
-/* The least time of some pictures that all threads computed, and what the last one is. */
+/* Returns the least time of some pictures that all threads computed, and what the last one is. */
 static KrsPicture *shoot(const Fixture *fixture, const KrsRenderOptions *options, double *least)
 {
     KrsPicture *picture = NULL;

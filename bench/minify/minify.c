@@ -47,7 +47,7 @@ typedef struct Shot {
 
 static Sheet sheet;
 
-/* The scene's text with another camera. */
+/* Returns the scene's text with another camera. */
 static char *text_of(const struct Flight *flight)
 {
     static char text[20000];

@@ -177,7 +177,7 @@ static VkDescriptorType kind_of(const IdInfo *ids, const IdInfo *variable)
                : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
-/* The layout that the module's own bindings ask for. */
+/* Returns the layout that the module's own bindings ask for. */
 static VkPipelineLayout make_layout(VkDevice device, const Module *module,
                                     VkDescriptorSetLayout sets[SETS])
 {

@@ -22,7 +22,7 @@ static double now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* The next number with a point, outside of comments: the offset of its last digit, or 0. */
+/* Returns the next number with a point, outside of comments: the offset of its last digit, or 0. */
 static size_t find_number(const char *text, size_t from)
 {
     for (size_t i = from; text[i]; i++) {

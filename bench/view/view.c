@@ -63,7 +63,7 @@ static void edit_once(Trial *trial, NumberEdit *number, Edit *edit)
     trial_await(trial, true);
 }
 
-/* The medians of some edits; below 0: there is no number to edit. */
+/* Returns the medians of some edits; below 0: there is no number to edit. */
 static Edit time_edits(Trial *trial)
 {
     double     clock[EDITS], used[EDITS], texts[EDITS];

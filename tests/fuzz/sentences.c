@@ -314,7 +314,7 @@ static bool is_accepted(const char *text, size_t length, bool should_be, Arena *
     return diags.count == 0;
 }
 
-/* The tree of a text as krs dumps it, but without places. */
+/* Returns the tree of a text as krs dumps it, but without places. */
 static Text tree_of(const char *bytes, size_t length, Arena *arena)
 {
     Sources  sources = {.arena = arena};

@@ -101,8 +101,8 @@ static double distance_at(Fixture *fixture, Vec p)
     return distance;
 }
 
-/* The deepest, or where nothing is the nearest, that a ray comes to a solid within some pixels
-   around a place, before the end. */
+/* Returns the deepest, or where nothing is the nearest, that a ray comes to a solid within some
+   pixels around a place, before the end. */
 static double min_around(Fixture *fixture, Line ray, double t, double end, double pixel)
 {
     double least = HUGE_VAL;

@@ -26,7 +26,7 @@ enum { POINTS = 128 }; /* along each side of the domain of an integral */
 
 static double square(double x) { return x * x; }
 
-/* How many times as much of the microfacets is hidden from a direction as is seen. */
+/* Returns how many times as much of the microfacets is hidden from a direction as is seen. */
 static double find_hidden(Vec direction, double alpha)
 {
     double tangent_squared = (1 - square(direction.z)) / square(direction.z);
@@ -47,7 +47,7 @@ static void add_facet(Vec eye, Vec normal, double alpha, double weight, double s
     sums[AT_THE_EDGE] += part * pow(1 - facing, 5) / square(POINTS);
 }
 
-/* The density of Estevez and Kulla (2017), with the visibility of Neubelt and Pettineo. */
+/* Adds the density of Estevez and Kulla (2017), with the visibility of Neubelt and Pettineo. */
 static void add_fuzz(Vec eye, Vec light, double alpha, double sums[3])
 {
     Vec    halfway = vec_unit(vec_add(eye, light));

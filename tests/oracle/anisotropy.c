@@ -49,8 +49,8 @@ static double density(Vec normal, Widths w)
     return 1 / (M_PI * w.along * w.across * square(all));
 }
 
-/* The part of light that a microfacet mirrors into all directions, over the probability of its normal:
-   density times cosine. */
+/* Adds the part of light that a microfacet mirrors into all directions, over the probability of
+   its normal: density times cosine. */
 static void add_facet(Vec eye, Vec normal, Widths w, double weight, double sums[2])
 {
     const double facing = vec_dot(eye, normal);
@@ -158,7 +158,8 @@ static double look_at_plate(KrsIntegrator integrator)
     return mean;
 }
 
-/* A unit vector so far from the plate's normal, at an angle about it; in the renderer y is up. */
+/* Returns a unit vector so far from the plate's normal, at an angle about it; in the renderer y is
+   up. */
 static Vec aim(double tilt, double angle)
 {
     return vec(sin(tilt) * cos(angle), sin(tilt) * sin(angle), cos(tilt));
@@ -169,8 +170,8 @@ static void set_direction(const char *name, Vec direction)
     path_fixture_set_all(&fixture, name, direction.x, direction.z, direction.y);
 }
 
-/* The plate's radiance, of a metal that mirrors all: what bounces once, and in proportion to that what
-   bounces more, so that nothing is lost. */
+/* Returns the plate's radiance, of a metal that mirrors all: what bounces once, and in proportion
+   to that what bounces more, so that nothing is lost. */
 static double radiance_of(Vec eye, Vec light, double turn, Widths w)
 {
     const Vec along = vec(cos(turn), sin(turn), 0), across = vec(-sin(turn), cos(turn), 0);

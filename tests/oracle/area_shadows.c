@@ -65,7 +65,7 @@ static bool area_is_right(const char *name, const KrsPicture *picture, const Sho
     return m.wrong == 0 && m.noise < MAX_NOISE * m.expected && fabs(m.lift) < MAX_LIFT;
 }
 
-/* The place of a row at which a rising profile passes a level, in pixels. */
+/* Returns the place of a row at which a rising profile passes a level, in pixels. */
 static double place_of_level(const double *profile, int count, double level)
 {
     for (int i = 1; i < count; i++)
@@ -130,8 +130,8 @@ static void area_shadows_converge(void **state)
     assert_true(noise[1] < noise[0] / 4);
 }
 
-/* How much pixels differ that see the same: those above each other, along the ledge's shadow.
-   Root of the mean square in the penumbra, and what single rays would have. */
+/* Returns how much pixels differ that see the same: those above each other, along the ledge's
+   shadow.  Root of the mean square in the penumbra, and what single rays would have. */
 static double noise_of_columns(const KrsPicture *picture, double *expected)
 {
     int    width = (int)picture->window.width, height = (int)picture->window.height, columns = 0;

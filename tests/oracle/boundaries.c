@@ -132,7 +132,8 @@ typedef struct Drawing {
     Boundary   *boundary;
 } Drawing;
 
-/* A point along the outline of a part, and the direction across it, in the part's own coordinates. */
+/* Draws a point along the outline of a part, and the direction across it, in the part's own
+   coordinates. */
 static void draw_point(const Drawing *drawing, double x, double y, double across_x, double across_y)
 {
     const Part *part = drawing->part;
@@ -179,7 +180,7 @@ static void draw_corners(const Drawing *drawing, double (*corners)[2], int count
         draw_line(drawing, corners[i], corners[(i + 1) % count]);
 }
 
-/* What surrounds lines: parallels and whole circles, of which the sides say what is left. */
+/* Draws what surrounds lines: parallels and whole circles, of which the sides say what is left. */
 static void draw_around(const Drawing *drawing, double (*corners)[2], int count, double radius)
 {
     for (int i = 0; i < count; i++) {
@@ -277,7 +278,7 @@ static void write_csg_node(SceneText *text, const Part *parts, int count)
     }
 }
 
-/* A slab whose distance is that to the figure, as far as its height goes. */
+/* Returns a slab whose distance is that to the figure, as far as its height goes. */
 static Product figure_product(const char *figure)
 {
     return product_format("let figure = %s;\n"
@@ -328,7 +329,7 @@ typedef struct Member {
     SceneText text;
 } Member;
 
-/* False: next to nothing is left of it. */
+/* Returns false if next to nothing is left of it. */
 static bool random_member(Random *random, bool even, Member *member)
 {
     member->count       = 2 + random_below(random, 4);

@@ -70,7 +70,7 @@ void cloud_add(Cloud *cloud, Vec point)
     cloud->indexed                = 0;
 }
 
-/* The length of the longest of a few lines of a patch, along u or along v. */
+/* Returns the length of the longest of a few lines of a patch, along u or along v. */
 static double patch_extent(Patch *patch, const void *user, bool along_u)
 {
     enum { LINES = 9, PIECES = 32 };
@@ -88,7 +88,7 @@ static double patch_extent(Patch *patch, const void *user, bool along_u)
     return longest;
 }
 
-/* The longest side or diagonal of the cell whose corners are the first two of both rows. */
+/* Returns the longest side or diagonal of the cell whose corners are the first two of both rows. */
 static double cell_size(const Vec *row, const Vec *next)
 {
     double sides     = fmax(vec_distance(row[0], row[1]), vec_distance(row[0], next[0]));
@@ -165,7 +165,7 @@ static void index_range(Vec *points, size_t count, int axis)
     index_range(points + middle + 1, count - middle - 1, (axis + 1) % 3);
 }
 
-/* The square of the distance to the nearest point of a range, if it is below `best`. */
+/* Returns the square of the distance to the nearest point of a range, if it is below `best`. */
 static double nearest_in_range(const Vec *points, size_t count, int axis, Vec p, double best)
 {
     if (count == 0)

@@ -26,7 +26,7 @@ enum { POINTS = 300 };
     "material wavy { color: gray, bump: 0.1 * sin(3 * x) + 0.05 * z }\n" \
     "let slab = box([20, 2, 20]).move([0, -1, 0]).paint(wavy);\n"
 
-/* The normal of the slab in its own space, up to its length. */
+/* Returns the normal of the slab in its own space, up to its length. */
 static Vec wavy(Vec at) { return vec_unit(vec(-0.3 * cos(3 * at.x), 1, -0.05)); }
 
 static Vec turned(Vec a, double angle)

@@ -213,7 +213,7 @@ static double at_cell(const Solid *solid, Vec p, Cell cell)
                        cell);
 }
 
-/* The cell of a point; on axes that do not repeat 0. */
+/* Returns the cell of a point; on axes that do not repeat 0. */
 static Cell cell_of(const Solid *solid, Vec p)
 {
     const double at[3] = {p.x - solid->shift, p.y, p.z};
@@ -225,7 +225,8 @@ static Cell cell_of(const Solid *solid, Vec p)
     return cell;
 }
 
-/* The least of the cells up to so many away; `side`: of these only those on the side of the point. */
+/* Returns the least of the cells up to so many away; `side`: of these only those on the side of the
+   point. */
 static double min_around(const Solid *solid, Vec p, int away, bool side)
 {
     const double at[3] = {p.x - solid->shift, p.y, p.z};

@@ -27,7 +27,7 @@ static double segment_distance(Vec p, Vec to)
     return vec_distance(p, vec_scale(fmin(fmax(t, 0), 1), to));
 }
 
-/* The quadratic blend of two distances. */
+/* Returns the quadratic blend of two distances. */
 static double blended(double a, double b, double width)
 {
     double h = fmax(width - fabs(a - b), 0) / width;
@@ -71,7 +71,7 @@ static void bend_frame(Vec axis, Vec *along, Vec *lateral)
     *lateral = vec_cross(axis, *along);
 }
 
-/* Where a point was before it was bent; `turn` counts turns about the axis of the bend. */
+/* Returns where a point was before it was bent; `turn` counts turns about the axis of the bend. */
 static Vec unbent(const Link *link, Vec p, int turn)
 {
     Vec along, lateral;
@@ -101,7 +101,7 @@ static Vec folded(const Link *link, Vec p)
     return vec_sub(p, vec_scale(2 * fmax(excess, 0), link->v));
 }
 
-/* The point before a method that is undone in one way only. */
+/* Returns the point before a method that is undone in one way only. */
 static Vec undone(const Link *link, Vec p)
 {
     Vec v = link->v;
@@ -188,7 +188,7 @@ bool chain_contains(const void *chain, Vec point)
 
 /* ---- texts ---- */
 
-/* The number of a link: a literal, or its parameter. */
+/* Returns the number of a link: a literal, or its parameter. */
 static const char *number_text(const Chain *chain, const Link *link, char text[32])
 {
     if (link->moves)

@@ -172,7 +172,7 @@ static Vec between(Random *random, Vec low, Vec high)
                random_between(random, low.z, high.z));
 }
 
-/* The first place of a segment where its sides differ, in equal steps; 1: nowhere. */
+/* Returns the first place of a segment where its sides differ, in equal steps; 1: nowhere. */
 static double change_along(const Chain *chain, Vec from, Vec to)
 {
     enum { STEPS = 600, HALVINGS = 40 };
@@ -193,7 +193,7 @@ static double change_along(const Chain *chain, Vec from, Vec to)
     return 1;
 }
 
-/* A place next to the surface, if a random segment meets it. */
+/* Returns a place next to the surface, if a random segment meets it. */
 static Vec random_origin(const Chain *chain, Vec low, Vec high, Random *random)
 {
     Vec    from = between(random, low, high), to = between(random, low, high);

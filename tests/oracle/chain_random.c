@@ -118,7 +118,7 @@ static bool chain_touches(const Chain *chain)
     return false;
 }
 
-/* The numbers of a method on a solid of which this is known; false: that is not to be had. */
+/* Fills the numbers of a method on a solid of which this is known; false: that is not to be had. */
 static bool fill_method(Chain *chain, Link *link, const Known *known, Random *random)
 {
     double size  = known->bounded ? size_of(known) : 2;
@@ -167,8 +167,8 @@ static bool fill_method(Chain *chain, Link *link, const Known *known, Random *ra
     }
 }
 
-/* The solid after a random method, or the one before where the language or the size refuses it:
-   a bend that would reach its axis is tried again. */
+/* Returns the solid after a random method, or the one before where the language or the size refuses
+   it: a bend that would reach its axis is tried again. */
 static int random_method(Chain *chain, int solid, Known *known, const Recipe *recipe,
                          Random *random, Refusals *refusals)
 {

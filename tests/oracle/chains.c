@@ -26,7 +26,7 @@ static Vec between(Random *random, Vec low, Vec high)
                random_between(random, low.z, high.z));
 }
 
-/* The part of a segment where the membership changes, halved until it is a point. */
+/* Returns the part of a segment where the membership changes, halved until it is a point. */
 static Vec border(const Chain *chain, Vec a, Vec b)
 {
     bool inside = chain_contains(chain, a);
@@ -144,9 +144,9 @@ static bool is_near(const Case *c, Vec p, double reach, Random *random)
     return false;
 }
 
-/* A ray, by a tolerance or, for 0, what the precision gives.  One along a surface, much nearer to
-   it than its length, may run out of steps; it must be told, and where it is by then must be in
-   the open. */
+/* Checks a ray, by a tolerance or, for 0, what the precision gives.  One along a surface, much
+   nearer to it than its length, may run out of steps; it must be told, and where it is by then must
+   be in the open. */
 static void check_ray(Case *c, Vec origin, Vec direction, double tolerance, Random *random,
                       Tally *tally)
 {

@@ -27,7 +27,7 @@ static void note_code(void *user, const KrsDiagnostic *diagnostic)
         said->length += (size_t)snprintf(said->codes + said->length, 8, "%s ", diagnostic->code);
 }
 
-/* False: refused, for the reasons in `said`. */
+/* Returns false if refused, for the reasons in `said`. */
 static bool compile_quietly(const char *text, Product *product, Said *said)
 {
     KrsOptions options = {.diagnostic = note_code, .user = said};
@@ -83,8 +83,8 @@ static void judge_case(const Product *product, Inside *membership, const void *u
 
 static bool is_negative(const void *product, Vec p) { return product_distance(product, p) <= 0; }
 
-/* A method that goes by a distance: nothing beyond the box that it may fill, and all that was
-   inside, if it keeps that. */
+/* Checks a method that goes by a distance: nothing beyond the box that it may fill, and all that
+   was inside, if it keeps that. */
 static void check_growth(const Product *product, const Case *c, const char *text, Random *random,
                          Tally *tally)
 {

@@ -122,7 +122,8 @@ static bool sees(Vec from, Vec to)
 
 /* ---- Light ---- */
 
-/* The light of a small part of a surface, over the probability density of having chosen it. */
+/* Returns the light of a small part of a surface, over the probability density of having chosen
+   it. */
 static double sent(const Meeting *at, Vec point, Vec normal, double area)
 {
     Vec    apart    = vec_sub(point, at->point);
@@ -259,7 +260,7 @@ static bool agrees(Estimate found, Estimate right, double part)
     return is_near(found, right.mean, part);
 }
 
-/* The blocks that differ, in any of their colours, and whether all together do. */
+/* Returns the blocks that differ, in any of their colours, and whether all together do. */
 static size_t count_wrong(const Blocks *found, const Blocks *right)
 {
     size_t wrong = !agrees(found->all, right->all, MAX_WRONG_ALL);

@@ -151,7 +151,7 @@ typedef struct Balls {
     int    count;
 } Balls;
 
-/* The distance to a union of balls. */
+/* Returns the distance to a union of balls. */
 static double balls_distance(const Balls *balls, Vec at)
 {
     double best = HUGE_VAL;

@@ -59,8 +59,8 @@ static double net_error(const Verdict *verdict)
     return ((double)verdict->extra - (double)verdict->missed) / (double)verdict->hits;
 }
 
-/* The standard error of the net error if whether a ray hits were decided by lot wherever the
-   picture and the truth disagree. */
+/* Returns the standard error of the net error if whether a ray hits were decided by lot wherever
+   the picture and the truth disagree. */
 static double net_noise(const Verdict *verdict)
 {
     return sqrt((double)(verdict->extra + verdict->missed)) / (double)verdict->hits;
@@ -97,9 +97,9 @@ static Verdict judge_shot(const Shot *shot)
     return verdict;
 }
 
-/* How many depths may be off: the permitted share, and those of rays that meet something else
-   than they should.  Of the hits that are none as large a share is before another hit as of all
-   rays, and so it is behind the hits that are missed; neither is counted as such. */
+/* Returns how many depths may be off: the permitted share, and those of rays that meet something
+   else than they should.  Of the hits that are none as large a share is before another hit as of
+   all rays, and so it is behind the hits that are missed; neither is counted as such. */
 static double max_off(const Verdict *verdict)
 {
     double hits = (double)verdict->hits, others = (double)(verdict->extra + verdict->missed);

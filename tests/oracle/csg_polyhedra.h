@@ -23,7 +23,7 @@ struct Piece {
 /* Grown by so much, or shrunk where that is below 0, with so many sides to a circle.  Throws where a part cannot be. */
 std::vector<Piece> pieces_of(const Part &part, double by, int sides);
 
-/* The farthest that a part is from its facets. */
+/* Returns the farthest that a part is from its facets. */
 double sag_of(const Tree &tree, int sides);
 
 #endif

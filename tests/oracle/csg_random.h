@@ -96,7 +96,8 @@ Solid random_solid(uint64_t number);
 /* As a scene. */
 std::string text_of(const Solid &solid);
 
-/* Half of the plate of a BLENDED part, how deep the column stands in it, and how far a thread's ridge is from its core. */
+/* Returns half of the plate of a BLENDED part, how deep the column stands in it, and how far a
+   thread's ridge is from its core. */
 inline double       half_plate(const Part &part) { return part.size[0] + part.size[2] + 0.15; }
 static const double DEEP = 0.1;
 inline double       thread_depth(const Part &part)

@@ -23,7 +23,7 @@ struct Shape {
 /* At an edge each triangle continues in the one behind which the same solid lies: so what touches is apart. */
 Shape shape_of(const Triangles &mesh);
 
-/* The farthest that points of the first are from the second. */
+/* Returns the farthest that points of the first are from the second. */
 double farthest(const Triangles &from, const Triangles &to);
 
 #endif

@@ -21,7 +21,7 @@ static double line_distance(const Line *line, Vec point, double t)
     return vec_distance(point, line->at(line->a, t));
 }
 
-/* The least distance between two places, by trisection. */
+/* Returns the least distance between two places, by trisection. */
 static double min_between(const Line *line, Vec point, double low, double high)
 {
     for (int i = 0; i < 80; i++) {
@@ -75,7 +75,7 @@ static Product helix_product(const double *a)
                           a[2], a[3], a[4]);
 }
 
-/* Where the hard cases are: near the axis, opposite to a turn, beyond the ends. */
+/* Returns where the hard cases are: near the axis, opposite to a turn, beyond the ends. */
 static Vec helix_place(Random *random, const double *a)
 {
     double reach = random_below(random, 2) ? 2 * a[0] : 0.3 * a[0];
@@ -86,7 +86,7 @@ static Vec helix_place(Random *random, const double *a)
     return vec(out * cos(angle), random_between(random, -half, half), out * sin(angle));
 }
 
-/* How many of the points have another distance than that to the definition. */
+/* Returns how many of the points have another distance than that to the definition. */
 static int helix_errors(const double *product_of, const double *a, Random *random)
 {
     Product product = helix_product(product_of);
@@ -142,7 +142,7 @@ typedef struct Thread {
     double diameter, pitch, length, angle, depth, crest, starts, chamfer;
 } Thread;
 
-/* The radius at a distance along the axis from the middle of a ridge. */
+/* Returns the radius at a distance along the axis from the middle of a ridge. */
 static double thread_radius(const Thread *t, double along)
 {
     double pitch = fabs(t->pitch), off = fabs(along - pitch * floor(along / pitch + 0.5));
@@ -150,7 +150,7 @@ static double thread_radius(const Thread *t, double along)
     return t->diameter / 2 - fmin(down, t->depth);
 }
 
-/* How far ridges have risen at an angle about the axis. */
+/* Returns how far ridges have risen at an angle about the axis. */
 static double thread_rise(const Thread *t, double angle)
 {
     return fabs(t->pitch) * t->starts * angle / (2 * PI);
@@ -192,7 +192,7 @@ static Product thread_product(const Thread *t)
                           t->chamfer);
 }
 
-/* How much less than the true distance the distance near the surface may be. */
+/* Returns how much less than the true distance the distance near the surface may be. */
 static double thread_factor(const Thread *t)
 {
     double core = t->diameter / 2 - t->depth, keep = core - fmin(t->depth, core / 2);

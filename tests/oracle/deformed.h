@@ -34,7 +34,7 @@ typedef struct Deed {
 void   bend_frame(Vec axis, Vec *along, Vec *lateral);
 double taper_factor(const Deed *deed, double height);
 Vec    deed_forward(const Deed *deed, Vec p);
-/* Where a point was before; `turn` counts turns about the axis of a bend. */
+/* Returns where a point was before; `turn` counts turns about the axis of a bend. */
 Vec deed_backward(const Deed *deed, Vec p, int turn);
 
 enum { MAX_DEEDS = 3, MAX_MIRRORS = 4 };

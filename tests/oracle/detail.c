@@ -60,7 +60,7 @@ static double off_by(const KrsPicture *picture, const KrsPicture *right)
     return sqrt(sum / (SIDE * SIDE));
 }
 
-/* How many pixels are far too bright. */
+/* Returns how many pixels are far too bright. */
 static int count_glints(const KrsPicture *picture, const KrsPicture *right)
 {
     int count = 0;

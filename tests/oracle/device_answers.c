@@ -103,8 +103,8 @@ void points_agree(Scene s, size_t count, double size, double roughness)
     assert_true(wrong_normals * 20 <= count);
 }
 
-/* How far the evaluator contradicts an answer about a ray from the open: by the distance where it
-   is said to hit, and by how deep the ray was in something before. */
+/* Returns how far the evaluator contradicts an answer about a ray from the open: by the distance
+   where it is said to hit, and by how deep the ray was in something before. */
 static double contradiction(Scene s, size_t i, double farthest)
 {
     enum { PLACES = 400 };

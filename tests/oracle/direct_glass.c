@@ -72,8 +72,8 @@ static void set_slab(const Slab *slab)
     path_fixture_set(&fixture, "thick", slab->thick);
 }
 
-/* What is left of light that goes straight through: each boundary mirrors some, and the colour counts
-   once. */
+/* Returns what is left of light that goes straight through: each boundary mirrors some, and the
+   colour counts once. */
 static double left_of(const Slab *slab, double cosine)
 {
     const double mirrored = pow((slab->index - 1) / (slab->index + 1), 2);
@@ -82,11 +82,11 @@ static double left_of(const Slab *slab, double cosine)
 
 #define SUN_COSINE 0.8 /* with its normal */
 
-/* The light of the floor in a sun of 3 through the slab. */
+/* Returns the light of the floor in a sun of 3 through the slab. */
 static double sunlit(const Slab *slab) { return 3 * SUN_COSINE / M_PI * left_of(slab, SUN_COSINE); }
 
-/* The same of all ways from boundary to boundary, and of a colour that counts at each that is gone
-   through. */
+/* Returns the same of all ways from boundary to boundary, and of a colour that counts at each that
+   is gone through. */
 static double seen_through(const Slab *slab)
 {
     const double mirrored = pow((slab->index - 1) / (slab->index + 1), 2);
@@ -141,7 +141,7 @@ static void glass_shows_what_is_behind(void **state)
     assert_int_equal(wrong, 0);
 }
 
-/* What a boundary mirrors of light at this angle. */
+/* Returns what a boundary mirrors of light at this angle. */
 static double fresnel(double angle, double index)
 {
     const double beyond = asin(sin(angle) / index), in = cos(angle), out = cos(beyond);

@@ -267,7 +267,8 @@ static void count_pixel(const KrsHit *hits, const float *seen, Counts *counts)
     counts->worst = fmax(counts->worst, off);
 }
 
-/* The rays in the middle of pixels, which the device answers, of the shape where the shot has it. */
+/* Asks the rays in the middle of pixels, which the device answers, of the shape where the shot has
+   it. */
 static void ask_device(const Subject *subject, const Shot *shot, KrsHit *answers)
 {
     static double origins[PIXELS][3], directions[PIXELS][3];

@@ -263,7 +263,8 @@ static double in_bar(const double a[2], const double b[2], double radius, double
     return fmin(radius - fabs(y), fmin(x + more, length + more - x));
 }
 
-/* The same of the corner at b: the half-planes of both outer sides, which `cut` is in front of. */
+/* Returns the same of the corner at b: the half-planes of both outer sides, which `cut` is in front
+   of. */
 static double in_corner(const double a[2], const double b[2], const double c[2], double radius,
                         bool miter, double limit, const double p[2])
 {

@@ -99,7 +99,7 @@ static GLuint link_program(const char *scene, const char *what)
     return program;
 }
 
-/* A texture of a uniform's, from texels row by row. */
+/* Returns a texture of a uniform's, from texels row by row. */
 static GLuint bind_texture(GLuint program, GLuint unit, const char *name, GLint kept, GLenum format,
                            GLenum type, GLsizei width, GLsizei height, const void *texels)
 {
@@ -192,9 +192,9 @@ static void evaluate(const KrsState *state, const KrsScene *scene, const char *w
 
 /* ---- what is compared ---- */
 
-/* The points where a scene's distances differ by more than a ten-thousandth of the numbers that are added.  Of what is far
-   away in a table the driver only knows a bound nearer to 0.  `planted` multiplies what the driver says: 1, except
-   to show that a fault is found. */
+/* Returns the points where a scene's distances differ by more than a ten-thousandth of the numbers
+   that are added.  Of what is far away in a table the driver only knows a bound nearer to 0.
+   `planted` multiplies what the driver says: 1, except to show that a fault is found. */
 static size_t count_wrong(const char *name, KrsScene *scene, const char *what, float planted)
 {
     static float  points[POINTS][4], found[POINTS][4];

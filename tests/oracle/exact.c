@@ -11,7 +11,7 @@
 static const Chord NONE = {HUGE_VAL, -HUGE_VAL};
 static const Chord ALL  = {-HUGE_VAL, HUGE_VAL};
 
-/* Where a + b t is at most `limit`. */
+/* Returns where a + b t is at most `limit`. */
 static Chord chord_below(double a, double b, double limit)
 {
     if (b == 0)
@@ -20,7 +20,7 @@ static Chord chord_below(double a, double b, double limit)
     return b > 0 ? (Chord){-HUGE_VAL, t} : (Chord){t, HUGE_VAL};
 }
 
-/* The interval around two. */
+/* Returns the interval around two. */
 static Chord chord_join(Chord a, Chord b)
 {
     if (chord_is_empty(a))
@@ -33,7 +33,7 @@ static Chord chord_moved(Chord chord, double by)
     return (Chord){chord.enter + by, chord.leave + by};
 }
 
-/* The parameter at which the line is nearest to a point: from there on, no large numbers
+/* Returns the parameter at which the line is nearest to a point: from there on, no large numbers
    cancel. */
 static double line_nearest(Line line, Vec point)
 {
@@ -65,7 +65,7 @@ Chord chord_of_box(Line line, Vec low, Vec high)
     return chord_meet(x, chord_meet(y, z));
 }
 
-/* The tube about an endless axis through `point`: a quadratic in the plane across it. */
+/* Returns the tube about an endless axis through `point`: a quadratic in the plane across it. */
 static Chord chord_of_tube(Line line, Vec point, Vec axis, double radius)
 {
     Vec o = vec_sub(line.origin, point), d = line.direction;

@@ -32,7 +32,7 @@ static inline Chord chord_meet(Chord a, Chord b)
 Chord chord_of_ball(Line line, Vec centre, double radius);
 Chord chord_of_half(Line line, Half half);
 Chord chord_of_box(Line line, Vec low, Vec high);
-/* All points within `radius` of a segment of some length. */
+/* Returns all points within `radius` of a segment of some length. */
 Chord chord_of_capsule(Line line, Vec from, Vec to, double radius);
 
 /* What a capsule and some half-spaces have in common. */
@@ -44,7 +44,7 @@ typedef struct Rod {
 } Rod;
 
 Chord chord_of_rod(Line line, const Rod *rod);
-/* A copy of a capsule, in the world. */
+/* Returns a copy of a capsule, in the world. */
 Rod rod_of_copy(const Copy *copy);
 
 /* A camera with y up, and the size of its picture in pixels. */
@@ -56,9 +56,9 @@ typedef struct Lens {
 } Lens;
 
 Lens lens_make(Vec eye, Vec target, double half, bool parallel, int width, int height);
-/* The ray through a place of the picture, in pixels from its top left corner. */
+/* Returns the ray through a place of the picture, in pixels from its top left corner. */
 Line lens_ray(const Lens *lens, double x, double y);
-/* The width of a pixel at a depth, which is taken along the view axis. */
+/* Returns the width of a pixel at a depth, which is taken along the view axis. */
 double lens_pixel(const Lens *lens, double depth);
 
 /* Where the ray through (i + x, j + y) of each pixel enters the first rod; HUGE_VAL where it

@@ -214,7 +214,7 @@ static void what_lanes_do_not_know_is_refused(void **context)
 
 enum { SEEN = 12, UNSEEN = 3000, BYTES_OF_PART = 600 };
 
-/* A solid around a point of which others are taken: no two have the same kinds of them. */
+/* Returns a solid around a point of which others are taken: no two have the same kinds of them. */
 static size_t write_part(char *to, Random *random, const double at[3])
 {
     static const char *const kinds[] = {"sphere(%.4f)", "box([%.4f, 0.2, 0.15])",

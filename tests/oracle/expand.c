@@ -33,7 +33,7 @@ static Isometry isometry_then_mirror(const Isometry *map, Half mirror)
                       shift};
 }
 
-/* The half-space of all x whose mirror image is in `half`. */
+/* Returns the half-space of all x whose mirror image is in `half`. */
 static Half half_behind_mirror(Half half, Half mirror)
 {
     Vec origin = half_mirror(mirror, vec(0, 0, 0));
@@ -41,7 +41,7 @@ static Half half_behind_mirror(Half half, Half mirror)
     return (Half){normal, half.offset - vec_dot(half.normal, origin)};
 }
 
-/* The nearest point of a body that is made thinner by `shrink`. */
+/* Returns the nearest point of a body that is made thinner by `shrink`. */
 static Vec body_project(const Body *body, double shrink, Vec p)
 {
     if (body->box) {
@@ -77,7 +77,7 @@ static double body_reach(const Body *body)
     return reach * (1 + 1e-9) + 1e-9;
 }
 
-/* The point that an isometry takes to `point`. */
+/* Returns the point that an isometry takes to `point`. */
 static Vec isometry_undo(const Isometry *map, Vec point)
 {
     Vec at  = vec_sub(point, map->shift);
@@ -94,7 +94,7 @@ static bool copy_is_cut_off(const Copy *copy)
     return false;
 }
 
-/* How far the point is from satisfying the worst of the body and the cuts; `worst` is where
+/* Returns how far the point is from satisfying the worst of the body and the cuts; `worst` is where
    it would have to go. */
 static double copy_violation(const Copy *copy, double margin, Vec p, Vec *better)
 {

@@ -60,8 +60,8 @@ bool expansion_contains(const Expansion *expansion, Vec point);
 /* Distance from a point outside: exact where the nearest copy is reached at a point that no
    mirror cuts off (*sure), else from above and close.  HUGE_VAL for the empty set. */
 double expansion_distance(const Expansion *expansion, Vec point, bool *sure);
-/* The parameter at which a ray, of unit direction, first enters; HUGE_VAL when it never does.
-   Bodies are spheres and boxes. */
+/* Returns the parameter at which a ray, of unit direction, first enters; HUGE_VAL when it never
+   does.  Bodies are spheres and boxes. */
 double expansion_enter(const Expansion *expansion, Vec origin, Vec direction);
 
 /* To one copy without its cuts, and whether the nearest point survives them. */

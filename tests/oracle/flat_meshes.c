@@ -232,7 +232,7 @@ static bool is_clear(const Part *parts, size_t count, const double point[3])
     return true;
 }
 
-/* The solid angle of a triangle, by van Oosterom and Strackee, 1983. */
+/* Returns the solid angle of a triangle, by van Oosterom and Strackee, 1983. */
 static double solid_angle(const KrsMesh *mesh, size_t triangle, const double point[3])
 {
     double v[3][3], length[3];

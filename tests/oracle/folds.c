@@ -51,7 +51,7 @@ static void invert_ball(const Step *step, Image *image)
     image->radius *= s;
 }
 
-/* How far a ball's centre is in front of a mirror; behind it where that is negative. */
+/* Returns how far a ball's centre is in front of a mirror; behind it where that is negative. */
 static double in_front(const Step *step, Vec p)
 {
     return step->kind == PLANE ? step->number - vec_dot(step->vector, p)
@@ -90,7 +90,7 @@ static void mirror_set(Set *set, const Step *step)
     set->mirrors++;
 }
 
-/* False: the step would cut a ball, or make none of them. */
+/* Returns false if the step would cut a ball, or make none of them. */
 static bool take_step(Set *set, Step step)
 {
     bool left = step.kind != PLANE && step.kind != SPHERE;
@@ -134,7 +134,7 @@ static double set_distance(const Set *set, Vec p, const Image **nearest)
     return least;
 }
 
-/* The bound without the factor q / (d + r) in front of spheres, of the first steps. */
+/* Returns the bound without the factor q / (d + r) in front of spheres, of the first steps. */
 static double careless_bound(const Set *set, int count, Vec p)
 {
     if (count == 0)
@@ -153,8 +153,8 @@ static double careless_bound(const Set *set, int count, Vec p)
     return d / (r * r / (q * q) + fabs(d) / q);
 }
 
-/* The least distance of a point from the origin on its way back to a kernel, and after how many
-   mirrors. */
+/* Returns the least distance of a point from the origin on its way back to a kernel, and after how
+   many mirrors. */
 static double orbit_trap(const Set *set, int kernel, Vec p, int *step)
 {
     double least  = vec_length(p);

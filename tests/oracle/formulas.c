@@ -19,7 +19,7 @@ static Real sq(Real a) { return a * a; }
 static Real cube(Real a) { return a * a * a; }
 static Real squares(const Real p[3]) { return sq(p[0]) + sq(p[1]) + sq(p[2]); }
 
-/* The product of n planes around the z axis: cos(2 pi k / n) x + sin(2 pi k / n) y - w. */
+/* Returns the product of n planes around the z axis: cos(2 pi k / n) x + sin(2 pi k / n) y - w. */
 static Real planes(const Real p[3], int n, Real w)
 {
     static Real cosines[9][8], sines[9][8]; /* those of n, once they are needed */
@@ -79,7 +79,7 @@ static Real roman(const Real p[3])
     return sq(p[0] * p[1]) + sq(p[1] * p[2]) + sq(p[2] * p[0]) + p[0] * p[1] * p[2];
 }
 
-/* The other of the two forms of a cyclide. */
+/* Returns the other of the two forms of a cyclide. */
 static Real cyclide(const Real p[3])
 {
     Real a = 2, b = 1.94L, d = 0.7L, c = sqrtl(sq(a) - sq(b));
@@ -147,8 +147,8 @@ static Real decic(const Real p[3])
     return product + (3 + 5 * GOLDEN) * sq((r - 1) * (r - 2 + GOLDEN));
 }
 
-/* The sum of (v q)^12 over the 60 pairs of corners of the 600-cell, less c |q|^12, at q = (y, x,
-   z, 1): of 120 corners each counts half. */
+/* Returns the sum of (v q)^12 over the 60 pairs of corners of the 600-cell, less c |q|^12, at q =
+   (y, x, z, 1): of 120 corners each counts half. */
 static Real power12(Real a) { return cube(sq(sq(a))); }
 static Real dodecic(const Real p[3])
 {
@@ -336,7 +336,7 @@ static Real min_between(const Chord *chord, Real low, Real high, Real side)
 /* A little is enough to hide a root from anyone who counts in double precision. */
 static const Real LITTLE = 1e-11L, SHORT = 1e-7L;
 
-/* The first place where f * side is no longer positive. */
+/* Returns the first place where f * side is no longer positive. */
 static Entry chord_search(Chord *chord, Real side)
 {
     enum { PIECES = 1200 };

@@ -25,7 +25,7 @@ typedef struct Surface {
 enum { SURFACES = 22 };
 extern const Surface surfaces[SURFACES];
 
-/* The one of this name. */
+/* Returns the one of this name. */
 const Surface *surface_named(const char *name);
 
 /* By differences, whose error is some 1e-12 of the gradient's size nearby. */
@@ -50,7 +50,7 @@ typedef struct Entry {
 
 Entry surface_entry(Formula *formula, Real radius, Vec origin, Vec direction);
 
-/* The first t in the ball at which f changes its sign, in either direction. */
+/* Returns the first t in the ball at which f changes its sign, in either direction. */
 Entry surface_crossing(Formula *formula, Real radius, Vec origin, Vec direction);
 
 /* How far from a root at p double precision may end, which knows f to some 1e-15 of what it is

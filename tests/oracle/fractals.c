@@ -153,7 +153,7 @@ static void voxels_free(Voxels *v)
     free(v->empty);
 }
 
-/* The length of the shortest way found from p to a point of the other side. */
+/* Returns the length of the shortest way found from p to a point of the other side. */
 static double distance_to_other_side(const Fractal *f, const Voxels *v, Random *random, Vec p)
 {
     bool       own   = inside(f, p);

@@ -199,7 +199,7 @@ static void gray_is_seen(void **state)
 
 /* ---- A sun, and a ball that looks the same ---- */
 
-/* What is seen by one of them: a parameter has a number instead of the usual one. */
+/* Returns what is seen by one of them: a parameter has a number instead of the usual one. */
 static Estimate look_by(const White *white, const char *parameter, double number, double usual)
 {
     path_fixture_set(&fixture, parameter, number);
@@ -289,7 +289,7 @@ static void previews_lose_no_sky(void **state)
     assert_int_equal(wrong, 0);
 }
 
-/* One light without a size: neither integrator chooses anything, so there is no noise. */
+/* Returns one light without a size: neither integrator chooses anything, so there is no noise. */
 static size_t compare_lamp(const White *white)
 {
     KrsRenderOptions options = PREVIEW_OPTIONS;
@@ -343,8 +343,8 @@ static const char unlayered[] =
     "material m { color: shade, roughness: rough, metallic: metal }\n"
     "show sphere(1).paint(m);\n";
 
-/* The largest part of the light in a pixel by which preview and direct differ: the preview has a fit in
-   place of the table. */
+/* Returns the largest part of the light in a pixel by which preview and direct differ: the preview
+   has a fit in place of the table. */
 static double max_different(const PathFixture *plain)
 {
     KrsRenderOptions options = PREVIEW_OPTIONS;

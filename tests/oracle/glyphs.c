@@ -47,7 +47,7 @@ static double judge_curve(const Product *product, const Glyph *glyph, size_t bef
     return worst;
 }
 
-/* The number of curves. */
+/* Returns the number of curves. */
 static size_t judge_letter(const char *font, char letter)
 {
     static Glyph glyph;

@@ -173,7 +173,7 @@ static double of_two_balls(Vec p)
     return copysign(of_arcs(p, radii, false), fmin(a, b));
 }
 
-/* A quadratic blend by its definition, and its profile as a polygon, by brute force. */
+/* Returns a quadratic blend by its definition, and its profile as a polygon, by brute force. */
 static double blend_value(double x, double r)
 {
     const double k = 0.5, a = hypot(x + 0.6, r) - 0.8, b = hypot(x - 0.6, r) - 0.7;

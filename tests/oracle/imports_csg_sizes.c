@@ -74,8 +74,8 @@ static Piece random_piece(int kinds, bool turned)
     return piece;
 }
 
-/* The farthest point of a piece in a direction, by its definition: that of a box is a corner, that of
-   a disc where the direction meets its edge. */
+/* Returns the farthest point of a piece in a direction, by its definition: that of a box is a
+   corner, that of a disc where the direction meets its edge. */
 static double support(const Piece *piece, const double direction[3])
 {
     double c = cos(piece->angle), s = sin(piece->angle), at = 0, most = -INFINITY;

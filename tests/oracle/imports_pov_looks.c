@@ -38,8 +38,8 @@ static void numbers_behind(const char *scene, const char *word, double numbers[3
         fail_msg("no numbers: %s", at);
 }
 
-/* What POV-Ray's manual says of a pigment below a light: its diffuse part scatters, its ambient part
-   is there without light, and both only as far as nothing goes through. */
+/* Checks what POV-Ray's manual says of a pigment below a light: its diffuse part scatters, its
+   ambient part is there without light, and both only as far as nothing goes through. */
 static void check_color(const char *pigment, const double p[5], double diffuse, double ambient,
                         const char *before, double (*light)(double))
 {
@@ -119,7 +119,7 @@ static void defaults_are_those_of_the_file(void **state)
 /* The turns that POV-Ray's manual describes with a left hand: thumb along the axis. */
 /* ---- the view ---- */
 
-/* The place of the camera in space as it is here, and the distance of what is seen first. */
+/* Returns the place of the camera in space as it is here, and the distance of what is seen first. */
 static double seen_at(const char *pov, const double eye[3], const double towards[3])
 {
     Imported   result  = imported("view.pov", pov);

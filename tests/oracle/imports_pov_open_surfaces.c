@@ -125,7 +125,7 @@ static void walls_of(const PovTree *tree, int index, const Ray *ray, Walls *wall
     }
 }
 
-/* The first wall that is within the region; -1: none. */
+/* Returns the first wall that is within the region; -1: none. */
 static double first_wall(const PovTree *tree, int object, int region, const Ray *ray)
 {
     Walls  walls = {.count = 0};

@@ -66,7 +66,7 @@ static double gyroid(Vec p, double k)
     return sin(k * p.x) * cos(k * p.y) + sin(k * p.y) * cos(k * p.z) + sin(k * p.z) * cos(k * p.x);
 }
 
-/* The CSG node of two distances with a rounded edge k wide, as blends.def says in words. */
+/* Returns the CSG node of two distances with a rounded edge k wide, as blends.def says in words. */
 static double blended_union(double a, double b, double k, int blend)
 {
     double h = fmax(1 - fabs(a - b) / k, 0);
@@ -237,7 +237,7 @@ static KnownSolid *moved(Random *random, double size, KnownSolid *part)
     return solid;
 }
 
-/* One that has a distance, about as large as 1; some are plates. */
+/* Returns one that has a distance, about as large as 1; some are plates. */
 static KnownSolid *primitive(Random *random, double thick)
 {
     KnownSolid *s = make((Kind)random_below(random, KNOWN_PRIMITIVES), NULL);

@@ -12,8 +12,8 @@
 
 typedef struct KnownSolid KnownSolid;
 
-/* A solid within the cube around the origin with sides of 4; its parts are thicker than `thick`,
-   as far as they do not come so near to each other that others become of them.  For
+/* Returns a solid within the cube around the origin with sides of 4; its parts are thicker than
+   `thick`, as far as they do not come so near to each other that others become of them.  For
    known_solid_free. */
 KnownSolid *known_solid_random(Random *random, double thick);
 void        known_solid_free(KnownSolid *solid);

@@ -268,7 +268,7 @@ static bool is_lit_right(Fixture *fixture, KrsExecutor executor, int setting, in
     return right;
 }
 
-/* How many settings of a room come out wrong. */
+/* Returns how many settings of a room come out wrong. */
 static size_t count_wrong(const Room *room, int lit[KRS_EXECUTOR_COUNT])
 {
     Random  random  = {(uint64_t)(room - rooms) + 1};

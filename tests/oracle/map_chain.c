@@ -78,7 +78,7 @@ static Vec chain_undo_mirror(Half mirror, Vec p)
     return e > 0 ? vec_sub(p, vec_scale(2 * e, mirror.normal)) : p;
 }
 
-/* The distance to a kernel in its own space, exact; negative inside. */
+/* Returns the distance to a kernel in its own space, exact; negative inside. */
 static double solid_distance(const Kernel *k, Vec p)
 {
     Vec q = vec_rotate(vec_sub(p, k->from), k->axis, -k->angle);

@@ -70,7 +70,7 @@ bool map_chain_contains(const void *chain, Vec p);
 /* Points of the surface, so many of each kernel. */
 Cloud chain_cloud(const Chain *chain, int each, Random *random);
 
-/* A point near one of a cloud. */
+/* Returns a point near one of a cloud. */
 Vec     random_near(const Cloud *cloud, Random *random);
 Product compile_chain(const Chain *chain);
 
@@ -89,7 +89,7 @@ enum { FLAVOURS = 11 };
 extern const Flavour flavours[FLAVOURS];
 
 /* `inner`: what may be a kernel of a nested one, or NULL. */
-/* The chain that a kernel stands for when `inner` is one. */
+/* Returns the chain that a kernel stands for when `inner` is one. */
 Chain random_chain(const Flavour *flavour, const Chain *inner, Random *random);
 
 #endif

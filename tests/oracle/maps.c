@@ -140,7 +140,7 @@ static double word_hardness(const Word *word, Vec p)
     return fmax(hardness, vec_length(p));
 }
 
-/* How much larger things become near p. */
+/* Returns how much larger things become near p. */
 static double word_scale(const Word *word, Vec p)
 {
     double scale = 1;
@@ -209,7 +209,7 @@ static const Map *word_map(const Word *word, int from, int to)
     return map_product(&builder, second, first);
 }
 
-/* The value of a node at these parameters. */
+/* Returns the value of a node at these parameters. */
 static NodeValue value_of(Node node, const NodeValue *parameters)
 {
     const Graph *graph  = builder.graph;

@@ -120,7 +120,7 @@ static bool is_inside(const Surface *surface, Vec p)
     return surface->value(surface->user, p) < 0;
 }
 
-/* Where the sign changes between two points. */
+/* Returns where the sign changes between two points. */
 static Vec crossing(const Surface *surface, Vec outer, Vec inner)
 {
     for (int i = 0; i < HALVINGS; i++) {
@@ -201,7 +201,7 @@ static Surface aimed_at(const Surface *surface, double error, Random *random)
     return aimed;
 }
 
-/* All crossings of a ray that are farther apart than the samples. */
+/* Casts all crossings of a ray that are farther apart than the samples. */
 static void cast_ray(const Surface *surface, const MeshGrid *grid, double error, Random *random,
                      Apart *apart)
 {

@@ -32,7 +32,7 @@ typedef struct Apart {
 typedef struct MeshGrid MeshGrid;
 MeshGrid               *mesh_grid_new(const KrsMesh *mesh, double reach);
 void                    mesh_grid_free(MeshGrid *grid);
-/* The distance of a point from the mesh; HUGE_VAL: it is more than the reach. */
+/* Returns the distance of a point from the mesh; HUGE_VAL: it is more than the reach. */
 double mesh_grid_distance(const MeshGrid *grid, Vec point);
 
 /* `rays` random rays through the box, and about `points` points of the mesh. */

@@ -107,7 +107,7 @@ static double value_of_sponge_3(const void *user, Vec p)
     return value_of_sponge(p, 3);
 }
 
-/* A closed form with g_0 = 0 of what the levels take away: 5, 81, 1409, 26433. */
+/* Returns a closed form with g_0 = 0 of what the levels take away: 5, 81, 1409, 26433. */
 static long genus_of_sponge(int levels)
 {
     return lround((21 * pow(20, levels) + 38 * pow(8, levels) - 59) / 133);

@@ -17,7 +17,8 @@ typedef struct MeshShape {
 } MeshShape;
 MeshShape mesh_shape(const KrsMesh *mesh);
 
-/* The Euler number of the surface of what is inside, if cubes are as small as the box over `cells`. */
+/* Returns the Euler number of the surface of what is inside, if cubes are as small as the box over
+   `cells`. */
 long solid_euler(const Surface *surface, int cells);
 
 /* Writes the mesh as OFF, which CGAL reads. */

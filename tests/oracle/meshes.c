@@ -183,7 +183,7 @@ static void nearly_all_of_a_draft_is_within_the_error(void **state)
 
 /* ---- random scenes ---- */
 
-/* False: the compiler refuses what was drawn, as what does not fit its cell. */
+/* Returns false if the compiler refuses what was drawn, as what does not fit its cell. */
 static bool open_scene(const SceneText *text, Product *product)
 {
     *product = (Product){0};

@@ -66,7 +66,8 @@ static Meta meta_new(Random *random, int kind, char *text, size_t size)
     return meta;
 }
 
-/* The shortest way along `rays` rays to where the sum crosses the level; infinite if none does. */
+/* Returns the shortest way along `rays` rays to where the sum crosses the level; infinite if none
+   does. */
 static double distance_to_surface(const Meta *meta, Random *random, Vec p, int rays)
 {
     enum { STEPS = 200 };

@@ -17,7 +17,7 @@ typedef struct Tally {
     double tightness; /* sum of distance over the cloud's */
 } Tally;
 
-/* The box, the cloud and a point: everything that is asked of a distance. */
+/* Checks the box, the cloud and a point: everything that is asked of a distance. */
 static void check_point(const Product *product, const Chain *chain, Cloud *cloud, Vec p,
                         Tally *tally)
 {
@@ -245,7 +245,7 @@ static void offsets_do_not_show_poles(void **state)
     product_free(&joined);
 }
 
-/* A chain in which everything moves; at 0.5 the poles of the two inversions meet. */
+/* Returns a chain in which everything moves; at 0.5 the poles of the two inversions meet. */
 static Chain moving_chain(double t)
 {
     Chain  chain = {.count = 0};

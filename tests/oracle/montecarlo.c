@@ -13,7 +13,7 @@ static double bound_at(const Setting *setting, Vec p)
     return setting->room->bound(p, setting->numbers);
 }
 
-/* The first place from `t` on at which a line is inside of something; HUGE_VAL: none. */
+/* Returns the first place from `t` on at which a line is inside of something; HUGE_VAL: none. */
 static double first_inside(const Setting *setting, Line line, double t, double end)
 {
     double before = t;
@@ -68,7 +68,7 @@ static double mirror_of(double light, double eye, double to_halfway, double head
     return light * mirrored / M_PI * 0.5 / (light + eye);
 }
 
-/* The part of light from all sides that it sends to the eye, by sums over the half sky. */
+/* Returns the part of light from all sides that it sends to the eye, by sums over the half sky. */
 static double sum_mirrored(double eye, double head_on)
 {
     enum { RISES = 200, TURNS = 50 };
@@ -121,7 +121,7 @@ static double reflect_white(Vec normal, Vec toward_eye, Vec toward_light)
            leaves.bounces * mirror_of(light, eye, vec_dot(toward_eye, halfway), HEAD_ON);
 }
 
-/* The part of the light's disc that nothing hides from a point. */
+/* Returns the part of the light's disc that nothing hides from a point. */
 static double find_visible(const Setting *setting, Vec point, Vec normal, int rays, Random *random)
 {
     Vec    start  = vec_add(point, vec_scale(ABOVE, normal));

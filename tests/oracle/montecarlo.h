@@ -35,8 +35,8 @@ Setting setting_choose(const Room *room, Random *random);
 /* With `rays` to points of the light, which divide its disc evenly, turned at random. */
 Seen see(const Setting *setting, Line ray, int rays, Random *random);
 
-/* How open a place is whose normal is this: the part of the hemisphere, by the cosine, in which there
-   is nothing; of directions that fall, up to this reach. */
+/* Returns how open a place is whose normal is this: the part of the hemisphere, by the cosine, in
+   which there is nothing; of directions that fall, up to this reach. */
 double openness(const Setting *setting, Vec point, Vec normal, double reach, int rays,
                 Random *random);
 

@@ -84,7 +84,7 @@ static void open_ground_is_open(void **state)
     krs_picture_free(picture);
 }
 
-/* How open ground is at a distance from a long wall so high. */
+/* Returns how open ground is at a distance from a long wall so high. */
 static double openness_before_wall(double distance, double height)
 {
     return 0.5 + 0.5 * distance / hypot(distance, height);
@@ -178,7 +178,7 @@ static void shared_rays_see_a_wall_where_it_is(void **state)
     krs_picture_free(picture);
 }
 
-/* Two walls, a floor and a ball on it, whose distance is `slope` times too small. */
+/* Returns two walls, a floor and a ball on it, whose distance is `slope` times too small. */
 static KrsPicture *take_room(double slope, double radius)
 {
     SceneText text = {0};
@@ -207,8 +207,8 @@ static bool leaves_room(Line line, int walls, double reach)
     return along[1] < 0 ? nearest > reach : isinf(nearest);
 }
 
-/* The part of the hemisphere, by the cosine, in which rays leave: by directions that divide it
-   evenly. */
+/* Returns the part of the hemisphere, by the cosine, in which rays leave: by directions that divide
+   it evenly. */
 static double openness_of_room(Vec p, Vec normal, int walls, double reach)
 {
     enum { RINGS = 16, SPOKES = 32 };
@@ -388,8 +388,8 @@ static double openness_of_wedge(Vec p, double a, double b, double c)
     return p.x > 0 ? 0.5 - 0.5 * cos(a) : NAN;
 }
 
-/* The part of the hemisphere, by the cosine, that a polygon takes whose corners are above the floor
-   (Lambert 1760). */
+/* Returns the part of the hemisphere, by the cosine, that a polygon takes whose corners are above
+   the floor (Lambert 1760). */
 static double part_of_quad(Vec p, const Vec corners[4])
 {
     double sum = 0;
@@ -467,9 +467,10 @@ typedef struct Wrong {
     double bias, spread;
 } Wrong;
 
-/* The least and the most light on the floor where it is so open, by the albedo of what closes it.  Black
-   gives none back, and white all of it in a white world, but for places that are nearly closed.  Other
-   occluders give back at most what they would in the open, and no less than nothing. */
+/* Finds the least and the most light on the floor where it is so open, by the albedo of what
+   closes it.  Black gives none back, and white all of it in a white world, but for places that
+   are nearly closed.  Other occluders give back at most what they would in the open, and no less
+   than nothing. */
 static void find_limits(double open, double back, double limits[2])
 {
     limits[0] = open;
@@ -562,7 +563,7 @@ static void write_room(SceneText *text, const Setting *setting)
                 eye.x, eye.y, eye.z, target.x, target.y, target.z, room->fov, room->text);
 }
 
-/* How open the centres of pixels are; NAN where nothing is seen. */
+/* Finds how open the centres of pixels are; NAN where nothing is seen. */
 static void find_openness(const Setting *setting, double *open)
 {
     const Room *room  = setting->room;

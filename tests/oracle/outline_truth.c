@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-/* How many times the lines go around a point. */
+/* Returns how many times the lines go around a point. */
 static int winding_at(const Truth *truth, const double p[2])
 {
     int winding = 0;
@@ -60,7 +60,7 @@ static void add_lines(Truth *truth, const Curve *curve)
     }
 }
 
-/* Where a line meets another one: how far along it, else 2. */
+/* Returns where a line meets another one: how far along it, else 2. */
 static double meets_at(const Line *line, const Line *other)
 {
     double x = line->b[0] - line->a[0], y = line->b[1] - line->a[1];

@@ -92,7 +92,7 @@ static void draw_rings(Path *path, Random *random)
     }
 }
 
-/* Two rings that touch: a crescent whose tips are as sharp as can be. */
+/* Draws two rings that touch: a crescent whose tips are as sharp as can be. */
 static void draw_crescent(Path *path, Random *random)
 {
     (void)random;

@@ -19,7 +19,7 @@ void        path_fixture_close(PathFixture *fixture);
 void        path_fixture_set(PathFixture *fixture, const char *name, double number);
 void path_fixture_set_all(PathFixture *fixture, const char *name, double x, double y, double z);
 
-/* A picture, which the caller frees. */
+/* Returns a picture, which the caller frees. */
 KrsPicture *path_fixture_render(const PathFixture *fixture, const KrsRenderOptions *options);
 
 /* The mean of independent numbers, and its standard error. */

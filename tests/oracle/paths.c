@@ -52,7 +52,7 @@ static double fresnel(double angle, double index, double *beyond)
     return 0.5 * (across * across + along * along);
 }
 
-/* What a slab of thickness 1 lets through: each way through it leaves `kept`. */
+/* Returns what a slab of thickness 1 lets through: each way through it leaves `kept`. */
 static double let_through(double angle, double index, double loss)
 {
     double beyond, mirrored = fresnel(angle, index, &beyond), kept = exp(-loss / cos(beyond));
@@ -96,8 +96,8 @@ static void slabs_let_light_through(void **state)
     assert_int_equal(wrong, 0);
 }
 
-/* The part of the picture that the board fills, seen through a slab of this index, or through none:
-   rays that are mirrored within the slab 2 k times leave it farther to the side. */
+/* Returns the part of the picture that the board fills, seen through a slab of this index, or
+   through none: rays that are mirrored within the slab 2 k times leave it farther to the side. */
 static double seen_of_board(double angle, double index, double edge)
 {
     double beyond, mirrored = fresnel(angle, index, &beyond), sum = 0;

@@ -155,7 +155,7 @@ static bool mean_of_pixel(const View *view, const Pattern *pattern, int x, int y
 
 /* ---- pictures ---- */
 
-/* A scene with three patterns, in red, green and blue, and a camera for each view. */
+/* Returns a scene with three patterns, in red, green and blue, and a camera for each view. */
 static Product scene_with(const char *const shown[3])
 {
     SceneText text = {.length = 0};
@@ -401,7 +401,7 @@ static const char balls[] =
     "    reflect plane([0, -1, 0], 0);\n"
     "}.paint(shown);\n";
 
-/* The point of the first ball that a point of the others is the image of. */
+/* Returns the point of the first ball that a point of the others is the image of. */
 static Vec in_kernel(Vec at)
 {
     Vec    q = vec_scale(1 / 0.7, vec(fabs(at.x) - 1, fabs(at.y) - 0.8, at.z));

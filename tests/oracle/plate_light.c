@@ -54,7 +54,7 @@ static void go(const Ray *ray, double t, double point[3])
         point[i] = ray->origin[i] + t * ray->direction[i];
 }
 
-/* The ray through a place of the picture, in pixels; depths count along it. */
+/* Returns the ray through a place of the picture, in pixels; depths count along it. */
 static Ray ray_of(int camera, double x, double y)
 {
     const double half  = camera == 0 ? tan(25 * M_PI / 180) : 2;
@@ -71,7 +71,7 @@ static void place_of(int camera, const double point[3], double place[2])
     place[1]          = DOWN * (0.5 - 0.5 * (point[1] - eye[1]) / half);
 }
 
-/* The first surface of the plate that a ray meets from the front, beyond a distance. */
+/* Returns the first surface of the plate that a ray meets from the front, beyond a distance. */
 static Surface meet(const Ray *ray, double beyond, bool with_walls, double *t)
 {
     static const double at[SURFACES] = {0, 0, 0, 0.8};
@@ -104,7 +104,8 @@ static void paint(Surface surface, const double p[3], double color[3])
     memcpy(color, colors[surface], sizeof colors[surface]);
 }
 
-/* What a ray that leaves the scene sees: the first surface that it meets where the plate shows it. */
+/* Returns what a ray that leaves the scene sees: the first surface that it meets where the plate
+   shows it. */
 static Surface look(int camera, const Ray *ray, double color[3])
 {
     double t = 1e-9, point[3] = {0}, place[2];

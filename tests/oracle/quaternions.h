@@ -16,7 +16,7 @@ typedef struct Matrix {
 } Matrix;
 
 Quat quat(double w, Vec v);
-/* A vector alone, and a number alone. */
+/* Returns a vector alone, and a number alone. */
 Quat   pure(Vec v);
 Quat   real(double w);
 Quat   quat_mul(Quat p, Quat q);

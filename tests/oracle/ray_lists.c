@@ -97,8 +97,8 @@ static void draw_rays(List *list, const double low[3], const double high[3], Ran
 
 /* ---- What rays meet ---- */
 
-/* The part of the rays of which a picture says something else than the host: a hit where the
-   distance is not next to nothing, or none where the host's ray goes well into something. */
+/* Returns the part of the rays of which a picture says something else than the host: a hit where
+   the distance is not next to nothing, or none where the host's ray goes well into something. */
 static double disagreement(Fixture *fixture, const KrsPicture *picture, const List *list,
                            double spread)
 {
@@ -238,7 +238,8 @@ static void cross(const double a[3], const double b[3], double out[3])
 
 static double length_of(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
-/* The rays through the centres of the pixels of a perspective camera; *spread as of its pixels. */
+/* Lists the rays through the centres of the pixels of a perspective camera; *spread as of its
+   pixels. */
 static void list_camera(const KrsCamera *camera, List *list, double *spread)
 {
     const double half = tan(camera->fov / 2);

@@ -408,7 +408,8 @@ static void write_star(const Star *star)
     assert_int_equal(fclose(file), 0);
 }
 
-/* The distance to the dense points' lines, below 0 where a ray to the right crosses them an odd number of times. */
+/* Returns the distance to the dense points' lines, below 0 where a ray to the right crosses them an
+   odd number of times. */
 static double value_of_figure(const Star *star, double x, double y)
 {
     double least  = HUGE_VAL;

@@ -117,7 +117,7 @@ static bool is_met(const Shot *shot, Line ray, double more)
 
 static double shot_distance(const Shot *shot) { return vec_distance(shot->eye, shot->at); }
 
-/* How many pixels are wrong. */
+/* Returns how many pixels are wrong. */
 static size_t judge_shot(const Shot *shot, size_t *hits)
 {
     Lens        lens    = lens_make(shot->eye, shot->at, tan(FOV / 2), false, WIDTH, HEIGHT);
@@ -148,7 +148,7 @@ static double rounded(double x) { return (double)(float)x; }
 
 static Vec rounded_vec(Vec v) { return vec(rounded(v.x), rounded(v.y), rounded(v.z)); }
 
-/* An eye some way from what it looks at. */
+/* Places an eye some way from what it looks at. */
 static void place(Shot *shot, Random *random, double far, double distance)
 {
     Vec heading = random_unit(random);

@@ -82,9 +82,10 @@ void        set_lighting(const Shot *shot);
 KrsPicture *take_picture(KrsRendering *rendering, KrsState *state, KrsRenderOptions options);
 KrsPicture *shoot(const Shot *shot);
 Lens        shot_lens(const Shot *shot);
-/* How much of the light a pixel of the window sees; -1 where it is not ground in the light. */
+/* Returns how much of the light a pixel of the window sees; -1 where it is not ground in the
+   light. */
 double seen_at(const KrsPicture *picture, int k);
-/* The ground in the middle of a pixel of the window. */
+/* Returns the ground in the middle of a pixel of the window. */
 Vec    ground_at(const Lens *lens, const KrsWindow *window, double x, double y);
 double pixel_at(const Lens *lens, Vec ground);
 

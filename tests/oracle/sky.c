@@ -108,7 +108,8 @@ static double radiance(Map map, const double d[3], double rotation)
            b * ((1 - a) * at(map, i, k + 1) + a * at(map, i + 1, k + 1));
 }
 
-/* The irradiance on a surface with this normal, over parts of the sphere that are as large. */
+/* Returns the irradiance on a surface with this normal, over parts of the sphere that are as
+   large. */
 static double irradiance(Map map, const double normal[3], double rotation)
 {
     enum { COLUMNS = 1024, LINES = 1024 };
@@ -290,7 +291,7 @@ static void mirrors_show_the_map(void **state)
     path_fixture_close(&fixture);
 }
 
-/* The standard deviation of pixels that are all lit alike. */
+/* Returns the standard deviation of pixels that are all lit alike. */
 static double noise_of(const PathFixture *fixture, uint32_t samples)
 {
     KrsRenderOptions options = options_of(KRS_INTEGRATOR_DIRECT, 64, samples);

@@ -69,8 +69,8 @@ static void find_sky(int part, double rows[ROWS])
     path_fixture_close(&fixture);
 }
 
-/* The cosine to a normal that rises by `up`, where it is positive, over all directions of a height:
-   its integral over the longitude. */
+/* Returns the cosine to a normal that rises by `up`, where it is positive, over all directions of a
+   height: its integral over the longitude. */
 static double cosines_of(double height, double up)
 {
     const double across = sqrt(1 - height * height) * sqrt(1 - up * up), along = height * up;

@@ -574,7 +574,7 @@ typedef struct Saddle {
 
 static const double PI = 3.14159265358979323846;
 
-/* Where it is moved and turned. */
+/* Writes where it is moved and turned. */
 static void write_place(SceneText *text, Random *random)
 {
     double angle = random_between(random, -3, 3), x = random_between(random, -0.3, 0.3);
@@ -594,7 +594,7 @@ static Product compile_placed(Random *random, const char *format, double a, doub
     return product_compile(text.bytes);
 }
 
-/* Two discs that nearly touch, or two holes. */
+/* Returns two discs that nearly touch, or two holes. */
 static Saddle make_discs(Random *random, double neck)
 {
     const double r = random_between(random, 0.3, 1), q = random_between(random, 0.3, 1);
@@ -615,7 +615,8 @@ static Saddle make_discs(Random *random, double neck)
     return saddle;
 }
 
-/* Two lemniscates of Bernoulli's kind, of a half axis near 1: their neck joins or parts them. */
+/* Returns two lemniscates of Bernoulli's kind, of a half axis near 1: their neck joins or parts
+   them. */
 static Saddle make_ovals(Random *random, double neck)
 {
     const double half = 0.5 * neck, part = random_below(random, 2) ? -1 : 1;
@@ -654,7 +655,7 @@ static Saddle make_ring(Random *random, double least)
     return saddle;
 }
 
-/* A wall that stands on a block, and a slot into one. */
+/* Returns a wall that stands on a block, and a slot into one. */
 static Saddle make_wall(Random *random, double neck)
 {
     const double length = random_between(random, 0.4, 0.55), at = random_between(random, -0.2, 0.2);
@@ -669,7 +670,7 @@ static Saddle make_wall(Random *random, double neck)
     return saddle;
 }
 
-/* Two blocks with a bar between them. */
+/* Returns two blocks with a bar between them. */
 static Saddle make_bridge(Random *random, double neck)
 {
     Saddle saddle  = {.normal = {0, 0, 1}, .length = 4, .contours = 1};

@@ -30,8 +30,8 @@
 #define MAX_TOOTHED        0.85
 #define MAX_TOOTHED_AT_ALL 1.1
 
-/* How far the mean of 5x5 pixels is outside of what is true for it; NAN where one of them shows
-   no ground in the light. */
+/* Returns how far the mean of 5x5 pixels is outside of what is true for it; NAN where one of them
+   shows no ground in the light. */
 static double mean_off(const KrsPicture *picture, int x, int y)
 {
     double seen = 0, low = 0, high = 0;
@@ -113,7 +113,7 @@ static void soft_shadows_are_shares_of_the_disc(void **state)
     assert_int_equal(wrong, 0);
 }
 
-/* How far pixels in and beside the penumbra are from the truth: root of the mean square. */
+/* Returns how far pixels in and beside the penumbra are from the truth: root of the mean square. */
 static double find_fraying(const KrsPicture *picture, const Shot *shot, int *count)
 {
     double squares = 0, low, high;

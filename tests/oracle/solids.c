@@ -165,7 +165,7 @@ static double depth_change(const Sweep *sweep, const Curve *c)
     return distance + fabs(sweep->radius - sweep->radius_end);
 }
 
-/* The least depth between two parameters that hold one minimum. */
+/* Returns the least depth between two parameters that hold one minimum. */
 static double refine_depth(const Sweep *sweep, const Curve *curve, Vec point, double low,
                            double high)
 {
@@ -229,14 +229,14 @@ typedef struct SweepPiece {
     Ellipsoid    end;
 } SweepPiece;
 
-/* A unit vector across the curve that turns with it. */
+/* Returns a unit vector across the curve that turns with it. */
 static Vec curve_side(const Curve *curve, Vec tangent)
 {
     Vec bend = vec_cross(vec_sub(curve->via, curve->from), vec_sub(curve->to, curve->from));
     return vec_length(bend) > 1e-12 ? vec_unit(vec_cross(tangent, bend)) : vec_across(tangent);
 }
 
-/* Where a ball touches the hull of its neighbours: n.c' = -r' (canal surface). */
+/* Returns where a ball touches the hull of its neighbours: n.c' = -r' (canal surface). */
 static Vec tube_patch(const void *user, double u, double v)
 {
     const SweepPiece *piece    = user;

@@ -75,7 +75,7 @@ static size_t find_numbers(const char *text, const char *numbers[MAX_NUMBERS])
     return count;
 }
 
-/* The text with that number a little larger. */
+/* Returns the text with that number a little larger. */
 static char *edit(const char *text, const char *number)
 {
     char        *end, *edited = malloc(strlen(text) + 40);
@@ -98,8 +98,8 @@ static KrsScene *compile(const char *text, const char *name, KrsSpecialize speci
     return scene;
 }
 
-/* The text of a kernel that marches and shades, of a processor or of a graphics card, without
-   comments. */
+/* Returns the text of a kernel that marches and shades, of a processor or of a graphics card,
+   without comments. */
 static char *kernel_text_of(const KrsScene *scene, bool card)
 {
     const KrsVariant  variant  = {.values = true, .many_threads = card};
@@ -141,8 +141,9 @@ static bool has_texts(const KrsScene *scene, Texts wanted)
     return same;
 }
 
-/* The largest difference of distances, as a part of the coordinates, at points in and around the
-   box of the scene.  What is only a bound may be another one, but is one of the same solid. */
+/* Returns the largest difference of distances, as a part of the coordinates, at points in and
+   around the box of the scene.  What is only a bound may be another one, but is one of the same
+   solid. */
 static double difference(const KrsScene *a, const KrsScene *b)
 {
     KrsState *first, *second;

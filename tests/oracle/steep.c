@@ -74,7 +74,7 @@ static const double FOV = 50 * 0.017453292519943295;
 
 /* ---- Truth ---- */
 
-/* Where a line first comes into the solid within the region; HUGE_VAL: nowhere. */
+/* Returns where a line first comes into the solid within the region; HUGE_VAL: nowhere. */
 static double first_root(Formula *formula, Line line)
 {
     Chord  chord = chord_of_box(line, vec(-HALF, -HALF, -HALF), vec(HALF, HALF, HALF));

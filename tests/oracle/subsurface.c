@@ -23,8 +23,8 @@ static double square(double x) { return x * x; }
 
 /* ---- Random walks ---- */
 
-/* What is left of light at an event in a medium whose half-space has an albedo: that of van de Hulst,
-   inverted by bisection. */
+/* Returns what is left of light at an event in a medium whose half-space has an albedo: that of van
+   de Hulst, inverted by bisection. */
 static double kept_of(double albedo)
 {
     double low = 0, high = 1; /* of the root of what is lost */
@@ -87,8 +87,8 @@ static Spread spread_of_walks(double albedo)
     return spread;
 }
 
-/* The same by the closed form: albedo (e^(-r/d) + e^(-r/3d)) / (8 pi d r), for light that enters a dull
-   surface. */
+/* Returns the same by the closed form: albedo (e^(-r/d) + e^(-r/3d)) / (8 pi d r), for light that
+   enters a dull surface. */
 static Spread spread_of_profile(double albedo)
 {
     enum { RADII = 4000, ANGLES = 200 };

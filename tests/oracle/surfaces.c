@@ -242,7 +242,7 @@ enum { CENSUSES = sizeof censuses / sizeof *censuses };
 
 enum { MAX_TWINS = 8 };
 
-/* The images of p under the generators of the surface's symmetries; returns how many. */
+/* Returns the images of p under the generators of the surface's symmetries; returns how many. */
 static int twins_of(const Census *census, const Real p[3], Real twins[MAX_TWINS][3])
 {
     int count = 0;
@@ -336,8 +336,8 @@ static void has_its_nodes(void **state)
 
 /* ---- Sarti's nodes ---- */
 
-/* The corners of the 600-cell: all of (1, 0, 0, 0), (1, 1, 1, 1) / 2 and the even permutations of
-   (g, 1, 1 / g, 0) / 2, with all signs. */
+/* Returns the corners of the 600-cell: all of (1, 0, 0, 0), (1, 1, 1, 1) / 2 and the even
+   permutations of (g, 1, 1 / g, 0) / 2, with all signs. */
 static int corners_of_600_cell(double corners[120][4])
 {
     const double g     = 1.6180339887498949;

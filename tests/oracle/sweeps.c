@@ -133,7 +133,7 @@ static Product path_product(const Path *path)
     return product_compile(text.bytes);
 }
 
-/* A path that begins along z, so that y is up. */
+/* Returns a path that begins along z, so that y is up. */
 static Path path_new(double twist, double taper)
 {
     return (Path){.parts = {{vec(-0.3, 0, -1), vec(-0.3, 0, -0.4), vec(-0.1, 0.3, 0)}},
@@ -229,7 +229,7 @@ static void frames_stay_upright(void **state)
     product_free(&product);
 }
 
-/* How far the solid goes in a direction from a point of its path. */
+/* Returns how far the solid goes in a direction from a point of its path. */
 static double reach_of(const Product *product, Vec from, Vec direction)
 {
     double far = 0;

@@ -41,7 +41,7 @@ static Vec invert(Vec q)
     return vec_scale(1 / vec_dot(q, q), q);
 }
 
-/* The first kernel's image behind both mirrors of SEQUENCE. */
+/* Returns the first kernel's image behind both mirrors of SEQUENCE. */
 static Vec reflect_twice(Vec q)
 {
     q = vec_add(q, vec(-1, 0, 0));
@@ -55,7 +55,7 @@ static Vec reflect_twice(Vec q)
     "mobius translate([0, -1.5, 0]) * rotate([0, 0, 1], 30deg); "              \
     "reflect plane([0, 1, 0], 0); }"
 
-/* One of so many that they are an instance group (compiler/lower/instance_groups.h). */
+/* Returns one of so many that they are an instance group (compiler/lower/instance_groups.h). */
 static Vec turn_of_loop(Vec q)
 {
     return vec_add(vec_rotate(q, vec(0, 0, 1), 7 * 0.4), vec(3 * 7, 0, 0));

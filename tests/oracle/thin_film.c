@@ -82,7 +82,7 @@ static double reflect(Film film, double angle, int color)
     return sum / weights;
 }
 
-/* The index of refraction with this reflectance head on. */
+/* Returns the index of refraction with this reflectance head on. */
 static double index_of(double head_on) { return (1 + sqrt(head_on)) / (1 - sqrt(head_on)); }
 
 /* ---- What pictures show ---- */

@@ -93,7 +93,7 @@ static Product compile_tree(void)
     return product_compile(text.bytes);
 }
 
-/* The centre of the circle through three points, from its barycentric coordinates. */
+/* Returns the centre of the circle through three points, from its barycentric coordinates. */
 static Vec circle_centre(Vec a, Vec b, Vec c)
 {
     double along_a = pow(vec_distance(b, c), 2), along_b = pow(vec_distance(c, a), 2),
@@ -117,7 +117,7 @@ static Vec arc_point(Vec a, Vec b, Vec c, double t)
     return vec_add(centre, vec_rotate(from, axis, t * angle));
 }
 
-/* The mirror through fork i, the next fork on the side that stays. */
+/* Returns the mirror through fork i, the next fork on the side that stays. */
 static Half mirror_at(int i)
 {
     Half half = {vec_unit(normals[i - 1]), 0};

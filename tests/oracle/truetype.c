@@ -69,7 +69,7 @@ static size_t place_of(unsigned glyph)
     return reader.glyf + (wide ? u32(reader.loca + 4 * glyph) : 2 * u16(reader.loca + 2 * glyph));
 }
 
-/* The coordinates along one axis: each as the way from the one before. */
+/* Returns the coordinates along one axis: each as the way from the one before. */
 static size_t read_axis(size_t at, const unsigned char *flags, size_t count, unsigned is_short,
                         unsigned is_same, double *numbers)
 {

@@ -20,13 +20,13 @@ typedef struct Glyph {
     size_t ends[MAX_GLYPH_POINTS], contours, points;
 } Glyph;
 
-/* The font of the functions below; false: it cannot be read. */
+/* Opens the font of the functions below; false: it cannot be read. */
 bool truetype_open(const char *path);
 
-/* The glyph of a character, by a map of format 4; 0: none. */
+/* Returns the glyph of a character, by a map of format 4; 0: none. */
 unsigned truetype_glyph(unsigned character);
 
-/* False: it has parts, or nothing. */
+/* Returns false if it has parts, or nothing. */
 bool truetype_read(unsigned number, Glyph *glyph);
 
 #ifdef __cplusplus

@@ -62,9 +62,9 @@ typedef struct Shot {
 } Shot;
 
 Lens twigs_lens(const Shot *shot, int width, int height);
-/* The parameter `size` for twigs of so many pixels. */
+/* Returns the parameter `size` for twigs of so many pixels. */
 double twigs_size(const Scene *scene, const Lens *lens, double wide);
-/* The permitted error in pixels. */
+/* Returns the permitted error in pixels. */
 double      twigs_error(const Shot *shot);
 KrsPicture *twigs_render(const Shot *shot, const Lens *lens, uint32_t samples);
 /* Where the ray through (i + x, j + y) of each pixel meets a twig, unless the wall hides it;

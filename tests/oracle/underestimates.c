@@ -64,7 +64,7 @@ static const Vec light = {-0.35, 1, 0.25};
 
 /* ---- Truth ---- */
 
-/* The least of the formula between two places of a line, where it has one low point there. */
+/* Returns the least of the formula between two places of a line, where it has one low point there. */
 static double min_between(const struct Form *form, Line line, double a, double b)
 {
     const double golden = 0.6180339887498949;

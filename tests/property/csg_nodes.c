@@ -294,7 +294,7 @@ static void same_surface(void **state)
     assert_true(20 * lengths_left < 19 * lengths);
 }
 
-/* What is left of a scene; the same holds of it. */
+/* Returns what is left of a scene; the same holds of it. */
 static Looked pruned(Bench *bench, const Scene *scene, unsigned whole, Box box)
 {
     Node   root   = make_graph(bench, scene, whole);

@@ -94,7 +94,7 @@ static double distance_to(const Part *part, const double p[3])
     return sqrt(outside) + fmin(inside, 0);
 }
 
-/* The greatest of dot(u, x). */
+/* Returns the greatest of dot(u, x). */
 static double support(const Part *part, const double u[3])
 {
     double       v[3];

@@ -45,7 +45,7 @@ Place random_place(Bench *b)
 
 /* ---- graphs at random ---- */
 
-/* A node of this type among those made so far, or a new constant. */
+/* Returns a node of this type among those made so far, or a new constant. */
 static Node pick(Bench *b, const Garden *garden, GraphType type)
 {
     static const double numbers[] = {0, 1, -1, 2, 0.5, 3, -2.5, 0.1};
@@ -65,7 +65,8 @@ static Node pick(Bench *b, const Garden *garden, GraphType type)
 
 static GraphType random_type(Bench *b) { return (GraphType)(1 + random_below(&b->random, 6)); }
 
-/* A random operation on random operands that it is defined for; there are no tables to read. */
+/* Returns a random operation on random operands that it is defined for; there are no tables to
+   read. */
 static Node grow(Bench *b, const Garden *garden)
 {
     for (;;) {

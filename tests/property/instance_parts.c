@@ -63,7 +63,7 @@ const Shape *ball(double radius)
     return made;
 }
 
-/* A disc of a radius about a circle around y. */
+/* Returns a disc of a radius about a circle around y. */
 const Shape *ring(double radius, double thick)
 {
     Graph *g     = builder.graph;

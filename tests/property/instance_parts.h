@@ -27,7 +27,7 @@ int finish(void **state);
 /* ---- parts ---- */
 
 double between(double low, double high);
-/* A ball of a radius; a disc of a radius about a circle around y. */
+/* Returns a ball of a radius; a disc of a radius about a circle around y. */
 const Shape *ball(double radius);
 const Shape *ring(double radius, double thick);
 const Shape *placed(const Shape *shape, double x, double y, double z, double turn, double scale);
@@ -46,7 +46,7 @@ typedef struct Seen {
 Seen lower(const Shape *shape, LoweredGroups *instances);
 /* Finds the frame's values of all nodes that there are now. */
 void prepare(Seen *seen);
-/* The distance; other values are in values[roots[]]. */
+/* Returns the distance; other values are in values[roots[]]. */
 double look(const Seen *seen, const double p[3]);
 /* The distance is right within this radius by what is listed at a point, and by no more than that. */
 double clearance_at(const double p[3]);

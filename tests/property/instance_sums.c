@@ -12,7 +12,7 @@
 
 #include "tests/property/instance_parts.h"
 
-/* The result of an exponential blend, by its definition. */
+/* Returns the result of an exponential blend, by its definition. */
 static double log_of_sum(const double *distances, int count, double width)
 {
     double least = HUGE_VAL, sum = 0;
@@ -23,7 +23,7 @@ static double log_of_sum(const double *distances, int count, double width)
     return width > 0 ? least - width * log(sum) : least;
 }
 
-/* A quarter of them in one place; joined with the width that the parameter is. */
+/* Returns a quarter of them in one place; joined with the width that the parameter is. */
 static const Shape *balls_of_any_width(void)
 {
     const Shape   *parts[PARTS];

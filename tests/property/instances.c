@@ -105,7 +105,7 @@ static void lowered_again(void **state)
     assert_int_equal(guarded, first.roots[0]);
 }
 
-/* How far a point is outside of the sides of a box. */
+/* Returns how far a point is outside of the sides of a box. */
 static double outside_of(Box box, const double p[3])
 {
     double most = -HUGE_VAL;
@@ -114,7 +114,8 @@ static double outside_of(Box box, const double p[3])
     return most;
 }
 
-/* A CSG node of CSG nodes of a few parts.  Parts of intersections overlap: what is nowhere has no box. */
+/* Returns a CSG node of CSG nodes of a few parts.  Parts of intersections overlap: what is nowhere
+   has no box. */
 static const Shape *random_csg_node(int depth)
 {
     static const ShapeKind kinds[]  = {SHAPE_UNION, SHAPE_UNION, SHAPE_DIFFERENCE,
@@ -202,7 +203,7 @@ static int compare_distances(const void *a, const void *b)
     return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
 }
 
-/* What those that share the result make of a threshold: the most counts. */
+/* Returns what those that share the result make of a threshold: the most counts. */
 static double at_threshold(Blend blend, const double *d, int count, double threshold)
 {
     double sum = threshold;
@@ -257,7 +258,7 @@ static double threshold_of(const double *d, int count, double width)
     return low;
 }
 
-/* The distances of all parts at a point, blended; and their colours. */
+/* Returns the distances of all parts at a point, blended; and their colours. */
 static double blended_parts(const Shape *shape, const Seen *parts, const double p[3],
                             NodeValue *color)
 {
@@ -325,7 +326,7 @@ static Difference compare_blend(const Shape *shape, bool without_reach)
     return compare_parts(shape, parts, &group);
 }
 
-/* How wrong a blend may be: a ten-thousandth of a width where something is left out. */
+/* Returns how wrong a blend may be: a ten-thousandth of a width where something is left out. */
 static double allowed(BlendKind kind, double width)
 {
     return blend_fades(kind) ? 1e-4 * width : 1e-9;

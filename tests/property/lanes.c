@@ -72,7 +72,7 @@ static bool same_number(double a, double b)
 
 /* ---- points ---- */
 
-/* How many outputs differ from what the tape finds. */
+/* Returns how many outputs differ from what the tape finds. */
 static size_t count_different(const Pair *pair, const double (*points)[3], size_t count,
                               const double *results)
 {
@@ -126,7 +126,7 @@ static Box random_box(Bench *b)
     return box;
 }
 
-/* The value at one point; NAN: none. */
+/* Returns the value at one point; NAN: none. */
 static double first_output(const Pair *pair, const double point[3])
 {
     double result;
@@ -267,7 +267,7 @@ static void ranges_hold_and_pruning_changes_nothing(void **state)
 
 static const double tau = 6.283185307179586;
 
-/* A box about a place that is this far around the y axis, from x to z. */
+/* Returns a box about a place that is this far around the y axis, from x to z. */
 static Box box_around(double angle, double half)
 {
     double x = 1.05 * cos(angle), z = 1.05 * sin(angle);
@@ -428,8 +428,8 @@ static bool hessian_permits(const Pair *pair, const LaneHessian *hessian, const 
            (change >= bend.low - slack && change <= bend.high + slack);
 }
 
-/* Those of a box, tried between points of another one, as many times as wide; a share of what is known may be
-   left out.  Returns how many are not permitted. */
+/* Returns those of a box, tried between points of another one, as many times as wide; a share of
+   what is known may be left out.  Returns how many are not permitted. */
 static size_t try_hessians(Bench *b, const Pair *pair, Box known, Box looked, double share,
                            bool *bounded)
 {

@@ -29,7 +29,7 @@ static Node positive(Bench *b, Node a)
     return graph_op2(b->graph, OP_add, square, graph_number(b->graph, 1));
 }
 
-/* What has a slope everywhere. */
+/* Returns what has a slope everywhere. */
 static Node tame(Bench *b, int kind, Node p, Node q)
 {
     Graph *g    = b->graph;
@@ -68,7 +68,7 @@ static Node tame(Bench *b, int kind, Node p, Node q)
     }
 }
 
-/* What has poles and ends. */
+/* Returns what has poles and ends. */
 static Node wild(Bench *b, int kind, Node p, Node q)
 {
     Graph *g = b->graph;
@@ -100,7 +100,7 @@ static void random_point(Bench *b, double size, double point[3])
         point[k] = size * (2 * uniform(b) - 1);
 }
 
-/* A random way from a point; its length is at most `radius`. */
+/* Returns a random way from a point; its length is at most `radius`. */
 static double go(Bench *b, const double from[3], double radius, double to[3])
 {
     double direction[3], length, r = radius * sqrt(uniform(b));

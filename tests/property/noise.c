@@ -116,7 +116,7 @@ static void is_made_of_gradients(void **context)
 
 /* ---- branch and bound ---- */
 
-/* The largest scalar product with a direction of the noise. */
+/* Returns the largest scalar product with a direction of the noise. */
 static double norm(int size, const double *v)
 {
     double a = fabs(v[0]), b = fabs(v[1]), c = size > 2 ? fabs(v[2]) : 0;
@@ -156,7 +156,7 @@ static Side side_of(const Part *part, int axis, int corner)
     return side;
 }
 
-/* The product over the axes of derivatives of these orders. */
+/* Returns the product over the axes of derivatives of these orders. */
 static double product_at(int size, const Side *sides, const int *orders)
 {
     double product = 1;

@@ -36,7 +36,7 @@ typedef struct Trial {
     double    half[3]; /* the box is [-half, half] */
 } Trial;
 
-/* What is known of an operand; without gradients, only the norms are left to the rule. */
+/* Returns what is known of an operand; without gradients, only the norms are left to the rule. */
 Fact operand_fact(const Operand *operand, const double half[3], bool with_gradient);
 /* In how many of eight trials an operand moves. */
 int       moving_eighths(char kind);

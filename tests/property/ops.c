@@ -170,7 +170,7 @@ static const char *refutation(Random *random, const Trial *trial, const Fact *fa
 
 enum { TRIALS = 6000 };
 
-/* The trial that refutes a rule, or -1. */
+/* Returns the trial that refutes a rule, or -1. */
 static int refuting_trial(Row row, Mutation mutation, bool with_gradient, const char **what)
 {
     Random random = {.state = 1000u * (uint64_t)row.op + 17};

@@ -97,7 +97,7 @@ static const Shape *blended(ShapeKind kind, BlendKind blend, double width)
     return make_csg_node(&builder, kind, parts, PARTS, how, no_place);
 }
 
-/* The steepest line between two points near each other. */
+/* Returns the steepest line between two points near each other. */
 static double steepest(const Seen *seen)
 {
     double most = 0;

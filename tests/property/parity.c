@@ -31,7 +31,7 @@ static double value_at(const Graph *graph, Node root, double x, double y, double
     return values[root].v[0];
 }
 
-/* A random FLOAT of the coordinates and constants. */
+/* Returns a random FLOAT of the coordinates and constants. */
 static Node random_float(Graph *g, uint32_t depth)
 {
     static const Op unary[]  = {OP_neg,    OP_abs,  OP_sin,   OP_cos,

@@ -213,7 +213,7 @@ ReachStage random_stage(Random *random, const ReachStage *before)
 
 /* ---- loose bounds ---- */
 
-/* The box around a box, or only what a mirror keeps of it, and the mirror image. */
+/* Returns the box around a box, or only what a mirror keeps of it, and the mirror image. */
 static Box fold_box(Box box, const ReachStage *mirror, bool cut)
 {
     Box fold = box_empty;

@@ -44,7 +44,7 @@ void grow_group(InstanceTable *group, const ReachStage *stage, const Instance *k
 
 /* ---- sequences at random ---- */
 
-/* A kernel's copy: the corners of its box, and points within. */
+/* Returns a kernel's copy: the corners of its box, and points within. */
 Instance random_instance(Random *random, Box box);
 /* A mirror that mostly cuts, or passes near to, what is in `before`. */
 void       random_mirror(Random *random, Box before, ReachStage *stage);

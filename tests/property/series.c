@@ -30,7 +30,7 @@ static double evaluate(Bench *b, Node node, const double point[3])
     return value;
 }
 
-/* A random polynomial with all the operations that polynomials have. */
+/* Returns a random polynomial with all the operations that polynomials have. */
 static Node polynomial(Bench *b, int depth)
 {
     Graph *g    = b->graph;
@@ -62,7 +62,7 @@ static Node polynomial(Bench *b, int depth)
     }
 }
 
-/* One that is not too high a polynomial; its series. */
+/* Returns one that is not too high a polynomial; its series. */
 static Node some_polynomial(Bench *b, Series *ball)
 {
     for (;;) {

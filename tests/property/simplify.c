@@ -14,8 +14,8 @@
 
 #include "tests/property/garden.h"
 
-/* How much a value changes when what goes in is off by a few roundings: where that is much, a
-   rule that gathers constants may show as much. */
+/* Returns how much a value changes when what goes in is off by a few roundings: where that is much,
+   a rule that gathers constants may show as much. */
 static double sensitivity(const Graph *graph, Node root, const Place *place)
 {
     GraphType type  = graph->items[root].type;

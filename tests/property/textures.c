@@ -52,7 +52,7 @@ static Texture make(Bench *bench, TextureWrap wrap)
 
 /* ---- reading ---- */
 
-/* Which texel stands at a place of the endless plane. */
+/* Returns which texel stands at a place of the endless plane. */
 static int standing(TextureWrap wrap, int i, int count)
 {
     if (wrap == WRAP_CLAMP)
@@ -64,7 +64,7 @@ static int standing(TextureWrap wrap, int i, int count)
 
 static double tent(double t) { return fmax(1 - fabs(t), 0); }
 
-/* The sum over all texels near, each with a tent about its middle. */
+/* Returns the sum over all texels near, each with a tent about its middle. */
 static double by_definition(TextureWrap wrap, double u, double v, int k)
 {
     double x = u * drawn.width, y = v * drawn.height, sum = 0;
@@ -220,7 +220,8 @@ static Node node_of(Bench *bench, const Texture *texture, double turn)
 
 static const Box square = {{{-0.5, 1.5}, {-0.5, 1.5}, {0, 0}}};
 
-/* The largest slope between near points, most of which lie at corners between the middles of texels. */
+/* Returns the largest slope between near points, most of which lie at corners between the middles
+   of texels. */
 static double steepest_found(Bench *bench, const Texture *texture)
 {
     const double step  = 1e-5;

@@ -24,8 +24,8 @@ static Node power(Bench *b, Node p, int n)
     return n == 1 ? p : mul(b->graph, power(b, p, n - 1), p);
 }
 
-/* A sum of products of few factors, of degree `degree` at most, most often with even powers that
-   keep it bounded. */
+/* Returns a sum of products of few factors, of degree `degree` at most, most often with even powers
+   that keep it bounded. */
 static Node random_polynomial(Bench *b, int degree)
 {
     Node axes[3] = {b->x, b->y, b->z},

@@ -53,7 +53,7 @@ static bool is_outline(const KrsPicture *picture, uint32_t x, uint32_t y)
     return false;
 }
 
-/* What differs at a pixel: a counter of the agreement, or NULL. */
+/* Returns what differs at a pixel: a counter of the agreement, or NULL. */
 static size_t *find_difference(const Pair *pair, size_t k, double permitted, double *apart,
                                Agreement *counts)
 {

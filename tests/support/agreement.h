@@ -21,13 +21,14 @@ typedef struct Agreement {
     double deepest; /* difference of depths elsewhere, in widths of a pixel */
 } Agreement;
 
-/* Two pictures of one size and camera.  Depths may differ by `permitted` widths of a pixel. */
+/* Returns two pictures of one size and camera.  Depths may differ by `permitted` widths of a
+   pixel. */
 Agreement agreement_of(const KrsPicture *a, const KrsPicture *b, double permitted);
 /* Pixels that differ away from outlines. */
 size_t agreement_faults(const Agreement *agreement);
 
-/* The same, and pixels that differ are told to `report` in lines that begin with `prefix`, the
-   first `most` of them: column, row, and both answers. */
+/* Returns the same, and pixels that differ are told to `report` in lines that begin with `prefix`,
+   the first `most` of them: column, row, and both answers. */
 Agreement agreement_list(const KrsPicture *a, const KrsPicture *b, double permitted, FILE *report,
                          const char *prefix, size_t most);
 

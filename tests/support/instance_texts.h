@@ -17,7 +17,7 @@ enum { PICTURED_GROUPS = 9 };
 extern const InstanceText instance_texts[];
 extern const size_t       instance_text_count;
 
-/* A text with some of them side by side, for free(); `seed` is of all random numbers. */
+/* Returns a text with some of them side by side, for free(); `seed` is of all random numbers. */
 char *instance_text(const InstanceText *scenes, size_t count, int seed);
 
 #endif

@@ -13,8 +13,8 @@ extern KrsRenderer *renderer;
 int renderer_open(void **state);
 int renderer_close(void **state);
 
-/* A picture of a scene's text by that renderer, which the caller frees; what fails, fails the
-   test. */
+/* Returns a picture of a scene's text by that renderer, which the caller frees; what fails, fails
+   the test. */
 KrsPicture *picture_of(const char *text, const KrsRenderOptions *options);
 
 #endif

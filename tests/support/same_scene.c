@@ -15,7 +15,7 @@
 #include "compiler/passes/compile.h"
 #include "tests/support/random.h"
 
-/* The text of the functions that shaders call, without comments. */
+/* Prints the text of the functions that shaders call, without comments. */
 static void print_shaders(const KrsScene *scene, bool card, char *to, size_t capacity)
 {
     const KrsVariant  variant  = {.values = true, .many_threads = card};

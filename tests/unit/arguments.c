@@ -236,7 +236,7 @@ static bool is_parameter(const char *name)
     return false;
 }
 
-/* Why what is said is not the author's; NULL: it is. */
+/* Returns why what is said is not the author's; NULL: it is. */
 static const char *fault_of(const char *text)
 {
     static char fault[80], said[LONGEST];

@@ -18,7 +18,7 @@ int enter_cache(void **state);
 int leave_cache(void **state);
 
 int is_not_dot(const struct dirent *entry);
-/* How many files are in the folder; `name` becomes that of one of them. */
+/* Returns how many files are in the folder; `name` becomes that of one of them. */
 int count_entries(char name[NAME_MAX + 1]);
 /* Entries are told apart by a number. */
 CacheKey key_of(int number);

@@ -34,11 +34,12 @@ typedef struct Kind {
 
 /* Half of the CSG nodes are of two that nearly have one surface, whose edges are blunt. */
 Subject random_subject(Random *random, const Kind *kind);
-/* The same as a scene. */
+/* Returns the same as a scene. */
 KrsState *state_of_subject(const Subject *subject, KrsScene **scene);
 
-/* A number with the sign of the distance, whose slope is 1 at most, so that it is nowhere more than the distance.
-   Where there are no edges it is the distance, unless it is that of an equation or a blend. */
+/* Returns a number with the sign of the distance, whose slope is 1 at most, so that it is nowhere
+   more than the distance.  Where there are no edges it is the distance, unless it is that of an
+   equation or a blend. */
 double subject_value(const Subject *subject, const double point[3]);
 /* By differences. */
 void subject_gradient(const Subject *subject, const double point[3], double gradient[3]);

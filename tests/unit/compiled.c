@@ -90,7 +90,7 @@ static VkDescriptorType type_of_binding(int set, uint32_t binding)
     return read[set] ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
-/* A layout that has room for the bindings of any shader. */
+/* Returns a layout that has room for the bindings of any shader. */
 static Handle make_layout(Gpu *gpu)
 {
     enum { SETS = 2, BINDINGS = FRAME_BINDINGS };
@@ -126,7 +126,7 @@ static Handle make_layout(Gpu *gpu)
     return TO_HANDLE(layout);
 }
 
-/* A shader that needs no scene. */
+/* Returns a shader that needs no scene. */
 static const char *find_shader(void)
 {
     for (const EmbeddedFile *file = shader_files; file->name; file++)

@@ -9,7 +9,7 @@
 
 #include "krs/vulkan.h"
 
-/* The files that end in `ending`: how many, and which of them is the last in the alphabet. */
+/* Returns the files that end in `ending`: how many, and which of them is the last in the alphabet. */
 int       count_files_that_end(const char *ending, char last[NAME_MAX + 1]);
 KrsStatus open_and_close(const KrsRendererOptions *options);
 /* A file that is written again is another one, because writing is renaming. */

@@ -81,7 +81,7 @@ static V cross(V a, V b)
     return (V){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/* A direction at an angle from another, anywhere around it. */
+/* Returns a direction at an angle from another, anywhere around it. */
 static V turned(V d, double cosine, Random *state)
 {
     V      side  = unit(cross(d, fabs(d.x) < 0.5 ? (V){1, 0, 0} : (V){0, 1, 0}));
@@ -91,7 +91,7 @@ static V turned(V d, double cosine, Random *state)
     return add(add(there, side, sine * cos(angle)), other, sine * sin(angle));
 }
 
-/* The cosine of a scattering, by molecules (by rejection) or by haze. */
+/* Returns the cosine of a scattering, by molecules (by rejection) or by haze. */
 static double scattered(int haze, Random *state)
 {
     double s = (1 - 0.64) / (1 - 0.8 + 1.6 * random_between(state, 0, 1));
@@ -104,7 +104,8 @@ static double scattered(int haze, Random *state)
     }
 }
 
-/* The length up to where a photon is lost (by a majorant, Woodcock 1965); negative: it is not. */
+/* Returns the length up to where a photon is lost (by a majorant, Woodcock 1965); negative: it is
+   not. */
 static double free_length(V p, V d, double end, Random *state)
 {
     const double most = here(0).lost;
@@ -117,7 +118,7 @@ static double free_length(V p, V d, double end, Random *state)
     }
 }
 
-/* The light of one path. */
+/* Returns the light of one path. */
 static double follow(V p, V d, V sun, Random *state)
 {
     double light = 0, weight = 1;
@@ -171,7 +172,7 @@ static float (*sky_of(double sun_height, double haze))[3]
     return texels;
 }
 
-/* The texel at an angle above the horizon and one from where the sun is. */
+/* Returns the texel at an angle above the horizon and one from where the sun is. */
 static double texel_at(float (*texels)[3], double height, double azimuth, int channel)
 {
     int row    = (int)((0.5 - height / M_PI) * DAYLIGHT_HEIGHT);

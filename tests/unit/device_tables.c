@@ -171,7 +171,7 @@ static void a_picture_brings_tables(void **context)
 
 enum { MOVING_POINTS = 400 };
 
-/* The distance of balls as the scene's formula has it. */
+/* Returns the distance of balls as the scene's formula has it. */
 static double moving_distance(const float p[3], double time, double height)
 {
     double nearest = HUGE_VAL;

@@ -15,7 +15,7 @@
 
 #define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
 
-/* The definition of sRGB, backwards. */
+/* Returns the definition of sRGB, backwards. */
 static double srgb_decode(double shown)
 {
     return shown <= 0.04045 ? shown / 12.92 : pow((shown + 0.055) / 1.055, 2.4);
@@ -95,8 +95,8 @@ static void aces_is_its_definition(void **state)
     }
 }
 
-/* The sigmoid of AgX as its author defines it: a line of slope 2 through (10 / 16.5, 1 / 2), bent by
-   powers at both ends so that it meets (0, 0) and (1, 1). */
+/* Returns the sigmoid of AgX as its author defines it: a line of slope 2 through (10 / 16.5, 1 /
+   2), bent by powers at both ends so that it meets (0, 0) and (1, 1). */
 static double agx_sigmoid(double x)
 {
     const double pivot = 10 / 16.5, slope = 2, power = x < pivot ? 3 : 3.25;
@@ -176,7 +176,7 @@ static const double black_bodies[][3] = {{2000, 0.52669, 0.41331}, {2500, 0.4770
                                          {4000, 0.38045, 0.37675}, {5000, 0.34510, 0.35161},
                                          {6500, 0.31352, 0.32363}, {10000, 0.28063, 0.28828}};
 
-/* The linear Rec.709 colour of light of that x and y. */
+/* Finds the linear Rec.709 colour of light of that x and y. */
 static void color_of(const double xy[2], double rgb[3])
 {
     static const double rgb_of_xyz[3][3] = {{3.2404542, -1.5371385, -0.4985314},
@@ -307,7 +307,7 @@ static void a_stop_is_a_doubling(void **state)
     assert_memory_not_equal(brighter.rgb, doubled.rgb, sizeof doubled.rgb);
 }
 
-/* The byte by the definitions, the noise by floor. */
+/* Returns the byte by the definitions, the noise by floor. */
 static uint8_t defined_byte(const float color[3], DisplayOptions options, int channel, double x,
                             double y)
 {

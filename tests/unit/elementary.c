@@ -80,7 +80,7 @@ static double from(Random *random, Domain domain)
     }
 }
 
-/* How many units of its last place a number is from what it should be. */
+/* Returns how many units of its last place a number is from what it should be. */
 static double units(double found, long double exact)
 {
     const double whole = (double)exact;

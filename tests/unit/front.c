@@ -131,7 +131,7 @@ static void a_binary_file_is_one_mistake(void **state)
 
 /* ---- parser ---- */
 
-/* An expression with every operation in parentheses. */
+/* Writes an expression with every operation in parentheses. */
 static void write_grouped(const Syntax *syntax, Text *out)
 {
     const char *op = token_kind_text(syntax->op);

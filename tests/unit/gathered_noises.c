@@ -16,7 +16,7 @@
 
 enum { MAX_TURNS = 256 }; /* times 64 surfaces of a lane: a quarter of what lavapipe permits */
 
-/* The text of a function of the scene, with noises gathered or not. */
+/* Returns the text of a function of the scene, with noises gathered or not. */
 static char *print(const char *scene_text, KrsFunction wanted, bool gathers)
 {
     const KrsVariant variant = {.gathers_noises = gathers};
@@ -29,7 +29,8 @@ static char *print(const char *scene_text, KrsFunction wanted, bool gathers)
     return text;
 }
 
-/* The iterations of a loop in the text, and the text behind it; 0: there is no further one. */
+/* Returns the iterations of a loop in the text, and the text behind it; 0: there is no further
+   one. */
 static unsigned next_loop(const char **text)
 {
     const char *end   = strstr(*text, "} while (++");

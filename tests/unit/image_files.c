@@ -125,7 +125,7 @@ static KrsStatus write_sample(const Sample *sample, Form form, const char *path)
     return status;
 }
 
-/* One channel of an EXR file, in the file's own type. */
+/* Returns one channel of an EXR file, in the file's own type. */
 static void *read_channel(exr_context_t context, const char *name, size_t bytes)
 {
     char                 *plane    = calloc(WIDTH * HEIGHT, bytes);

@@ -86,7 +86,7 @@ static void put_bytes(png_structp png, png_bytep bytes, size_t count)
 
 static void flush(png_structp png) { (void)png; }
 
-/* A row of samples of 1, 4, 8 or 16 bits, the high ones first. */
+/* Packs a row of samples of 1, 4, 8 or 16 bits, the high ones first. */
 static void pack_row(const Form *form, int y, unsigned char *row)
 {
     int count = WIDTH * samples_of(form);

@@ -192,7 +192,7 @@ static const char *totals_are_wrong(const Grid *grid, const Case *of)
     return NULL;
 }
 
-/* A point in the grid, close to a box, at the border of a cell, or around the grid. */
+/* Chooses a point in the grid, close to a box, at the border of a cell, or around the grid. */
 static void choose_point(Random *random, const Grid *grid, const Case *of, double point[3])
 {
     const Box *box = &of->boxes[random_below(random, (int)of->count)];

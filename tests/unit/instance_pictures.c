@@ -75,7 +75,7 @@ typedef struct Different {
 
 static bool is_hit(const KrsPicture *picture, int pixel) { return picture->component[pixel] != 0; }
 
-/* The largest difference of normals and of albedos. */
+/* Returns the largest difference of normals and of albedos. */
 static double shading_difference(const KrsPicture *a, const KrsPicture *b, int pixel)
 {
     double most = 0;

@@ -82,7 +82,7 @@ static InstanceFunction distance_function(uint32_t group)
                               .state_count  = 1};
 }
 
-/* The number of the function that is made next. */
+/* Returns the number of the function that is made next. */
 static uint32_t next_function(Graph *g) { return (uint32_t)graph_instances(g)->functions.count; }
 
 static uint32_t add_sharp(Graph *g, uint32_t group)
@@ -99,7 +99,7 @@ static uint32_t add_smooth(Graph *g, uint32_t group)
     return graph_add_instance_function(g, distance_function(group), &body);
 }
 
-/* The number of the nearest instance: both states change at once. */
+/* Returns the number of the nearest instance: both states change at once. */
 static uint32_t add_nearest(Graph *g, uint32_t group)
 {
     uint32_t         id       = next_function(g);

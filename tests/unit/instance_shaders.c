@@ -30,7 +30,7 @@ typedef struct Fixture {
     float        points[POINTS][3], found[POINTS];
 } Fixture;
 
-/* A scene whose graph gets the functions. */
+/* Opens a scene whose graph gets the functions. */
 static void open_fixture(Fixture *fixture, Bench *bench)
 {
     static const char  text[]  = "show sphere(1);";

@@ -33,7 +33,7 @@ static double value_at(const Many *many, const NodeValue *values, int root)
     return values[many->roots[root]].v[0];
 }
 
-/* How many points are nearer to something than all that is not listed. */
+/* Returns how many points are nearer to something than all that is not listed. */
 static uint32_t compare_at(const Many *many, const NodeValue *values, const double p[3],
                            bool by_cells)
 {

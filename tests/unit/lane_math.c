@@ -45,7 +45,7 @@ static const Function functions[] = {
     {"tanh", lane_tanh, tanh, -10, 10, 5, true},
 };
 
-/* The largest error, in units. */
+/* Returns the largest error, in units. */
 static double largest_error(const Function *f)
 {
     Random chance = {7};

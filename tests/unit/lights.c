@@ -43,7 +43,8 @@ static void cross(const double a[3], const double b[3], double c[3])
         c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-/* The part of a spot's light at an angle from its axis: it fades as smoothstep of the cosine. */
+/* Returns the part of a spot's light at an angle from its axis: it fades as smoothstep of the
+   cosine. */
 static double fade(double cosine, double angle, double edge)
 {
     double outer = cos(angle / 2), inner = cos(angle / 2 * (1 - edge));
@@ -51,7 +52,7 @@ static double fade(double cosine, double angle, double edge)
     return t * t * (3 - 2 * t);
 }
 
-/* What a place of the floor sends to the eye: white scatters 1 / pi of its irradiance. */
+/* Returns what a place of the floor sends to the eye: white scatters 1 / pi of its irradiance. */
 static double lit_by_spot(const double at[3])
 {
     double axis[3], way[3], square = 0;
@@ -65,7 +66,7 @@ static double lit_by_spot(const double at[3])
     return 20 * fade(dot(axis, way), 50 * M_PI / 180, 0.4) * -way[1] / square / M_PI;
 }
 
-/* The sum over small parts of the rectangle, 1.6 wide and 0.8 high. */
+/* Returns the sum over small parts of the rectangle, 1.6 wide and 0.8 high. */
 static double lit_by_rectangle(const double at[3])
 {
     const double upright[3] = {0, 1, 0};

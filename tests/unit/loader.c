@@ -67,7 +67,7 @@ static int remove_folder(void **state)
 
 typedef int Opener(int root, const char *path);
 
-/* The first character of what was opened; 0 and errno when nothing was. */
+/* Returns the first character of what was opened; 0 and errno when nothing was. */
 static char first_of(Opener *opener, const char *path)
 {
     char first = 0;

@@ -186,7 +186,7 @@ static void meshes_are_closed_and_near(void **context)
 
 /* ---- surfaces whose distances have a closed form ---- */
 
-/* The distances to a torus of radii 1 and 0.4 about y, and to a ball of radius 1. */
+/* Returns the distances to a torus of radii 1 and 0.4 about y, and to a ball of radius 1. */
 static double ring_distance(const double p[3]) { return hypot(hypot(p[0], p[2]) - 1, p[1]) - 0.4; }
 static double ball_distance(const double p[3]) { return length3(p) - 1; }
 
@@ -289,7 +289,7 @@ static uint32_t leader_of(const uint32_t *leaders, uint32_t vertex)
     return vertex;
 }
 
-/* How many parts of the mesh do not hang together. */
+/* Returns how many parts of the mesh do not hang together. */
 static size_t count_parts(const KrsMesh *mesh)
 {
     uint32_t *leaders = malloc((mesh->vertex_count + 1) * sizeof *leaders);

@@ -361,7 +361,8 @@ static double growth_at(const MeshField *field, const double p[3], const double 
     return (values[1] - values[0]) / (2 * step);
 }
 
-/* The least growth on ways along a normal that begin in a box, where the value is at most the error, and are as long. */
+/* Returns the least growth on ways along a normal that begin in a box, where the value is at most
+   the error, and are as long. */
 static double min_growth(const MeshField *field, Box box, double error, const double normal[3])
 {
     double points[POINTS][3], values[POINTS], least = INFINITY;

@@ -94,7 +94,7 @@ static void random_place(double p[3])
         p[k] = uniform(-HALF, HALF);
 }
 
-/* False: two places of the box are on one side. */
+/* Returns false if two places of the box are on one side. */
 static bool find_surface(const Trial *trial, bool moved, double p[3])
 {
     double ends[2][3];
@@ -111,7 +111,8 @@ static bool find_surface(const Trial *trial, bool moved, double p[3])
     return true;
 }
 
-/* The largest value, times a sign, within the error: from the best of some places by smaller and smaller steps. */
+/* Returns the largest value, times a sign, within the error: from the best of some places by
+   smaller and smaller steps. */
 static double largest_around(const Trial *trial, bool moved, double sign, const double p[3])
 {
     double best[3], most = sign * value(trial, moved, p), step = ERROR;

@@ -27,7 +27,7 @@ static uint32_t at(int i, int k)
     return (uint32_t)((i + AROUND) % AROUND * ACROSS + (k + ACROSS) % ACROSS);
 }
 
-/* A torus; `flat`: its tube is so much thinner along the axis. */
+/* Makes a torus; `flat`: its tube is so much thinner along the axis. */
 static void make_ring(Ring *ring, double major, double minor, double flat)
 {
     const double tau = 2 * acos(-1);

@@ -188,7 +188,8 @@ static bool mesh_has(const Trial *t, const Tet *tet, const double corner[3], con
     return inside;
 }
 
-/* The largest value of a point that the mesh has on the wrong side.  Its own points are on both. */
+/* Returns the largest value of a point that the mesh has on the wrong side.  Its own points are on
+   both. */
 static double worst_in(const Trial *t, const Tet *tet)
 {
     enum { POINTS = 40, STEPS = 8 };

@@ -86,7 +86,7 @@ static int ascending(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-/* Those of so many points that are inside, by all tetrahedra. */
+/* Returns those of so many points that are inside, by all tetrahedra. */
 static long count_simplices(const Tets *tets, int size)
 {
     size_t count = 0;

@@ -44,8 +44,8 @@ static bool is_outline(const KrsPicture *picture, int x, int y)
     return false;
 }
 
-/* The distance between what the ray of a pixel meets in two pictures, in widths of a pixel there;
-   HUGE_VAL where only one of them shows something. */
+/* Returns the distance between what the ray of a pixel meets in two pictures, in widths of a pixel
+   there; HUGE_VAL where only one of them shows something. */
 static double apart(const Scene *scene, const KrsPicture *a, const KrsPicture *b, int k)
 {
     if (a->component[k] != b->component[k])

@@ -93,7 +93,7 @@ static KrsPicture *render(const Fixture *fixture, KrsIntegrator integrator,
     return picture;
 }
 
-/* How many pixels of two pictures are apart by more than a twentieth. */
+/* Returns how many pixels of two pictures are apart by more than a twentieth. */
 static int count_different(const KrsPicture *a, const KrsPicture *b)
 {
     int count = 0;

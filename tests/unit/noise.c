@@ -138,7 +138,7 @@ static void mattes_count_the_samples(void **state)
 
 static double square(double x) { return x * x; }
 
-/* The square of a pixel's error, relative as krs/vulkan.h says. */
+/* Returns the square of a pixel's error, relative as krs/vulkan.h says. */
 static double error_of(const float *color, const float *truth)
 {
     double squares = 0, mean = 0;

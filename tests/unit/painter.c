@@ -48,7 +48,7 @@ static double now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* The next text, as if it were saved. */
+/* Edits the next text, as if it were saved. */
 static void edit(Fixture *fixture, const char *text)
 {
     FILE *file = fopen(fixture->path, "w");
@@ -105,7 +105,7 @@ static void tear_down(Fixture *fixture)
     remove(fixture->path);
 }
 
-/* The next picture with all pixels, of one of these versions, of this view or a later one. */
+/* Returns the next picture with all pixels, of one of these versions, of this view or a later one. */
 static Shot take_one_of(Fixture *fixture, unsigned first, unsigned last, unsigned view)
 {
     for (const double begun = now(); now() - begun < TIMEOUT; usleep(2000)) {

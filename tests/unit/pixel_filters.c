@@ -29,7 +29,7 @@ static const char edges_text[] =
     "show box([60, 60, 1]).move([-29.8, 0, 0]).rotate([0, 0, 1], 53.130102354156deg)"
     ".within(box([30, 30, 5])).move([100, 0, 0]);\n";
 
-/* The weight of a place, in pixels from the middle; not normalized. */
+/* Returns the weight of a place, in pixels from the middle; not normalized. */
 static double weight(KrsPixelFilter filter, double x)
 {
     const double t = 2 * M_PI * (x + 1.5) / 3;
@@ -44,7 +44,7 @@ static double weight(KrsPixelFilter filter, double x)
     }
 }
 
-/* The part of the filter's weight where a x + b y < offset, by brute force. */
+/* Returns the part of the filter's weight where a x + b y < offset, by brute force. */
 static double part_below(KrsPixelFilter filter, double a, double b, double offset)
 {
     const double step  = 0.02;

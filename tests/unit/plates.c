@@ -40,7 +40,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The rays of the cameras above, in their own words. */
+/* Returns the rays of the cameras above, in their own words. */
 static Ray ray_of(int camera, double x, double y)
 {
     const double back = sqrt(45.0), ahead[3] = {0, -3 / back, -6 / back};
@@ -60,7 +60,7 @@ static Ray ray_of(int camera, double x, double y)
     return ray;
 }
 
-/* The depth of the floor; infinite where the ray does not meet it. */
+/* Returns the depth of the floor; infinite where the ray does not meet it. */
 static double floor_depth(const Ray *ray)
 {
     const double depth = -ray->origin[1] / ray->direction[1];

@@ -57,7 +57,8 @@ static int count_name(const char *text, const char *name)
     return count;
 }
 
-/* The name that a line declares, if it does: "float krs_cut(vec3 p, float d)", "vec3 krs_frame0;". */
+/* Reads the name that a line declares, if it does: "float krs_cut(vec3 p, float d)", "vec3
+   krs_frame0;". */
 static bool read_name(const char *line, char name[LONGEST_NAME])
 {
     size_t      type = strspn(line, "abcdefghijklmnopqrstuvwxyzKS234"), length = 0;

@@ -26,7 +26,7 @@ static KrsScene *compile(const char *text, const KrsLocation *without)
     return scene;
 }
 
-/* Where a text has some words first. */
+/* Returns where a text has some words first. */
 static KrsLocation location_of(const char *text, const char *words)
 {
     const char *at = strstr(text, words);

@@ -29,7 +29,7 @@ static void show_whole(Resolution *resolution, const Device *device)
     resolution_learn_whole(resolution, device->fixed_ms + device->whole_ms, PIXELS);
 }
 
-/* What the coarse picture takes. */
+/* Returns what the coarse picture takes. */
 static double show_coarse(Resolution *resolution, const Device *device)
 {
     const double divisor = resolution_divide(resolution, PIXELS, BUDGET);

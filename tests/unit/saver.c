@@ -101,7 +101,7 @@ static SaverState wait_for_it(void)
     return state;
 }
 
-/* What krs_render's machinery makes of a camera and a time. */
+/* Returns what krs_render's machinery makes of a camera and a time. */
 static KrsPicture *render(const KrsCamera *camera, double time)
 {
     const KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = SAMPLES};

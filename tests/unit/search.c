@@ -18,7 +18,7 @@
 
 static const Box around_ball = {{{-1, 1}, {-1, 1}, {-1, 1}}};
 
-/* The distance to the unit ball. */
+/* Returns the distance to the unit ball. */
 static Node ball(Bench *b)
 {
     Node point = graph_leaf(b->graph, OP_POINT), one = graph_number(b->graph, 1);
@@ -26,7 +26,7 @@ static Node ball(Bench *b)
     return graph_op2(b->graph, OP_sub, distance, one);
 }
 
-/* The distance from a place near the ball's surface. */
+/* Returns the distance from a place near the ball's surface. */
 static Node from_spot(Bench *b)
 {
     Node point = graph_leaf(b->graph, OP_POINT), spot = graph_vec3(b->graph, 0.36, 0.48, 0.82);

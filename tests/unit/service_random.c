@@ -110,7 +110,7 @@ static const char *const pieces[] = {"(",
                                      ""};
 enum { PIECES = sizeof pieces / sizeof *pieces };
 
-/* The position of an offset in a text of whole characters, counted once more. */
+/* Returns the position of an offset in a text of whole characters, counted once more. */
 static Utf16Position position_of(const char *text, size_t offset)
 {
     Utf16Position at = {0};
@@ -124,7 +124,7 @@ static Utf16Position position_of(const char *text, size_t offset)
     return at;
 }
 
-/* An offset where a character begins, not between the two of a line's end. */
+/* Returns an offset where a character begins, not between the two of a line's end. */
 static size_t random_offset(Random *random, const char *text)
 {
     size_t offset = random_below(random, (int)strlen(text) + 1);

@@ -45,7 +45,8 @@ static float spotted(uint32_t x, uint32_t y)
 static float even(uint32_t x, uint32_t y) { return x < 1000 && y < 1000 ? 2 : 0; }
 static float black(uint32_t x, uint32_t y) { return x > 1000 && y > 1000 ? 2 : 0; }
 
-/* The solid angle between two latitudes, in rows from the top, as an integral by small steps. */
+/* Returns the solid angle between two latitudes, in rows from the top, as an integral by small
+   steps. */
 static double angle_of(const KrsSkyMap *map, double from, double to)
 {
     enum { STEPS = 200 };
@@ -55,8 +56,8 @@ static double angle_of(const KrsSkyMap *map, double from, double to)
     return sum * M_PI * (to - from) / map->height / STEPS * 2 * M_PI / map->width;
 }
 
-/* How likely the descent through the sums ends at a cell: from the coarsest on, the part of it that
-   its quarter has. */
+/* Returns how likely the descent through the sums ends at a cell: from the coarsest on, the part of
+   it that its quarter has. */
 static double chance_of(const Table *table, uint32_t x, uint32_t y)
 {
     const uint32_t w = table->map.width, h = table->map.height + 1;

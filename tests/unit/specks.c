@@ -35,7 +35,7 @@ static const char nut_text[] =
     "camera { eye: [16, 34, 62], target: [6, 4, 3], fov: 42deg }\n";
 enum { ACROSS = 200, DOWN = 120 };
 
-/* The second largest of the eight pixels around one. */
+/* Returns the second largest of the eight pixels around one. */
 static float second_around(const float (*color)[4], int x, int y)
 {
     float largest[2] = {0};
@@ -51,7 +51,7 @@ static float second_around(const float (*color)[4], int x, int y)
     return largest[1];
 }
 
-/* How many pixels are `times` as bright as the second brightest around. */
+/* Returns how many pixels are `times` as bright as the second brightest around. */
 static int count_specks(Fixture *fixture, uint32_t x, uint32_t y, uint32_t samples, float times)
 {
     KrsRenderOptions options = {.width   = 960,

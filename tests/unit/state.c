@@ -68,7 +68,7 @@ static void parameters_move_the_scene(void **context)
     close_scene(state, scene);
 }
 
-/* The distance of a scene that chooses a radius and a place by `index`, which may use `k`. */
+/* Returns the distance of a scene that chooses a radius and a place by `index`, which may use `k`. */
 static double chosen_at(const char *index, double k)
 {
     char text[600];
@@ -355,7 +355,7 @@ static void texts_are_printed(void **context)
     close_scene(state, scene);
 }
 
-/* The angle between the view axis and a point, seen from the eye. */
+/* Returns the angle between the view axis and a point, seen from the eye. */
 static double angle_to(const KrsCamera *camera, double x, double y, double z)
 {
     double to[3] = {x, y, z}, along = 0, a = 0, b = 0;
@@ -386,7 +386,7 @@ static void a_missing_camera_frames_the_scene(void **context)
     close_scene(state, scene);
 }
 
-/* Where a point is in the picture: upwards, or to the right; 1 is half the height. */
+/* Returns where a point is in the picture: upwards, or to the right; 1 is half the height. */
 static double place_of(const KrsCamera *camera, const double point[3], bool upwards)
 {
     double out[3], right[3], up[3], to[3];

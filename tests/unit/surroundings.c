@@ -48,7 +48,7 @@ static double left_after(const Fog *fog, double from, double rise, double t)
     return exp(-depth);
 }
 
-/* The unit direction of a pixel's ray, as the camera's properties say. */
+/* Returns the unit direction of a pixel's ray, as the camera's properties say. */
 static double rise_of_pixel(uint32_t x, uint32_t y)
 {
     double target[3] = {0, -0.3, -6}, length = hypot(6, 0.3), half = tan(25 * M_PI / 180);

@@ -189,7 +189,7 @@ static const struct Plane {
     {"steps", offsetof(KrsPicture, steps), sizeof(uint32_t)},
 };
 
-/* A row of a plane, from pixel (x, y) of the whole picture on. */
+/* Returns a row of a plane, from pixel (x, y) of the whole picture on. */
 static const char *plane_row(const KrsPicture *picture, const struct Plane *plane, uint32_t x,
                              uint32_t y)
 {

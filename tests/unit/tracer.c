@@ -50,7 +50,7 @@ typedef struct TestRay {
     double base, slope; /* of a pixel's width */
 } TestRay;
 
-/* The ray through the centre of pixel (i, j), by interface.md and nothing else. */
+/* Returns the ray through the centre of pixel (i, j), by interface.md and nothing else. */
 static TestRay pixel_ray(const KrsCamera *camera, unsigned i, unsigned j)
 {
     TestRay ray = {.base = 0};

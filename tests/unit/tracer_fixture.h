@@ -32,10 +32,10 @@ typedef struct Fixture {
 
 void note_validation_message(void *user, const char *message);
 void fixture_open(Fixture *fixture, const char *text, const KrsAllocator *allocator);
-/* The same of another device, as far as it can be emulated: EMULATE_... */
+/* Does the same of another device, as far as it can be emulated: EMULATE_... */
 void fixture_open_as(Fixture *fixture, const char *text, unsigned emulation);
 void fixture_close(Fixture *fixture);
-/* The same; the test fails if the layers have complained. */
+/* Does the same; the test fails if the layers have complained. */
 void        fixture_close_watched(Fixture *fixture);
 KrsPicture *fixture_render(Fixture *fixture, KrsRenderOptions options);
 

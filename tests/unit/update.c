@@ -98,7 +98,7 @@ static const Edit edits[] = {
      1, 1},
 };
 
-/* The text with the first occurrence of one string replaced by another. */
+/* Returns the text with the first occurrence of one string replaced by another. */
 static const char *edited(const char *text, const char *from, const char *to)
 {
     static char result[2000];

@@ -170,7 +170,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
     return (KrsOptions){0};
 }
 
-/* What `krs watch` is asked to write. */
+/* Returns what `krs watch` is asked to write. */
 const MeshFormat *mesh_format(const char *path)
 {
     (void)path;
@@ -293,7 +293,7 @@ static void rounding_of_a_device_passes(void **state)
     assert_int_equal(validate(), KRS_OK);
 }
 
-/* The largest part of the way to the surface that validate finds the distance to be. */
+/* Returns the largest part of the way to the surface that validate finds the distance to be. */
 static double measured(KrsStatus expected)
 {
     static Validation v;

@@ -64,7 +64,7 @@ static void drop_empty_lines(char *text)
     *to = '\0';
 }
 
-/* The shaders of a scene, for free(). */
+/* Returns the shaders of a scene, for free(). */
 static char *shaders(const char *text, Heard *heard)
 {
     KrsScene *scene;
@@ -177,7 +177,7 @@ static void notes_come_in_their_order(void **state)
     krs_scene_free(scene);
 }
 
-/* A number of any size, written in one of the ways of C. */
+/* Returns a number of any size, written in one of the ways of C. */
 static double write_number(Random *random, char text[32])
 {
     static const char *const ways[] = {"%.17g", "%.3f", "%.5e", "%.0f", "%g"};

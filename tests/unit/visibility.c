@@ -25,7 +25,7 @@ static void listen(void *user, const KrsDiagnostic *diagnostic)
     *(bool *)user = *(bool *)user || strcmp(diagnostic->code, "W0402") == 0;
 }
 
-/* A camera that looks along -z, and a ball. */
+/* Returns a camera that looks along -z, and a ball. */
 static KrsScene *compile_ball(const double ball[3], const char *projection, bool *warned)
 {
     char       text[512];

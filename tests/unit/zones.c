@@ -35,8 +35,8 @@ static bool in_ball(const double origin[3], const double unit[3], const double b
     return true;
 }
 
-/* The first t >= 0 that is in the solid interval and in none of the zones' (t starts outside of
-   the solid), or -1.  *margin becomes small where less than that decides. */
+/* Returns the first t >= 0 that is in the solid interval and in none of the zones' (t starts
+   outside of the solid), or -1. *margin becomes small where less than that decides. */
 static double first_in(const double solid[2], const double (*zones)[2], size_t count,
                        double *margin)
 {

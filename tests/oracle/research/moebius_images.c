@@ -49,7 +49,7 @@ typedef struct Progress {
     double gain;
 } Progress;
 
-/* One step from a point outside, as far as 20. */
+/* Checks one step from a point outside, as far as 20. */
 static void check_step(const Asked *asked, const Chain *chain, Vec p, Vec direction,
                        Progress *progress)
 {
