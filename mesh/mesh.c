@@ -133,6 +133,8 @@ static bool find_flat(Mesher *m)
     ArenaMark mark = arena_mark(&m->arena);
     if (!find_flat_mesh(m, &vertices, &triangles)) {
         arena_rewind(&m->arena, mark);
+        m->flat     = m->fraction;
+        m->fraction = 0;
         return false;
     }
     m->contour.vertices.items  = vertices.items;
@@ -248,11 +250,12 @@ static KrsStatus mesh_attempt(KrsState *state, const KrsMeshOptions *options,
 }
 
 /* Makes a mesh, by other tetrahedra as long as it has handles: these mostly come of tetrahedra at a
-   sharp edge. */
+   sharp edge.  Progress goes on from where the attempt before has ended. */
 static KrsStatus mesh_once(KrsState *state, const KrsMeshOptions *options, const MeshSolid *solid,
                            KrsMesh **mesh)
 {
-    Step           step     = {options, 0, options->simplify ? MESHED : 1, 0};
+    double         end      = options->simplify ? MESHED : 1;
+    Step           step     = {options, 0, end, 0};
     KrsMeshOptions these    = options_of_step(&step);
     KrsStatus      status   = KRS_OK;
     double         reserved = 0;
@@ -260,8 +263,10 @@ static KrsStatus mesh_once(KrsState *state, const KrsMeshOptions *options, const
     *mesh                   = NULL;
     for (int attempt = 0; attempt < ATTEMPTS && status == KRS_OK && handles > 0; attempt++) {
         krs_mesh_free(*mesh);
-        *mesh  = NULL;
-        status = mesh_attempt(state, &these, solid, attempt, mesh, &reserved, &handles);
+        *mesh      = NULL;
+        status     = mesh_attempt(state, &these, solid, attempt, mesh, &reserved, &handles);
+        step.begun = step.said;
+        step.part  = end - step.said;
     }
     return status == KRS_OK && reserved > 0 ? simplify_mesh(options, reserved, mesh) : status;
 }

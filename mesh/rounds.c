@@ -70,18 +70,6 @@ static double fraction_by_cells(const Mesher *m)
     return m->fraction <= BOUNDS_DONE ? CELLS_DONE : 0.5 * (1 + m->fraction);
 }
 
-static void advance(Mesher *m, double part)
-{
-    m->fraction = max2(m->fraction, m->begun + part * (m->goal - m->begun));
-}
-
-/* Reports progress and tells whether to go on; only the caller's thread may ask, which runs the
-   first part of a round. */
-static bool is_wanted(const Mesher *m)
-{
-    return !m->options->progress || m->options->progress(m->options->user, m->fraction);
-}
-
 /* ---- groups ---- */
 
 static void add_to_groups(Mesher *m, size_t index)
@@ -154,8 +142,8 @@ static void work_on_groups(void *task, size_t part, size_t parts)
         if (next >= m->groups.list.count)
             return;
         if (part == 0 && asked++ % ASK_EVERY == 0) {
-            advance(m, (double)next / (double)m->groups.list.count);
-            if (!is_wanted(m))
+            mesher_advance(m, (double)next / (double)m->groups.list.count);
+            if (!mesher_is_wanted(m))
                 atomic_store(&m->stopped, true);
         }
         const Group *group   = &m->groups.list.items[next];
@@ -415,7 +403,7 @@ static bool prove(Mesher *m)
     find_unresolved(m);
     bvh_free(&m->bvh, m->contour.triangles.count, &m->arena);
     count_unresolved(m);
-    return is_wanted(m);
+    return mesher_is_wanted(m);
 }
 
 /* Has unresolved tetrahedra bisected further; returns false if nothing becomes finer.  A knife edge

@@ -29,6 +29,9 @@ static const double MIN_KNOWN = 0.02;
    stay, and how deep triangles that touch may cross. */
 static const double ROUNDING_OF_FACES = 1e-6, MIN_SHORT = 1e-9, TOUCHING = 1e-8;
 
+/* Parts of what is left to be done: to halve boxes, to check all of them, and some. */
+static const double HALVING = 0.3, CHECKING_ALL = 0.5, CHECKING_SOME = 0.05;
+
 typedef struct Halving {
     Mesher    *m;
     MeshField *field;
@@ -38,6 +41,7 @@ typedef struct Halving {
     FlatWork   work;
     FlatBoxes  round_boxes;
     size_t     boxes, known;
+    double     halved; /* the part of the space that is done */
     uint32_t   attempt;
 } Halving;
 
@@ -59,15 +63,23 @@ static bool halve_at(Halving *h, Box box, int halvings)
 
 static bool is_wanted(Mesher *m)
 {
-    if (m->options->progress && !m->options->progress(m->options->user, 0))
+    if (!mesher_is_wanted(m))
         atomic_store(&m->stopped, true);
     return !atomic_load(&m->stopped);
 }
 
+static void count_box(Halving *h)
+{
+    if (++h->boxes % ASK_EVERY != 0)
+        return;
+    mesher_advance(h->m, h->halved);
+    is_wanted(h->m);
+}
+
 static bool is_given_up(Halving *h, int halvings)
 {
-    h->boxes++;
-    return (h->boxes % ASK_EVERY == 0 && !is_wanted(h->m)) || halvings > MAX_HALVINGS ||
+    count_box(h);
+    return atomic_load(&h->m->stopped) || halvings > MAX_HALVINGS ||
            h->boxes > (h->m->options->draft ? MAX_BOXES_OF_DRAFT : MAX_BOXES) ||
            (h->boxes > FIRST_BOXES && (double)h->known < MIN_KNOWN * (double)h->boxes);
 }
@@ -89,9 +101,12 @@ static bool find_few_pieces(Halving *h, Box box, int halvings)
 
 static bool halve(Halving *h, Box box, int halvings)
 {
-    Range range = field_range(h->field, box);
-    if (range.low > 0 || range.high < 0)
+    Range  range = field_range(h->field, box);
+    double whole = ldexp(1, -halvings);
+    if (range.low > 0 || range.high < 0) {
+        h->halved += whole;
         return true;
+    }
     bool entered = halvings % HALVINGS_OF_REGION == 0 &&
                    halvings < MAX_REGIONS * HALVINGS_OF_REGION;
     bool done;
@@ -99,7 +114,8 @@ static bool halve(Halving *h, Box box, int halvings)
         field_focus(h->field, box);
     if (find_few_pieces(h, box, halvings)) {
         h->known++;
-        h->boxes++;
+        h->halved += whole;
+        count_box(h);
         done = is_first_pass(h) || flat_faces_add(&h->faces, box, &h->pieces);
         if (h->pieces.round)
             array_push_large(&h->m->arena, &h->round_boxes, box);
@@ -150,10 +166,22 @@ static bool halve_all(Halving *h)
     h->round_boxes = (FlatBoxes){NULL, 0, 0};
     h->boxes       = 0;
     h->known       = 0;
+    h->halved      = 0;
+    mesher_begin(m, HALVING);
     flat_rounds_open(&h->rounds, &h->field->ranges);
     bool done = is_wanted(m) && halve(h, box, 0);
     flat_rounds_close(&h->field->ranges);
+    mesher_advance(m, 1);
     return done;
+}
+
+/* Proves what is in all boxes that are left, as `part` of what is left to be done. */
+static FlatVerdict check(Halving *h, double error, double part)
+{
+    mesher_begin(h->m, part);
+    FlatVerdict verdict = flat_near(h->m, &h->rounds, &h->round_boxes, error);
+    mesher_advance(h->m, 1);
+    return verdict;
 }
 
 /* Adds sides until they are enough in the boxes that are left, or else as few as leave the fewest
@@ -165,7 +193,7 @@ static bool refine(Halving *h, double error, FlatVerdict *verdict)
     *verdict      = FLAT_REFUTED;
     flat_rounds_save(&h->rounds);
     while (*verdict == FLAT_REFUTED && flat_rounds_refine(&h->rounds)) {
-        *verdict = flat_near(h->m, &h->rounds, &h->round_boxes, error);
+        *verdict = check(h, error, CHECKING_SOME);
         if (*verdict != FLAT_STOPPED && h->round_boxes.count < fewest) {
             fewest = h->round_boxes.count;
             flat_rounds_save(&h->rounds);
@@ -189,7 +217,7 @@ static FlatVerdict refine_by_some(Halving *h, double error)
     for (size_t i = 0; i < SOME; i++)
         boxes->items[i] = boxes->items[i * step];
     boxes->count = SOME;
-    verdict      = flat_near(h->m, &h->rounds, boxes, error);
+    verdict      = check(h, error, CHECKING_SOME);
     if (verdict == FLAT_REFUTED)
         refine(h, error, &verdict);
     return verdict;
@@ -208,7 +236,7 @@ static bool make_round(Halving *h)
     do {
         if (!halve_all(h))
             return false;
-        verdict = flat_near(h->m, &h->rounds, &h->round_boxes, error);
+        verdict = check(h, error, CHECKING_ALL);
     } while (verdict != FLAT_STOPPED && h->round_boxes.count > 0 && refined == FLAT_PROVEN &&
              refine(h, error, &refined));
     return verdict != FLAT_STOPPED && refined != FLAT_STOPPED;

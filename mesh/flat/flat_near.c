@@ -54,13 +54,20 @@ static Box wider_box(Box box, double by)
     return box;
 }
 
+static void ask(Checking *l)
+{
+    Mesher *m = l->w->m;
+    mesher_advance(m, (double)l->number / (double)l->w->boxes->count);
+    if (!mesher_is_wanted(m))
+        atomic_store(&m->stopped, true);
+}
+
 static bool goes_on(Checking *l)
 {
     Mesher   *m    = l->w->m;
     NearPart *part = l->part;
-    if (++part->checks % ASK_EVERY == 0 && l->asks && m->options->progress &&
-        !m->options->progress(m->options->user, 0))
-        atomic_store(&m->stopped, true);
+    if (++part->checks % ASK_EVERY == 0 && l->asks)
+        ask(l);
     return !atomic_load(&m->stopped) && part->checks < MAX_CHECKS &&
            (part->unproven == 0 || part->checks < MAX_CHECKS_WHERE_UNPROVEN * l->w->boxes->count) &&
            part->hard < MAX_HARD && part->thin < MAX_THIN && part->seams < MAX_SEAMS;

@@ -6,6 +6,7 @@
 
 #include <stdatomic.h>
 
+#include "compiler/base/minmax.h"
 #include "compiler/base/parallel.h"
 #include "mesh/contour/groups.h"
 #include "mesh/proof/marks.h"
@@ -38,10 +39,32 @@ typedef struct Mesher {
     int           tidied;     /* how often sides of points were changed (sides.h) */
     size_t        handles;    /* in a mesh where nothing else is unresolved (handles.h) */
     double        unresolved_at[3];
-    double        fraction;    /* of the work, as reported last */
+    double        flat;        /* of the work, what was done before flat faces were given up */
+    double        fraction;    /* of the rest */
     double        begun, goal; /* where the present step began, and will end */
     double        bounded;     /* tetrahedra that were bounded */
     atomic_bool   stopped;
 } Mesher;
+
+/* Begins a step that is a part of what is left to be done. */
+static inline void mesher_begin(Mesher *m, double part)
+{
+    m->begun = m->fraction;
+    m->goal  = m->fraction + part * (1 - m->fraction);
+}
+
+/* Notes that a part of the present step is done. */
+static inline void mesher_advance(Mesher *m, double part)
+{
+    m->fraction = max2(m->fraction, m->begun + part * (m->goal - m->begun));
+}
+
+/* Reports progress and tells whether to go on; only the caller's thread may ask, which runs the
+   first part of all work. */
+static inline bool mesher_is_wanted(const Mesher *m)
+{
+    double done = m->flat + (1 - m->flat) * m->fraction;
+    return !m->options->progress || m->options->progress(m->options->user, done);
+}
 
 #endif
