@@ -1,11 +1,12 @@
 /*
  * march.frag: the rays of pixels, by the march of trace.comp, without beams.
+ *
+ * Steps are plain.  By predicted ones a ray would pass the foot of a wall and be found on the ground below, since a chord
+ * that ends behind both says little of where it has met the first.
  */
-#define TRACE 3u
+#define TRACE 1u
 #ifdef OPEN_SURFACES
 #define ALONG
-#undef TRACE
-#define TRACE 1u
 #endif
 #include "page.glsl"
 #include "march.glsl"
