@@ -36,7 +36,7 @@ double contest_ratio(const Contest *contest, const Entry *written)
     return written->median.total / times_without_secondary(&contest->entries[0].median);
 }
 
-double contest_least_ratio(const Contest *contest, const Entry *written)
+double contest_min_ratio(const Contest *contest, const Entry *written)
 {
     return written->least / contest->entries[0].least;
 }

@@ -62,7 +62,7 @@ void contest_judge(const Bench *bench, const Contest *contest, Text *faults);
 /* Returns how many times longer the shader by hand takes for what both do: by medians, and by the
    least. */
 double contest_ratio(const Contest *contest, const Entry *written);
-double contest_least_ratio(const Contest *contest, const Entry *written);
+double contest_min_ratio(const Contest *contest, const Entry *written);
 /* Returns by how much of the reference's coverage this one is above it. */
 double coverage_error(const Contest *contest, double coverage);
 

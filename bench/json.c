@@ -114,10 +114,9 @@ static void add_ratios(Text *json, const Contest *contest)
     const Entry *right = contest->same_coverage;
     begin(json, "by_hand_takes", "{");
     add_number(json, "at_the_same_error", contest_ratio(contest, contest->same_error));
-    add_number(json, "at_the_same_error_least", contest_least_ratio(contest, contest->same_error));
+    add_number(json, "at_the_same_error_least", contest_min_ratio(contest, contest->same_error));
     add_number(json, "at_the_same_coverage", right ? contest_ratio(contest, right) : NAN);
-    add_number(json, "at_the_same_coverage_least",
-               right ? contest_least_ratio(contest, right) : NAN);
+    add_number(json, "at_the_same_coverage_least", right ? contest_min_ratio(contest, right) : NAN);
     add_number(json, "error_for_the_same_coverage", right ? right->error : NAN);
     end(json, "}");
 }

@@ -158,11 +158,11 @@ static void tell_ratios(const Results *results, Text *text)
                     times_without_secondary(&c->entries[0].median),
                     c->same_error->median.total,
                     contest_ratio(c, c->same_error),
-                    contest_least_ratio(c, c->same_error),
+                    contest_min_ratio(c, c->same_error),
             right ? right->error : NAN,
             right ? right->median.total : NAN,
             right ? contest_ratio(c, right) : NAN,
-            right ? contest_least_ratio(c, right) : NAN,
+            right ? contest_min_ratio(c, right) : NAN,
                     100 * coverage_error(c, c->entries[0].coverage),
         };
         add_row(text, c->row->name, NAME_WIDTH, columns, values, COLUMNS);

@@ -12,7 +12,7 @@ enum { MAX_ORIENTATIONS = 72 };
 /* Parts of the work that are done after the mesh and after the volume. */
 static const double MESH_DONE = 0.4, VOLUME_DONE = 0.7;
 
-bool measurer_goes_on(Measurer *m, size_t part, double fraction)
+bool measurer_progress(Measurer *m, size_t part, double fraction)
 {
     const KrsMeasureOptions *options = m->options;
     if (part == 0 && options->progress &&
@@ -21,9 +21,9 @@ bool measurer_goes_on(Measurer *m, size_t part, double fraction)
     return !atomic_load_explicit(&m->stopped, memory_order_relaxed);
 }
 
-static bool mesher_goes_on(void *user, double fraction)
+static bool mesher_progress(void *user, double fraction)
 {
-    return measurer_goes_on(user, 0, fraction);
+    return measurer_progress(user, 0, fraction);
 }
 
 static KrsStatus make_mesh(Measurer *m, KrsState *state)
@@ -33,7 +33,7 @@ static KrsStatus make_mesh(Measurer *m, KrsState *state)
                                         .component    = options->component,
                                         .within       = options->within,
                                         .memory_limit = options->memory_limit,
-                                        .progress     = mesher_goes_on,
+                                        .progress     = mesher_progress,
                                         .user         = m};
     memcpy(how.low, options->low, sizeof how.low);
     memcpy(how.high, options->high, sizeof how.high);
@@ -115,8 +115,8 @@ static void measure_all(Measurer *m)
     m->begun = VOLUME_DONE;
     m->goal  = 1;
     measure_samples(m);
-    if (measurer_goes_on(m, 0,
-                         1)) /* reported here, since the first thread may have had no samples */
+    if (measurer_progress(m, 0,
+                          1)) /* reported here, since the first thread may have had no samples */
         measure_lying(m);
 }
 

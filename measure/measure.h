@@ -44,7 +44,7 @@ typedef struct Measurer {
 } Measurer;
 
 /* Tells whether to go on; the first thread reports progress, and all stop if that says so. */
-bool measurer_goes_on(Measurer *m, size_t part, double fraction);
+bool measurer_progress(Measurer *m, size_t part, double fraction);
 
 /* Each of these sets its members of the measures. */
 void measure_volume(Measurer *m);

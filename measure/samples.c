@@ -239,7 +239,7 @@ static void take_samples(void *task, size_t part, size_t parts)
                count = left < MAX_FIELD_POINTS ? left : MAX_FIELD_POINTS;
         snap(&s, m->samples.items + i, count);
         find_walls(&s, m->samples.items + i, count);
-        if (!measurer_goes_on(m, part, (double)i / (double)m->samples.count))
+        if (!measurer_progress(m, part, (double)i / (double)m->samples.count))
             return;
     }
 }

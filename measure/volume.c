@@ -251,7 +251,7 @@ static void take_roots(void *task, size_t part, size_t parts)
         field_focus(&m->fields[part], box);
         halve_cell(round, &m->fields[part], &round->sums[i], &box, 0);
         field_leave(&m->fields[part]);
-        measurer_goes_on(m, part, (double)i / ROOTS);
+        measurer_progress(m, part, (double)i / ROOTS);
     }
 }
 

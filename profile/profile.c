@@ -51,7 +51,7 @@ static double read_clock(clockid_t clock)
 static double elapsed(const Profiling *p) { return read_clock(CLOCK_MONOTONIC) - p->started; }
 
 /* Tells whether the work goes on; false: someone has asked to stop. */
-static bool goes_on(Profiling *p)
+static bool report_progress(Profiling *p)
 {
     const ProfileOptions *options = p->options;
     if (options->progress &&
@@ -139,7 +139,7 @@ static KrsStatus time_frame(const Profiling *p, Subject *subject, FrameTime *tim
 enum { MIN_TURNS = 2, MAX_TURNS = 15 };
 /* The time that the rounds of a part take about, and the shortest frame that is timed, in
    milliseconds. */
-static const double TURNS_MS = 1500, LEAST_FRAME_MS = 25;
+static const double TURNS_MS = 1500, MIN_FRAME_MS = 25;
 
 /* Keeps the least time, of rays and of light: what else a machine does makes frames slower, never
    faster. */
@@ -182,7 +182,7 @@ static KrsStatus choose_size(Profiling *p)
         profile->height        = how->width > 0 ? how->height
                                                 : (uint32_t)fmax(1, profile->width / p->options->aspect);
         const KrsStatus status = time_whole(p);
-        if (status != KRS_OK || how->width > 0 || profile->frame_ms >= LEAST_FRAME_MS ||
+        if (status != KRS_OK || how->width > 0 || profile->frame_ms >= MIN_FRAME_MS ||
             profile->width >= LAST_WIDTH)
             return status;
     }
@@ -314,7 +314,7 @@ static void open_part(Profiling *p, size_t parent, double share)
     double       sum = 0;
     for (size_t i = 0; i < p->parts.count; i++)
         p->found[i].asked = p->found[i].asked || p->parts.items[i].parent == parent;
-    for (size_t i = 0; i < p->parts.count && elapsed(p) < end && goes_on(p); i++)
+    for (size_t i = 0; i < p->parts.count && elapsed(p) < end && report_progress(p); i++)
         if (p->parts.items[i].parent == parent) {
             compile_without(p, i);
             sum += p->found[i].cost.flops;
@@ -329,13 +329,12 @@ static void open_part(Profiling *p, size_t parent, double share)
 
 /* Parts in another one are not timed where their operations are less of all than that; what is shown always is, since
    it may cost light. */
-static const double LEAST_FLOPS = 0.01;
+static const double MIN_FLOPS = 0.01;
 
 static bool is_worth_timing(const Profiling *p, size_t index)
 {
-    return p->without[index] &&
-           (p->parts.items[index].parent == NO_PART ||
-            p->found[index].cost.flops >= LEAST_FLOPS * p->profile->whole.flops);
+    return p->without[index] && (p->parts.items[index].parent == NO_PART ||
+                                 p->found[index].cost.flops >= MIN_FLOPS * p->profile->whole.flops);
 }
 
 static size_t next_part(const Profiling *p)
@@ -351,12 +350,12 @@ static size_t next_part(const Profiling *p)
 static void time_parts(Profiling *p)
 {
     open_part(p, NO_PART, 1);
-    while (elapsed(p) < p->options->seconds && goes_on(p)) {
+    while (elapsed(p) < p->options->seconds && report_progress(p)) {
         const size_t next = next_part(p);
         if (next == NO_PART)
             break;
         time_part(p, next);
-        if (p->found[next].saved >= 2 * PROFILE_LEAST)
+        if (p->found[next].saved >= 2 * PROFILE_MIN)
             open_part(p, next, p->found[next].saved);
     }
     settle_heirs(p);

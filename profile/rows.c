@@ -111,7 +111,7 @@ static void list_shared(Listing *l, const Profile *profile)
 
 void profile_rows(const Parts *parts, const PartProfile *found, Arena *arena, Profile *profile)
 {
-    Listing    l      = {parts, found, arena, PROFILE_LEAST * profile->frame_ms, {0}};
+    Listing    l      = {parts, found, arena, PROFILE_MIN * profile->frame_ms, {0}};
     ProfileRow others = {.ms = profile->frame_ms, .share = 1, .cost = profile->whole};
     ProfileRow whole  = others;
     list_operands(&l, NO_PART, &whole);

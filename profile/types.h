@@ -35,6 +35,6 @@ typedef struct Profile {
 } Profile;
 
 /* Parts below this share of the frame have no row of their own. */
-#define PROFILE_LEAST 0.02
+#define PROFILE_MIN 0.02
 
 #endif

@@ -25,8 +25,8 @@ static void bound_space(const RayField *field, float low[3], float high[3])
 enum {
     SHORT_OF_CUBES  = 40,
     SHORT_OF_STARTS = 300,
-    MOST_OF_CUBES   = 1 << 25,
-    MOST_OF_STARTS  = 1 << 23
+    MAX_OF_CUBES    = 1 << 25,
+    MAX_OF_STARTS   = 1 << 23
 };
 
 static void fill(RayField *field)
@@ -52,12 +52,12 @@ static void fill(RayField *field)
                               .margin     = field->margin,
                               .deepest    = 5,
                               .short_tape = SHORT_OF_CUBES,
-                              .most_steps = MOST_OF_CUBES},
+                              .max_steps  = MAX_OF_CUBES},
                     starts = {.stretch    = 2,
                               .margin     = field->margin,
                               .deepest    = 4,
                               .short_tape = SHORT_OF_STARTS,
-                              .most_steps = MOST_OF_STARTS};
+                              .max_steps  = MAX_OF_STARTS};
     space_new(&field->space, &field->distance.cells, low, high, &cubes, &field->arena);
     space_new(&field->starts, &field->distance.cells, low, high, &starts, &field->arena);
     for (size_t i = 0; i < parallel_parts(); i++) {

@@ -7,10 +7,15 @@
 #include <math.h>
 #include <string.h>
 
-enum { CHILDREN = 8, DEEPEST = 5, MOST_CUBES = 1 + ((1 << 3 * (DEEPEST + 1)) - 1) / 7 };
+enum { CHILDREN = 8, DEEPEST = 5, MAX_CUBES = 1 + ((1 << 3 * (DEEPEST + 1)) - 1) / 7 };
 /* The room for all tapes of a space: as many steps as so many times the whole has, within limits.  Without room cubes stay
    undivided, which takes longer, and which ones do depends on the order of rays. */
-enum { TIMES_WHOLE = 2000, LEAST_STEPS = 1 << 18, CALLS_OF_CUBES = 1 << 14, MOST_LISTED = 1 << 20 };
+enum {
+    TIMES_WHOLE      = 2000,
+    MIN_STEPS        = 1 << 18,
+    CALLS_OF_CUBES   = 1 << 14,
+    MAX_SPACE_LISTED = 1 << 20
+};
 
 /* Leaves the cubes that are there from the beginning. */
 static void clear(Space *space, const CellTape *tape)
@@ -36,26 +41,26 @@ void space_new(Space *space, const CellTape *tape, const float low[3], const flo
     size_t room = (size_t)tape->count * TIMES_WHOLE;
     for (int k = 0; k < 3; k++)
         side = fmax(side, (double)high[k] - (double)low[k]);
-    room               = room < LEAST_STEPS ? LEAST_STEPS : room;
-    room               = room > rule->most_steps || tape->call_count > 0 ? rule->most_steps : room;
+    room               = room < MIN_STEPS ? MIN_STEPS : room;
+    room               = room > rule->max_steps || tape->call_count > 0 ? rule->max_steps : room;
     const bool divides = side > 0 && side < 1e30;
-    *space             = (Space){.side        = divides ? (float)side : 0,
-                                 .stretch     = rule->stretch,
-                                 .margin      = rule->margin,
-                                 .deepest     = divides ? rule->deepest : 0,
-                                 .cells       = divides ? 1u << rule->deepest : 0,
-                                 .short_tape  = rule->short_tape,
-                                 .most        = divides ? MOST_CUBES : 1,
-                                 .most_steps  = divides ? room : 0,
-                                 .most_calls  = (size_t)tape->call_count * CALLS_OF_CUBES,
-                                 .most_listed = tape->call_count ? MOST_LISTED : 0};
+    *space             = (Space){.side       = divides ? (float)side : 0,
+                                 .stretch    = rule->stretch,
+                                 .margin     = rule->margin,
+                                 .deepest    = divides ? rule->deepest : 0,
+                                 .cells      = divides ? 1u << rule->deepest : 0,
+                                 .short_tape = rule->short_tape,
+                                 .most       = divides ? MAX_CUBES : 1,
+                                 .max_steps  = divides ? room : 0,
+                                 .max_calls  = (size_t)tape->call_count * CALLS_OF_CUBES,
+                                 .max_listed = tape->call_count ? MAX_SPACE_LISTED : 0};
     assert(rule->deepest <= DEEPEST);
     space->leaf_of = arena_new_array(arena, atomic_uint,
                                      space->cells * space->cells * space->cells + 1);
     space->cubes   = arena_new_array(arena, SpaceCube, space->most);
-    space->steps   = arena_new_array(arena, CellStep, space->most_steps + 1);
-    space->calls   = arena_new_array(arena, CellCall, space->most_calls + 1);
-    space->listed  = arena_new_array(arena, uint32_t, space->most_listed + 1);
+    space->steps   = arena_new_array(arena, CellStep, space->max_steps + 1);
+    space->calls   = arena_new_array(arena, CellCall, space->max_calls + 1);
+    space->listed  = arena_new_array(arena, uint32_t, space->max_listed + 1);
     for (int k = 0; k < 3; k++)
         space->low[k] = low[k];
     pthread_mutex_init(&space->room, NULL);
@@ -101,9 +106,9 @@ static bool take_room(Space *space, const CellTape *tape, Room *room)
 {
     const size_t listed = instances_of(tape);
     pthread_mutex_lock(&space->room);
-    const bool good = tape->count <= space->most_steps - space->step_count &&
-                      tape->call_count <= space->most_calls - space->call_count &&
-                      listed <= space->most_listed - space->listed_count;
+    const bool good = tape->count <= space->max_steps - space->step_count &&
+                      tape->call_count <= space->max_calls - space->call_count &&
+                      listed <= space->max_listed - space->listed_count;
     *room = (Room){space->steps + space->step_count, space->calls + space->call_count,
                    space->listed + space->listed_count};
     space->step_count += good ? tape->count : 0;

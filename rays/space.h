@@ -34,7 +34,7 @@ typedef struct Space {
     CellStep       *steps;      /* of all tapes, */
     CellCall       *calls;      /* and their calls */
     uint32_t       *listed;     /* and the instances of these */
-    size_t          step_count, most_steps, call_count, most_calls, listed_count, most_listed;
+    size_t          step_count, max_steps, call_count, max_calls, listed_count, max_listed;
     atomic_bool     full; /* a cube was not divided, since there was no room */
     pthread_mutex_t room, gates[SPACE_GATES];
 } Space;
@@ -43,7 +43,7 @@ typedef struct Space {
 typedef struct SpaceRule {
     float    stretch, margin;
     uint32_t deepest; /* level of cubes */
-    size_t   short_tape, most_steps;
+    size_t   short_tape, max_steps;
 } SpaceRule;
 
 /* Makes the space around what lies in the box. */

@@ -246,8 +246,8 @@ static void measure(const SurfacePoint *points, size_t count, CellPoints *middle
 }
 
 /* Returns the least upper bound of distances of the candidates in a ball. */
-static float least_bound(const Question *q, const CellTape *tape, const Rows *rows,
-                         const float *values, float radius)
+static float min_bound(const Question *q, const CellTape *tape, const Rows *rows,
+                       const float *values, float radius)
 {
     float least = HUGE_VALF;
     for (size_t i = 0; i < rows->candidates; i++) {
@@ -263,7 +263,7 @@ static float least_bound(const Question *q, const CellTape *tape, const Rows *ro
 static void find_candidates(const Question *q, const CellTape *tape, const Rows *rows,
                             const float *values, float radius, Rows *to)
 {
-    const float  least = least_bound(q, tape, rows, values, radius);
+    const float  least = min_bound(q, tape, rows, values, radius);
     const size_t bytes = q->numbers * sizeof *to->of;
     to->candidates     = 0;
     for (size_t i = 0; i < rows->candidates; i++) {

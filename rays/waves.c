@@ -207,7 +207,7 @@ static void find_normals_in_cube(Wave *wave, uint32_t number)
     }
 }
 
-/* The smallest cube whose tape is right where the normal of a hit is found. */
+/* Returns the smallest cube whose tape is right where the normal of a hit is found. */
 static uint32_t find_cube_of_hit(const Wave *wave, const RayBlock *block, uint32_t i)
 {
     const float t = block->t[i];

@@ -385,7 +385,7 @@ static CellState find_state(Section *s, const Cell *cell, Box box)
                                                                                   : CELL_SPLIT;
 }
 
-static bool goes_on(Section *s)
+static bool report_progress(Section *s)
 {
     if (s->progress && s->visited++ % ASK_EVERY == 0 && !s->progress(s->user, s->fraction))
         atomic_store(s->stopped, true);
@@ -413,7 +413,7 @@ static bool refine_cell(Section *s, Cell cell, int depth)
 {
     double low[2], high[2];
     bool   enter = depth % ENTER_EVERY == 0 && s->field->region_count < MAX_REGIONS - 1;
-    if (!goes_on(s))
+    if (!report_progress(s))
         return false;
     cell_square(s, &cell, low, high);
     Box       box   = slice_box(&s->plane, low, high, s->enough);

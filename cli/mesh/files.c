@@ -225,7 +225,7 @@ static bool add_obj_vertices(void *user, const MeshCopy *copy)
     return true;
 }
 
-/* A line for a place of a corner, unless the vertex has the same from the triangle before. */
+/* Adds a line for a place of a corner, unless the vertex has the same from the triangle before. */
 static bool add_obj_place(MeshFile *file, uint32_t vertex, const double place[2])
 {
     ObjPlace *last = &file->places[vertex];

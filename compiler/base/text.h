@@ -48,7 +48,7 @@ typedef struct Names {
 
 const char *name_intern(Names *names, const char *bytes, size_t length);
 
-/* The candidate nearest to a misspelt word, or NULL.  The measure is the restricted
+/* Returns the candidate nearest to a misspelt word, or NULL.  The measure is the restricted
    Damerau-Levenshtein distance, in which a swap counts once.  Words of less than 4 letters may have
    1 edit, others 2, and never as many as letters; those of less than 5 keep the first or swap the
    first two.  Of equally near candidates the first is taken. */

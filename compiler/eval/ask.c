@@ -9,7 +9,7 @@
 #include "compiler/eval/kinds.h"
 
 /* The steps that an answer may take: some ten milliseconds. */
-enum { MOST_STEPS = 200 * 1000 };
+enum { MAX_STEPS = 200 * 1000 };
 
 /* An evaluation with all that it works on. */
 struct Asking {
@@ -45,7 +45,7 @@ Asking *asking_new(Files *files, const Loader *loader, Arena *arena, Arena *valu
                                .figures     = true,
                                .in_material = true,
                                .rounding    = NODE_NONE,
-                               .most_steps  = MOST_STEPS,
+                               .max_steps   = MAX_STEPS,
                                .textures    = {.arena = arena}};
     scopes_make(&a->e);
     return a;

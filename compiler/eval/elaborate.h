@@ -115,7 +115,7 @@ struct Elaboration {
     uint32_t number_count;  /* of such numbers so far */
     struct Derivations          *derivations;  /* which of them were computed from others: fold.c */
     uint64_t                     steps;        /* of evaluation, so far, */
-    uint64_t                     most_steps;   /* and at most; 0: as many as a scene may take */
+    uint64_t                     max_steps;    /* and at most; 0: as many as a scene may take */
     uint32_t                     printed;      /* notes by `print`, so far */
     uint32_t                     depth, calls; /* how deep expressions and calls are nested now */
     const struct CalledFunction *called;       /* the innermost of these calls, or NULL */

@@ -22,7 +22,7 @@ static Value limit_reached(Elaboration *e, Span span, const char *message)
 bool count_steps(Elaboration *e, uint64_t count, Span span)
 {
     e->steps += count;
-    if (!is_stopped(e) && e->steps > (e->most_steps ? e->most_steps : MAX_STEPS))
+    if (!is_stopped(e) && e->steps > (e->max_steps ? e->max_steps : MAX_STEPS))
         limit_reached(e, span, "the scene takes more than 200 million steps to elaborate");
     if (!is_stopped(e) && e->graph->count - e->builder->nodes_before > MAX_NODES)
         limit_reached(e, span, "the expressions of a shape have more than 500,000 operations");

@@ -226,7 +226,7 @@ typedef struct TrialMarch {
 
 enum { MARCHED_RAYS = 24, MAX_STEPS = 96 };
 /* Longer formulas, in multiply-adds, have no local bounds: one is several times as long. */
-enum { MOST_LOCAL = 2048 };
+enum { MAX_LOCAL = 2048 };
 
 /* A ray on its way. */
 typedef struct TrialRay {
@@ -448,7 +448,7 @@ static Node cheapest_local(ShapeBuilder *builder, const TrialMarch *march, Node 
     static const double fractions[] = {0.25, 0x1p-6, 0x1p-11, 0x1p-17, 0x1p-24, 0x1p-32, 0x1p-42};
     enum { FRACTIONS = sizeof fractions / sizeof *fractions };
     Node sharp[FRACTIONS];
-    if (step_cost(march, distance) > MOST_LOCAL)
+    if (step_cost(march, distance) > MAX_LOCAL)
         return NODE_NONE;
     for (int i = 0; i < FRACTIONS; i++) {
         Node local = by_local_slope(builder, formula, box, slope * fractions[i]);

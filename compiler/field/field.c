@@ -90,7 +90,7 @@ bool field_keep(MeshField *field, uint32_t *outputs, size_t count)
     tape.outputs      = outputs;
     tape.output_count = count;
     return prune(field, &tape, &field->pieces) &&
-           field->pieces.tape.rows <= lane_most_rows(&field->tape);
+           field->pieces.tape.rows <= lane_max_rows(&field->tape);
 }
 
 static bool box_has(const Box *box, const double point[3])

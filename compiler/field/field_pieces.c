@@ -408,8 +408,8 @@ static bool add_condition(Finding *f, uint32_t operand, double sign)
 /* Adds the pieces of a choice whose condition tells the sign. */
 static bool add_chosen(Finding *f, const LaneStep *step, double sign)
 {
-    double way = sign_of_choice(f, step);
-    return way != 0 && add_condition(f, step->operands[0], sign * way);
+    double side = sign_of_choice(f, step);
+    return side != 0 && add_condition(f, step->operands[0], sign * side);
 }
 
 /* A line of an outline is a weighted sum of the two coordinates. */

@@ -381,7 +381,7 @@ Syntax *error_node(Parser *p)
    although nothing is nested. */
 static Syntax *check_height(Parser *p, Syntax *node)
 {
-    if (node->height <= SYNTAX_MOST_LEVELS || node->kind > SYNTAX_KRS)
+    if (node->height <= SYNTAX_MAX_LEVELS || node->kind > SYNTAX_KRS)
         return node;
     Diag *diag  = report_at(p, DIAG_TOO_DEEP, token_before(p)->span,
                             "an expression of more than 1,000 levels");

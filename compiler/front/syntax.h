@@ -87,7 +87,7 @@ struct Syntax {
 };
 
 /* Most levels of an expression, so that functions may walk the tree by recursion. */
-enum { SYNTAX_MOST_LEVELS = 1000 };
+enum { SYNTAX_MAX_LEVELS = 1000 };
 
 /* Returns "points"; NULL for KIND_ANY. */
 const char *parameter_kind_name(ParameterKind kind);

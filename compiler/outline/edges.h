@@ -30,7 +30,7 @@ typedef struct Making {
     double fault_at[2];
 } Making;
 
-/* An edge between the knots at its ends, unless they are one. */
+/* Adds an edge between the knots at its ends, unless they are one. */
 void add_edge(Making *making, const Curve *curve, int weight);
 /* edge_cuts.c: cuts edges where they meet others, so that they share knots only. */
 OutlineFault cut_edges(Making *making);

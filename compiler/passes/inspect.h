@@ -34,7 +34,7 @@ KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *
 KrsStatus compile_with_instances(const char *text, size_t length, uint32_t least,
                                  const KrsOptions *options, KrsScene **scene);
 
-/* The same, and loops are evaluated iteration by iteration, though these differ in numbers only. */
+/* Does so, and evaluates loops iteration by iteration, though these differ in numbers only. */
 KrsStatus compile_iteration_by_iteration(const char *text, size_t length, uint32_t least,
                                          const KrsOptions *options, KrsScene **scene);
 

@@ -110,7 +110,7 @@ void emit_body(Emitter *e, const Node *roots, size_t count);
    constant in it; then emit_node for each of the others. */
 void emit_begin(Emitter *e, const Node *roots, size_t count);
 void emit_node(Emitter *e, Node n);
-/* The same, unless it is given. */
+/* Emits the point likewise, unless it is given. */
 void emit_point_node(Emitter *e, Node n);
 /* Emits the expression of a node whose operands have theirs. */
 const char *emit_expression(Emitter *e, const Expr *expr);

@@ -52,7 +52,7 @@ static void find_type(const Emitter *e, Helper *helper, const char *from)
     helper->type_length = 0;
 }
 
-/* The part of a file between blank lines, unless it is none; "float krs_sin(float a)..." */
+/* Keeps a helper: text between blank lines of a file, such as "float krs_sin(float a)...". */
 static void read_helper(Emitter *e, const char *text, size_t length, bool of_base)
 {
     const char *from = skip_comment(text), *end = text + length;

@@ -6,9 +6,9 @@
 
 #include "compiler/refute/refuter.h"
 
-/* The distance of a shape, found to be wrong in `whole`, is refuted in `finding`. */
+/* Reports the distance of a shape: `whole` found it to be wrong, and `finding` refutes it. */
 void report_finding(Refuter *r, const Finding *whole, const Finding *finding);
-/* A claim beside the distance is. */
+/* Reports that a claim beside the distance is refuted. */
 void report_claim(Refuter *r, const Finding *finding);
 
 #endif

@@ -366,7 +366,7 @@ static void view_light(const KrsState *state, size_t index, KrsLight *light)
 
 /* ---- daylight ---- */
 
-/* The sun, once lights are known. */
+/* Returns the sun, once lights are known. */
 static Daylight find_daylight(const KrsState *state)
 {
     const KrsScene *scene = state->scene;

@@ -74,7 +74,7 @@ typedef struct Way {
 Way find_way(Arena *arena, const Syntax *tree, uint32_t offset);
 /* Returns the way to a node; empty: it is not in the tree. */
 Way find_way_to(Arena *arena, const Syntax *tree, const Syntax *node);
-/* The last node of a kind on a way, or NULL; *index is where it is. */
+/* Returns the last node of a kind on a way, or NULL; *index is where it is. */
 const Syntax *last_of_kind(const Way *way, SyntaxKind kind, size_t *index);
 
 /* Returns the number of the token at an offset, or else of the one before it. */

@@ -61,7 +61,7 @@ BoxPlan       box_plan_copy(const BoxPlan *plan, Arena *arena);
 void  box_plan_find(const BoxPlan *plan, const Node *nodes, const NodeValue *values, Box *boxes);
 Range planned_range(const PlannedNumber *number, uint32_t component, const Node *nodes,
                     const NodeValue *values);
-/* The same, for the defaults of the parameters, while shapes are made. */
+/* Does the same, for the defaults of the parameters, while shapes are made. */
 void box_plan_default(ShapeBuilder *builder, const BoxPlan *plan, Box *boxes);
 
 #endif

@@ -9,7 +9,7 @@
 
 /* The deepest nesting that is read: those who read and write parts call
  * themselves. */
-enum { IMPORT_MOST_DEPTH = 200 };
+enum { IMPORT_MAX_DEPTH = 200 };
 
 typedef enum PartJoin {
     PART_UNION, /* also of one */

@@ -36,7 +36,7 @@ typedef struct WordReader {
 /* The first word of the file is then the next one. */
 void words_start(WordReader *reader, Import *import, bool nested);
 void words_advance(WordReader *reader);
-/* The same word by word, whatever `next` is. */
+/* Goes to the next word likewise, whatever `next` is. */
 void words_advance_plain(WordReader *reader);
 
 /* Tells whether the next word is this name or sign. */

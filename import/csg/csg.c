@@ -24,9 +24,9 @@ typedef struct CsgReader {
 
 static bool deeper(CsgReader *reader)
 {
-    return ++reader->depth <= IMPORT_MOST_DEPTH ||
+    return ++reader->depth <= IMPORT_MAX_DEPTH ||
            import_refuse(reader->words.import, reader->words.word.line, "more than %d deep",
-                         IMPORT_MOST_DEPTH);
+                         IMPORT_MAX_DEPTH);
 }
 
 /* ---- joints ---- */

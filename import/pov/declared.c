@@ -30,7 +30,7 @@ static bool read_sizes(PovReader *reader, PovCell *array)
     int count = 1;
     while (word_accept(&reader->words, "[")) {
         double size;
-        if (array->dimensions == POV_MOST_DIMENSIONS || !pov_number(reader, &size) ||
+        if (array->dimensions == POV_MAX_DIMENSIONS || !pov_number(reader, &size) ||
             !word_expect(&reader->words, "]"))
             return word_refuse(&reader->words, "at most five sizes");
         if (!(size >= 1 && size * count <= MAX_ELEMENTS))

@@ -80,7 +80,7 @@ typedef struct PovMacro {
     unsigned    line, fixed_line;
 } PovMacro;
 
-enum { POV_MOST_DIMENSIONS = 5 };
+enum { POV_MAX_DIMENSIONS = 5 };
 
 typedef struct PovCell {
     PovKind          kind;
@@ -93,7 +93,7 @@ typedef struct PovCell {
     const PovLight  *light;
     const PovMacro  *macro;
     struct PovCell **items; /* of an array */
-    int              sizes[POV_MOST_DIMENSIONS], dimensions;
+    int              sizes[POV_MAX_DIMENSIONS], dimensions;
 } PovCell;
 
 typedef struct PovName {

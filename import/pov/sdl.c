@@ -53,8 +53,8 @@ void pov_pop_source(PovReader *reader)
     reader->words.line = top_source(reader)->line;
 }
 
-/* The next word of the source, whatever it is; at the end of a file that of the
- * file around it. */
+/* Reads the next word of the source, whatever it is; at the end of a file that of
+ * the file around it. */
 static void raw_word(PovReader *reader)
 {
     WordReader *words = &reader->words;

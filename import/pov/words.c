@@ -10,9 +10,9 @@ static const double DEGREE = 3.14159265358979323846 / 180;
 
 bool pov_deeper(PovReader *reader)
 {
-    return ++reader->depth <= IMPORT_MOST_DEPTH ||
+    return ++reader->depth <= IMPORT_MAX_DEPTH ||
            import_refuse(reader->import, reader->words.word.line, "more than %d deep",
-                         IMPORT_MOST_DEPTH);
+                         IMPORT_MAX_DEPTH);
 }
 
 bool pov_skip_block(PovReader *reader)

@@ -229,8 +229,8 @@ KRS_SIZED KrsStatus krs_format_file(const char *path, const KrsOptions *options,
                                     bool *same);
 
 /*
- * What a scene may use without defining it: what is built in, and what the library declares.  *json is an array with an object
- * for each:
+ * Lists what a scene may use without defining it: what is built in, and what the library declares.  *json is an array with an
+ * object for each:
  *
  *     kind        "function", "shape" (one that is declared by its distance), "method" of shapes, or "value"
  *     name
@@ -370,7 +370,7 @@ KRS_SIZED KrsStatus krs_text(const KrsScene *scene, KrsTarget target, const KrsT
                              char **text);
 
 /*
- * The uniforms of that text, for programs that embed it.  Each slot is a
+ * Writes the uniforms of that text, for programs that embed it.  Each slot is a
  * vec4; `block` needs krs_parameter_slots of them.  Slot 0 is (time, 0, 0, 0).  A slot for each
  * parameter follows, in the order of krs_parameter.  The last slots are slopes, in x, which are
  * computed for each state.  Distances are divided by them where no constant is safe, as for
@@ -387,7 +387,7 @@ void   krs_state_parameters(const KrsState *state, float (*block)[4]);
 size_t krs_value_slots(const KrsScene *scene);
 void   krs_state_values(const KrsState *state, float (*block)[4]);
 /*
- * The texel buffers of that text: numbers of parts that are alike but for numbers, and which of them
+ * Writes the texel buffers of that text: numbers of parts that are alike but for numbers, and which of them
  * are near a point.  `rows` needs krs_table_rows texels, for krs_rows (RGBA32F), and `cells` needs
  * krs_table_cells, for krs_cells (RG32UI), which has the textures as well.  Both are 0 for scenes
  * without such parts and textures, whose GLSL has neither buffer.  Both may depend on the parameters and the time.
@@ -450,8 +450,8 @@ typedef struct KrsCamera {
 #include "krs/camera.def"
 } KrsCamera;
 
-/* The cameras that the scene declares or, if it has none, one that the compiler places.  The first
-   is the default.  The name is NULL if the camera has none, and lives as long as the scene. */
+/* Return the cameras that the scene declares or, if it has none, one that the compiler places.  The
+   first is the default.  The name is NULL if the camera has none, and lives as long as the scene. */
 size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);
 /* Finds the place of a camera's block in the text, from `camera` to behind the `}`.

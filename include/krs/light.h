@@ -62,12 +62,12 @@ typedef struct KrsFog {
     double density, fall, base;
 } KrsFog;
 
-/* The lights of the scene or, if it has none, one that the compiler places.  The name is NULL if the
-   light has none. */
+/* Return the lights of the scene or, if it has none, one that the compiler places.  The name is NULL
+   if the light has none. */
 size_t      krs_light_count(const KrsScene *scene);
 const char *krs_light_name(const KrsScene *scene, size_t index);
-/* A light, the sky and the fog at the state's parameters and time, as pictures have them.  KRS_BAD_ARGUMENT: there is no
-   such light; KRS_OUT_OF_MEMORY: the map of a sky of daylight is made then. */
+/* Return a light, the sky and the fog at the state's parameters and time, as pictures have them.  KRS_BAD_ARGUMENT: there is
+   no such light; KRS_OUT_OF_MEMORY: the map of a sky of daylight is made then. */
 KRS_SIZED KrsStatus krs_state_light(KrsState *state, size_t index, KrsLight *light);
 KRS_SIZED KrsStatus krs_state_sky(KrsState *state, KrsSky *sky);
 KRS_SIZED KrsStatus krs_state_fog(KrsState *state, KrsFog *fog);

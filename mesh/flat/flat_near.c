@@ -62,7 +62,7 @@ static void ask(Checking *l)
         atomic_store(&m->stopped, true);
 }
 
-static bool goes_on(Checking *l)
+static bool may_check_more(Checking *l)
 {
     Mesher   *m    = l->w->m;
     NearPart *part = l->part;
@@ -138,7 +138,7 @@ static void check_box(Checking *l, Box box, int halvings, double slack)
     Range range = field_range(l->field, box);
     if (range.low > 0 || range.high < 0)
         return;
-    if (!goes_on(l)) {
+    if (!may_check_more(l)) {
         if (part->checks == MAX_CHECKS || part->hard == MAX_HARD)
             note_location(part, &box);
         return;

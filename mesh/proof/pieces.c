@@ -145,7 +145,7 @@ static double max_of_piece(const Measure *m, size_t piece, const Part *part)
         for (int i = 0; i < count; i++)
             for (int j = 0; j < i; j++)
                 pairs = max2(pairs, q[i][j]);
-        double rest    = count == 3   ? smooth_most_of_three(q[0][1], q[1][2], q[2][0])
+        double rest    = count == 3   ? smooth_max_of_three(q[0][1], q[1][2], q[2][0])
                          : count == 4 ? 0.375 * pairs
                                       : 0.25 * pairs;
         least          = min2(least, max2(low, values[0] + 0.5 * rest));

@@ -247,7 +247,7 @@ double smooth_bend(const double form[6], const double a[3], const double b[3])
    q the squares of lengths it is the squared radius of the smallest ball around the points. */
 static double max_of_pair(double q) { return 0.25 * q; }
 
-double smooth_most_of_three(double a, double b, double c)
+double smooth_max_of_three(double a, double b, double c)
 {
     double longest = max2(a, max2(b, c)),
            square  = 2 * (a * b + b * c + c * a) - a * a - b * b - c * c;
@@ -315,14 +315,14 @@ static double max_on_mesh(const MeshPart *part, const double form[6])
         most      = max2(most, m ? max_of_ring(ab, smooth_bend(form, apex, m),
                                                max2(max2(pa, pb), max2(smooth_bend(form, a, m),
                                                                        smooth_bend(form, b, m))))
-                                 : smooth_most_of_three(ab, pa, pb));
+                                 : smooth_max_of_three(ab, pa, pb));
     }
     if (patch->fan)
         return most;
     const double *const *c = part->crossings;
     if (count == 3)
-        return smooth_most_of_three(smooth_bend(form, c[0], c[1]), smooth_bend(form, c[1], c[2]),
-                                    smooth_bend(form, c[2], c[0]));
+        return smooth_max_of_three(smooth_bend(form, c[0], c[1]), smooth_bend(form, c[1], c[2]),
+                                   smooth_bend(form, c[2], c[0]));
     double sides = 0;
     for (int i = 0; i < 4; i++)
         sides = max2(sides, smooth_bend(form, c[i], c[(i + 1) % 4]));

@@ -34,7 +34,7 @@ double smooth_form(const double form[6], const double a[3], const double b[3]);
 /* Returns what a form permits between two points, not below 0. */
 double smooth_bend(const double form[6], const double a[3], const double b[3]);
 /* Returns the largest w0 w1 a + w1 w2 b + w2 w0 c for weights w >= 0 whose sum is 1. */
-double smooth_most_of_three(double a, double b, double c);
+double smooth_max_of_three(double a, double b, double c);
 /* Bounds the value of what the mesh in a tetrahedron has inside (or, times -1, outside), where the
    mesh has values of no more than `most` (no less than -most): what is beyond sees a corner of the
    other side along a path on which no mesh can be.  Returns INFINITY where no corner is so deep. */

@@ -36,7 +36,7 @@ typedef struct Block {
     Numbering numbers;
 } Block;
 
-static bool goes_on(void *user, double part)
+static bool is_wanted(void *user, double part)
 {
     const Blocks *b = user;
     (void)part;
@@ -112,7 +112,7 @@ static size_t collapse_without_crossing(Blocks *b, Block *block, Arena *arena)
                            .error     = b->rules->error,
                            .off       = block->off,
                            .missed    = block->missed,
-                           .is_wanted = goes_on,
+                           .is_wanted = is_wanted,
                            .user      = b,
                            .enough    = block->count / PART,
                            .border    = block->border};
@@ -164,7 +164,7 @@ static void collapse_some(void *task, size_t part, size_t parts)
 }
 
 /* Moves what is left of blocks together; returns how much it is. */
-static size_t put_together(const Blocks *b, size_t vertex_count)
+static size_t join_blocks(const Blocks *b, size_t vertex_count)
 {
     size_t    left   = 0;
     uint32_t *begins = b->left_counts; /* how far blocks are moved, in place of how many are left */
@@ -204,7 +204,7 @@ size_t collapse_blocks(const double (*vertices)[3], size_t    vertex_count,
         rules->below[i] = UINT32_MAX;
     run_in_parallel(collapse_some, &b);
     if (!atomic_load(&b.stopped))
-        all = put_together(&b, vertex_count);
+        all = join_blocks(&b, vertex_count);
     arena_rewind(arena, mark);
     return all;
 }

@@ -120,7 +120,7 @@ static bool is_far_from_new(const Check *check, uint32_t triangle, NearQuery *qu
     return !is_near_mesh(check->new, (const double(*)[3])corners, s->error, starts, count, query);
 }
 
-void ask_to_go_on(Simplifier *s, double part)
+void simplifier_progress(Simplifier *s, double part)
 {
     const KrsMeshOptions *options = s->options;
     s->fraction                   = fmax(s->fraction, s->begun + part * (s->goal - s->begun));
@@ -141,7 +141,7 @@ static void check_some(void *task, size_t part, size_t parts)
         if (begin >= count)
             return;
         if (part == 0)
-            ask_to_go_on(check->s, (double)begin / (double)count);
+            simplifier_progress(check->s, (double)begin / (double)count);
         for (size_t i = begin; i < begin + SOME && i < count; i++)
             check->wrong[i] = check->is_wrong(check, (uint32_t)i, &check->s->queries[part]);
     }

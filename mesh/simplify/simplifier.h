@@ -55,6 +55,6 @@ size_t count_faults(Simplifier *s, double radius, size_t most, double goal);
 /* Tells whether a new triangle is near the mesh, whose triangles at its corners are starts. */
 bool is_near_original(const Simplifier *s, const uint32_t triangle[3], NearQuery *query);
 /* Reports which part of a step is done, and notes whether the work is to end. */
-void ask_to_go_on(Simplifier *s, double part);
+void simplifier_progress(Simplifier *s, double part);
 
 #endif

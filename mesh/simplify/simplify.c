@@ -97,7 +97,7 @@ static bool is_wanted(void *user, double part)
 {
     Simplifier *s = user;
     if (!atomic_load(&s->stopped))
-        ask_to_go_on(s, fmin(fmax(part, 0), 1));
+        simplifier_progress(s, fmin(fmax(part, 0), 1));
     return !atomic_load(&s->stopped);
 }
 

@@ -30,8 +30,8 @@ struct Buffer {
     Handle   texels; /* what is in it, for shaders that read it so (buffer_view) */
 };
 
-/* A buffer of `size` bytes (at least 1) for every use a shader has.  `name` stands in messages:
-   "cannot make room for the <name>". */
+/* Makes a buffer of `size` bytes (at least 1) for every use a shader has.  `name` stands in
+   messages: "cannot make room for the <name>". */
 bool buffer_create(Gpu *gpu, Buffer *buffer, uint64_t size, Where where, const char *name);
 /* Returns at least so many bytes, for a buffer that is read as texels: llvmpipe compiles a shader
    anew when the size of one becomes a power of two, or 256 times it a multiple of that; this is

@@ -6,7 +6,7 @@
 
 #include "runtime/device/gpu_state.h"
 
-/* The devices there are, as krs_devices. */
+/* Lists the devices there are, as krs_devices. */
 bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count);
 /* Describes the device that was opened. */
 KrsDevice gpu_describe(const Gpu *gpu);

@@ -260,7 +260,7 @@ static void march_tiles(void *task, size_t part, size_t parts)
     }
 }
 
-/* How many of a list are in a wave of it. */
+/* Returns how many of a list are in a wave of it. */
 static uint32_t count_of_wave(const Slice *slice, uint32_t wave)
 {
     const uint32_t left = slice->items - wave * RAYS_OF_WAVE;

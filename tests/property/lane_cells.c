@@ -331,7 +331,7 @@ static Count try_space(const char *text, double part)
                                 .margin     = ray_margin(&o.scene->program),
                                 .deepest    = 4,
                                 .short_tape = 10,
-                                .most_steps = 1 << 20};
+                                .max_steps  = 1 << 20};
         space_new(&space, &o.cells, low, high, &rule, &o.arena);
         for (int i = 0; i < 4 * BALLS; i++) {
             const double middle[3]  = {uniform(-SIZE, SIZE), uniform(-SIZE, SIZE),

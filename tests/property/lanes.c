@@ -230,7 +230,7 @@ static void try_box(Bench *b, Pair *pair, Box known, Box looked, Tally *tally)
     double    *pruned  = arena_new_array(&b->arena, double, POINTS *outputs);
     lane_ranges_run(&pair->lanes, &ranges, known);
     LaneTape shorter = lane_prune(&pair->lanes, &ranges, outputs, &b->arena);
-    assert_true(shorter.rows <= lane_most_rows(&pair->lanes));
+    assert_true(shorter.rows <= lane_max_rows(&pair->lanes));
     assert_true(shorter.count <= lane_max_steps(&pair->lanes));
     points_in(b, looked, points);
     LanePoints all = {.points = (const double(*)[3])points, .count = POINTS};

@@ -36,7 +36,7 @@ static void most_of_three_points_is_right(void **context)
                 int c = STEPS - a - b;
                 most  = fmax(most, (a * b * q[0] + b * c * q[1] + c * a * q[2]) / (STEPS * STEPS));
             }
-        double bound = smooth_most_of_three(q[0], q[1], q[2]);
+        double bound = smooth_max_of_three(q[0], q[1], q[2]);
         assert_true(bound >= most * (1 - 1e-12) && bound <= 1.01 * most);
     }
 }

@@ -1,7 +1,7 @@
 // download.mjs: the text, a picture or a mesh as a file.
 import { corners, glb, middles, stl } from './files.mjs';
 
-const MOST_POINTS = 4096;
+const MAX_POINTS = 4096;
 const isFinite = ({ low, high }) => [...low, ...high].every(Number.isFinite);
 
 function offer(blob, name) {
@@ -99,8 +99,8 @@ export class Downloads {
     // What is known at points, some of them at a time: an answer is long.
     async #hits(points, signal) {
         const hits = [];
-        for (let i = 0; i < points.length; i += 3 * MOST_POINTS) {
-            hits.push(...await this.view.scene.query(points.subarray(i, i + 3 * MOST_POINTS), this.view.time));
+        for (let i = 0; i < points.length; i += 3 * MAX_POINTS) {
+            hits.push(...await this.view.scene.query(points.subarray(i, i + 3 * MAX_POINTS), this.view.time));
             signal.throwIfAborted();
         }
         return hits;

@@ -5,7 +5,7 @@
 
 const MARK = '1.';
 // A text of a stranger may unpack to so many bytes, no more.
-const MOST_BYTES = 4 << 20;
+const MAX_BYTES = 4 << 20;
 
 function toBase64url(bytes) {
     let binary = '';
@@ -25,7 +25,7 @@ async function through(bytes, transform) {
     for (let next = await reader.read(); !next.done; next = await reader.read()) {
         pieces.push(next.value);
         length += next.value.length;
-        if (length > MOST_BYTES) {
+        if (length > MAX_BYTES) {
             await reader.cancel();
             throw new RangeError('the link holds more than a scene');
         }

@@ -98,7 +98,7 @@ static Value number_of_cell(Elaboration *e, const Call *call, uint32_t stream)
     return value_authored(e, value_of_node(e, random_of_cell(e, call, 2 * stream)));
 }
 
-/* A number or a vector of a seed and a stream, whichever the seed is. */
+/* Returns a number or a vector of a seed and a stream, whichever the seed is. */
 static Value seeded(Elaboration *e, const Call *call, Op op, GraphType type,
                     Value (*of_cell)(Elaboration *e, const Call *call, uint32_t stream))
 {

@@ -67,7 +67,7 @@ static void claim_plane(Graph *g, ShapeClaims *claims, const Shape *shape)
                  "it is empty inside of the half-space");
 }
 
-/* The ball about the origin, where its radius is not negative. */
+/* Claims that the solid is in the ball about the origin, where its radius is not negative. */
 static void claim_ball(Graph *g, ShapeClaims *claims, const Shape *shape)
 {
     Node height = graph_op1(g, OP_length, graph_leaf(g, OP_POINT));

@@ -198,13 +198,13 @@ static bool cutting_helps(const Analysis *analysis, Node root, Cell cell)
 }
 
 /* The facts, about, that are found at most to make a bound less that there is. */
-enum { MOST_FACTS = 1 << 18 };
+enum { MAX_FACTS = 1 << 18 };
 
 /* Cuts the steepest cell in two until there are `cells`; the steepest is then the first.  A long
    expression is cut into fewer, once there is a bound. */
 static void heap_refine(const Analysis *analysis, Node root, Cell *heap, size_t cells)
 {
-    const size_t enough = MOST_FACTS / (analysis->tape.count + 1);
+    const size_t enough = MAX_FACTS / (analysis->tape.count + 1);
     for (size_t count = 1; count < cells; count++) {
         Cell worst = heap[0];
         if ((count > enough && worst.slope < HUGE_VAL) || !(worst.slope > 0) ||

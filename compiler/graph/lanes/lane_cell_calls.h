@@ -169,12 +169,14 @@ static void LOCAL(julia_step)(REAL z[4][CELL_LANES], const REAL *const *c, int p
 /* Evaluates what krs_julia of julia.glsl does. */
 static void LOCAL(cell_julia)(const REAL *const *x, REAL *to)
 {
-    enum { MOST = 64, MOST_POWER = 16 };
-    _Alignas(64) REAL z[4][CELL_LANES], sizes[MOST][CELL_LANES], norm[CELL_LANES], last[CELL_LANES];
+    enum { MAX_ROUNDS = 64, MAX_DEGREE = 16 };
+    _Alignas(64) REAL z[4][CELL_LANES], sizes[MAX_ROUNDS][CELL_LANES], norm[CELL_LANES],
+        last[CELL_LANES];
     _Alignas(64) REAL taken[CELL_LANES];
     const REAL       *settings = x[9], *radius = x[10];
-    const int power = LOCAL(same_whole)(x[7], MOST_POWER), most = LOCAL(same_whole)(x[8], MOST);
-    int       n = 0;
+    const int         power = LOCAL(same_whole)(x[7], MAX_DEGREE),
+              most          = LOCAL(same_whole)(x[8], MAX_ROUNDS);
+    int n                   = 0;
     for (int k = 0; k < 3; k++)
         memcpy(z[k], x[k], sizeof z[k]);
     ALL_LANES
@@ -239,11 +241,12 @@ static void LOCAL(triplex_step)(REAL w[3][CELL_LANES], const REAL *const *c, int
 /* Evaluates what evaluate_mandelbulb of fractal.c does. */
 static void LOCAL(cell_mandelbulb)(const REAL *const *x, REAL *to)
 {
-    enum { MOST = 64, MOST_POWER = 16 };
+    enum { MAX_ROUNDS = 64, MAX_DEGREE = 16 };
     _Alignas(64) REAL w[3][CELL_LANES], size[CELL_LANES], steep[CELL_LANES], sum[CELL_LANES];
     _Alignas(64) REAL lateral[CELL_LANES], last[CELL_LANES], stretch[CELL_LANES], going[CELL_LANES];
     const REAL       *settings = x[5], *radius = x[6], *cx = x[0], *cy = x[1], *cz = x[2];
-    const int  power = LOCAL(same_whole)(x[3], MOST_POWER), most = LOCAL(same_whole)(x[4], MOST);
+    const int         power = LOCAL(same_whole)(x[3], MAX_DEGREE),
+              most          = LOCAL(same_whole)(x[4], MAX_ROUNDS);
     const REAL degree = (REAL)power, core = (REAL)mandelbulb_core(power);
     const REAL least = (REAL)real_pow(4 * degree, -1 / (degree - 1)),
                far   = fminf(16, (REAL)real_exp2(32 / degree));
@@ -281,10 +284,10 @@ static void LOCAL(cell_mandelbulb)(const REAL *const *x, REAL *to)
     {
         const REAL start = sqrtf(cx[i] * cx[i] + cy[i] * cy[i] + cz[i] * cz[i]);
         const REAL room = radius[i] - last[i], rim = start - radius[i];
-        const REAL most_far = start > core ? start - core : 0;
-        const REAL escapes  = 0.5f * last[i] * lane_log(last[i] / radius[i]) / stretch[i];
-        const REAL outside  = escapes < most_far ? escapes : most_far;
-        const REAL inside   = -0.5f * room /
+        const REAL max_far = start > core ? start - core : 0;
+        const REAL escapes = 0.5f * last[i] * lane_log(last[i] / radius[i]) / stretch[i];
+        const REAL outside = escapes < max_far ? escapes : max_far;
+        const REAL inside  = -0.5f * room /
                             (stretch[i] + (degree - 1) / (2 * least) * sum[i] * room);
         const REAL distance = room < 0 ? outside : inside;
         const REAL near     = distance > rim ? distance : rim;

@@ -19,7 +19,7 @@ const InstanceFunction *distance_of_instances(const LaneTape *tape, const LaneCa
     return function->slope > 0 && function->type == TYPE_FLOAT ? function : NULL;
 }
 
-const InstanceFunction *least_of_instances(const LaneTape *tape, const LaneCall *call)
+const InstanceFunction *min_of_instances(const LaneTape *tape, const LaneCall *call)
 {
     const InstanceFunction *function = distance_of_instances(tape, call);
     if (!function || call->body->tape.call_count > 0)
@@ -195,7 +195,7 @@ size_t cell_steps_of_bodies(const CellTape *tape, size_t *longest)
     size_t all = 0;
     *longest   = 0;
     for (uint32_t i = 0; i < tape->call_count; i++)
-        if (least_of_instances(tape->whole, tape->calls[i].call)) {
+        if (min_of_instances(tape->whole, tape->calls[i].call)) {
             const LaneBody *body = tape->calls[i].call->body;
             const size_t    each = steps_of_instance(body);
             all += each < MAX_BODY_STEPS ? MAX_BODY_STEPS : 0;
@@ -224,14 +224,14 @@ CellWork *cell_work_new(const CellTape *tape, uint32_t depth, NodeValue *values,
                                     .steps        = arena_new_array(arena, CellStep, count * depth + 1),
                                     .calls        = arena_new_array(arena, CellCall, calls * depth),
                                     .lists        = arena_new_array(arena, CellList, calls),
-                                    .most_listed  = lists * MAX_LISTED * depth,
+                                    .max_listed   = lists * MAX_LISTED * depth,
                                     .body_rows    = arena_new_array(arena, uint32_t, LANE_INPUTS + longest),
                                     .body_scalars = arena_new_array(arena, uint32_t, longest + 1)};
-    work->listed       = arena_new_array(arena, uint32_t, work->most_listed + 1);
+    work->listed       = arena_new_array(arena, uint32_t, work->max_listed + 1);
     for (uint32_t i = 0; i <= depth; i++)
         work->rows[i] = new_rows(tape, rows, arena);
     work->found     = new_numbers(CELL_WIDE, arena);
-    work->wide      = new_numbers((LANE_INPUTS + MOST_WIDE_STEPS) * (size_t)CELL_WIDE, arena);
+    work->wide      = new_numbers((LANE_INPUTS + MAX_WIDE_STEPS) * (size_t)CELL_WIDE, arena);
     work->constants = new_numbers(tape->inputs + 1, arena);
     for (uint32_t i = 0; i < tape->inputs; i++)
         work->constants[i] = cell_constant(tape->whole, i);
@@ -267,7 +267,7 @@ static void run_blocks(const CellTape *tape, CellWork *work, uint32_t depth,
 const float *cell_run_wide(const CellTape *tape, CellWork *work, uint32_t depth,
                            const float points[3][CELL_WIDE], size_t blocks)
 {
-    if (blocks < 2 || tape->call_count > 0 || tape->count > MOST_WIDE_STEPS ||
+    if (blocks < 2 || tape->call_count > 0 || tape->count > MAX_WIDE_STEPS ||
         is_constant(tape, tape->output)) {
         run_blocks(tape, work, depth, points, blocks);
         return work->found;

@@ -107,7 +107,7 @@ static uint32_t only_operand(const Pruning *p, const CellStep *step, uint32_t ro
 /* Makes steps of bodies, if they are few and that is possible. */
 static bool bodies_expand(const CellTape *tape, const CellCall *call, uint32_t count)
 {
-    return least_of_instances(tape->whole, call->call) && count <= MAX_CELL_INSTANCES &&
+    return min_of_instances(tape->whole, call->call) && count <= MAX_CELL_INSTANCES &&
            count * steps_of_instance(call->call->body) <= MAX_BODY_STEPS;
 }
 
@@ -140,7 +140,7 @@ static void find_instances(Pruning *p, const CellStep *step, uint32_t row)
     double          by[3];
     uint32_t        count;
     *list = (CellList){call->instances, call->instance_count, false};
-    if (!call->body || work->most_listed - work->listed_count < MAX_LISTED)
+    if (!call->body || work->max_listed - work->listed_count < MAX_LISTED)
         return;
     for (int k = 0; k < 3; k++) {
         view.at[k] = cell_range(&p->ball, call->from[1][k]);
@@ -291,7 +291,7 @@ static double steepest_by_operands(const Pruning *p, const CellStep *step)
 }
 
 /* Returns how fast a step changes without what was steeper. */
-static float least_steepest(const Pruning *p, const CellStep *step)
+static float min_steepest(const Pruning *p, const CellStep *step)
 {
     const double steep = fmax(steepest_by_operands(p, step) * (1 + 1e-6), 1e-30);
     return steep < 1e30 && !(step->steepest > 0 && (double)step->steepest <= steep)
@@ -307,7 +307,7 @@ static CellStep moved_step(Pruning *p, const CellStep *from, CellCall *calls, ui
     for (uint32_t k = 0; k < step.operand_count; k++)
         step.from[k] = moved(p, step.from[k]);
     step.scalars  = scalars_of(&step, p->ball.tape->inputs);
-    step.steepest = least_steepest(p, &step);
+    step.steepest = min_steepest(p, &step);
     if (step.op != LANE_CALL)
         return step;
     CellCall *call = &calls[*call_count];
@@ -378,7 +378,7 @@ static uint32_t add_instance(Pruning *p, CellTape *to, const CellCall *call, uin
         step.scalars     = scalars_of(&step, to->inputs);
         const bool least = is_lesser(step.op) && (step.from[0] == before || step.from[1] == before);
         const uint32_t other = step.from[0] == before ? step.from[1] : step.from[0];
-        step.steepest        = least ? steepest : least_steepest(p, &step);
+        step.steepest        = least ? steepest : min_steepest(p, &step);
         if (least && other >= first &&
             p->work->steps[p->work->step_count + other - first].op != LANE_NUMBER)
             p->work->steps[p->work->step_count + other - first].steepest = steepest;
@@ -395,7 +395,7 @@ static uint32_t add_instances(Pruning *p, CellTape *to, const CellStep *step)
     const CellList         *list     = &p->work->lists[step->from[0]];
     const LaneTape         *body     = &call->call->body->tape;
     const float             steepest = steepest_in_ball(p, step);
-    const InstanceFunction *function = least_of_instances(p->ball.tape->whole, call->call);
+    const InstanceFunction *function = min_of_instances(p->ball.tape->whole, call->call);
     for (size_t i = 0; i < body->scalar_count; i++)
         p->work->body_scalars[i] = add_number(p, to, cell_constant(&call->body->lanes, i));
     uint32_t state = add_number(p, to, cell_number(TYPE_FLOAT, function->states[0].first[0]));

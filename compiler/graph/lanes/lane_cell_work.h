@@ -11,7 +11,7 @@
 /* The instances of a call whose bodies a tape may have, and their steps. */
 enum { MAX_CELL_INSTANCES = 8, MAX_BODY_STEPS = 4096 };
 /* Longer tapes are run block by block: their rows would need much memory. */
-enum { MOST_WIDE_STEPS = 1024 };
+enum { MAX_WIDE_STEPS = 1024 };
 /* Longer lists of instances are not kept, nor are those of more calls. */
 enum { MAX_LISTED = 256, MAX_LISTS = 256 };
 
@@ -57,7 +57,7 @@ struct CellWork {
     CellStep *steps;  /* a stack */
     CellCall *calls;  /* a stack, too */
     uint32_t *listed; /* and one of instances */
-    size_t    step_count, call_count, listed_count, most_listed;
+    size_t    step_count, call_count, listed_count, max_listed;
     /* The slopes in the ball, by step of the tape that is shortened, 0: not known; and the ranges
        then. */
     float    *steepest;
@@ -131,7 +131,7 @@ void cell_find_slopes(const Ball *ball, float *steepest, Range *ranges);
 const InstanceFunction *distance_of_instances(const LaneTape *tape, const LaneCall *call);
 /* Returns the function of a call that takes the least distance of its instances, one after the
    other. */
-const InstanceFunction *least_of_instances(const LaneTape *tape, const LaneCall *call);
+const InstanceFunction *min_of_instances(const LaneTape *tape, const LaneCall *call);
 
 /* Returns how far the point of a call moves at most if its components move so far. */
 double cell_call_moves(const CellCall *call, const double by[3], double point);

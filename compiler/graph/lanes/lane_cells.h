@@ -68,7 +68,7 @@ static inline uint32_t cell_integer(float bits)
     memcpy(&integer, &bits, sizeof integer);
     return integer;
 }
-/* A number as a row of a type holds it, and back. */
+/* Returns a number as a row of a type holds it; cell_value is the inverse. */
 static inline float cell_number(GraphType type, double number)
 {
     return type == TYPE_UINT ? cell_bits((uint32_t)number) : (float)number + 0.0f;

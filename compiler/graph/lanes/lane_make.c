@@ -359,7 +359,7 @@ static LaneBody *make_body(const Tape *tape, uint32_t id, const LaneBody **bodie
 /* Gives bodies rows behind those of the tape.  Returns where they end. */
 static uint32_t place_bodies(const LaneTape *made, const Tape *tape, LaneBody **bodies)
 {
-    uint32_t end = (uint32_t)lane_most_rows(made);
+    uint32_t end = (uint32_t)lane_max_rows(made);
     for (uint32_t id = 0; id < tape->function_count; id++)
         if (bodies[id]) {
             bodies[id]->first_row = end;

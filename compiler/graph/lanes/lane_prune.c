@@ -208,8 +208,8 @@ static double distance_of_boxes(const Box *box, const Range at[3])
 
 /* Finds the instances that may be nearer than the nearest is at most, in the box; false: they are
    not known, or too many. */
-static bool find_least_instances(const Pruning *p, const LaneCall *call, const InstanceTable *table,
-                                 double farthest, uint32_t *instances, uint32_t *count)
+static bool find_min_instances(const Pruning *p, const LaneCall *call, const InstanceTable *table,
+                               double farthest, uint32_t *instances, uint32_t *count)
 {
     Range at[3];
     *count = 0;
@@ -302,7 +302,7 @@ static bool prune_group(Pruning *p, size_t i)
     const InstanceFunction *function = &groups->functions.items[call->body->function];
     const InstanceTable    *table    = &groups->tables.items[call->body->table];
     if (!takes_least(function) || !table->bounds || !isfinite(range.high) ||
-        !find_least_instances(p, call, table, range.high, instances, &count))
+        !find_min_instances(p, call, table, range.high, instances, &count))
         return false;
     uint32_t  state  = lane_steps_number(&p->to, function->states[0].first[0]);
     uint32_t *values = arena_new_array(p->to.arena, uint32_t, LANE_INPUTS + call->body->tape.count);

@@ -64,7 +64,7 @@ enum { ROW_ALIGNMENT = 64 };
 
 size_t lane_work_bytes(const LaneTape *tape)
 {
-    size_t rows = lane_most_rows(tape) > tape->bodies_end ? lane_most_rows(tape) : tape->bodies_end;
+    size_t rows = lane_max_rows(tape) > tape->bodies_end ? lane_max_rows(tape) : tape->bodies_end;
     return rows * LANES * sizeof(double) + ROW_ALIGNMENT;
 }
 

@@ -168,7 +168,7 @@ static inline size_t lane_max_steps(const LaneTape *tape)
 {
     return tape->count + lane_steps_of_calls(tape);
 }
-static inline size_t lane_most_rows(const LaneTape *tape)
+static inline size_t lane_max_rows(const LaneTape *tape)
 {
     return tape->rows + lane_steps_of_calls(tape);
 }
