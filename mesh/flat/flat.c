@@ -227,9 +227,8 @@ static FlatVerdict refine_by_some(Halving *h, double error)
    unresolved. */
 static bool make_round(Halving *h)
 {
-    static const double MAX_PART = 0.125; /* of the largest radius */
-    FlatVerdict         refined  = FLAT_PROVEN, verdict;
-    double              error    = flat_rounds_limit(&h->rounds, MAX_PART) - reserve_of(h->m);
+    FlatVerdict refined = FLAT_PROVEN, verdict;
+    double      error   = h->m->error - reserve_of(h->m);
     flat_rounds_count(&h->rounds);
     if (refine_by_some(h, error) == FLAT_STOPPED)
         return false;

@@ -96,16 +96,6 @@ void flat_rounds_note_curves(FlatRounds *rounds, uint32_t table, double length, 
     }
 }
 
-double flat_rounds_limit(FlatRounds *rounds, double part)
-{
-    double largest = 0;
-    for (size_t i = 0; i < rounds->list.count; i++)
-        largest = rounds->list.items[i].curves ? INFINITY
-                                               : max2(largest, rounds->list.items[i].radius);
-    rounds->error = min2(rounds->error, part * largest);
-    return rounds->error;
-}
-
 /* Returns the part of the error that a round may take, over its radius. */
 static double part_of(const FlatRound *round, double error)
 {

@@ -51,8 +51,6 @@ void flat_rounds_note(FlatRounds *rounds, uint32_t kin, double radius, bool shar
 /* Notes that the surface has curves of an outline; a length of 1 in its plane is at most `length`
    in the scene. */
 void flat_rounds_note_curves(FlatRounds *rounds, uint32_t table, double length, bool shared);
-/* Lowers the error to this part of the largest radius, unless there are curves, and returns it. */
-double flat_rounds_limit(FlatRounds *rounds, double part);
 /* Finds the numbers of sides, after all are noted. */
 void flat_rounds_count(FlatRounds *rounds);
 /* Makes those finer that are blamed; returns false if all are as fine as is of use. */
