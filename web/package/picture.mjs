@@ -8,7 +8,7 @@ import { compilePasses, compileResolve, passes } from './programs.mjs';
 
 const tileTime = 20, firstTime = 40;   // milliseconds: of a tile, and of a picture while something moves
 const levels = [1, 2, 4, 8, 16, 32, 64]; // sides of the pixels
-const smallest = 16, bands = 32;        // pixels of a tile; rows of which the costs are known together
+const smallest = 64, bands = 32;        // pixels of a tile; rows of which the costs are known together
 const firstTiles = 4;                  // of a first level that goes on although something newer has come
 const lightsAt = 5120, inputWidth = 64; // the row of the first light (blocks.h); the width of that texture
 const textureWidth = 4096;
@@ -323,7 +323,7 @@ export class Picture {
         }
         if (at.x === 0)
             at.height = this.#heightAt(at.y, sums);
-        const width = Math.min(Math.max(Math.floor(tileTime / this.#costOf(at.y, at.height, sums) / at.height), smallest), sums.width - at.x);
+        const width = Math.min(Math.max(Math.floor(Math.max(tileTime, 2 * this.overhead) / this.#costOf(at.y, at.height, sums) / at.height), smallest), sums.width - at.x);
         const took = this.#timeTile(job, at.x, at.y, width, at.height), pixels = width * at.height;
         this.#learn(job, Math.max(took - this.overhead, 0.2 * took) / pixels);
         job.spent += took;
@@ -355,8 +355,8 @@ export class Picture {
     #learn({ at, sums, found }, cost) {
         const first = bandOf(at.y, sums), last = bandOf(at.y + at.height - 1, sums);
         for (let band = first; band <= last; band++) {
-            found[band] = Math.max(found[band], cost);
-            this.known[band] = Number.isFinite(this.known[band]) ? Math.max(this.known[band], cost) : Infinity;
+            found[band] = found[band] ? risen(found[band], cost) : cost;
+            this.known[band] = Number.isFinite(this.known[band]) ? risen(this.known[band], cost) : Infinity;
         }
         if (at.y + at.height >= sums.height)
             this.known = found.map((own, band) => own || this.known[band]);
@@ -492,6 +492,8 @@ export class Picture {
     }
 }
 
+// What is dearer counts at once, what is cheaper by half: one tile may have waited for others.
+const risen = (known, cost) => (cost > known ? cost : (known + cost) / 2);
 const bandOf = (row, { height }) => Math.floor(bands * row / height);
 const freePasses = programs => passes.forEach(pass => programs[pass].free());
 
