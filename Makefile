@@ -27,6 +27,7 @@
 # make playground the playground, a static folder in build/playground/ (docs/playground.md); serve: shows it at localhost
 # make kernels    the runtime's shaders as WGSL, in build/kernels (web/tracer/README.md), with packages of npm
 # make vscode     the extension for VS Code, in build/vscode, with packages of npm
+# make dist       the sources as one file; make deb: packages for Debian, both in build/dist (docs/packaging.md)
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
 B       ?= build
@@ -232,6 +233,7 @@ include web/tracer/tracer.mk
 include tests/tests.mk
 include bench/bench.mk
 include tools/install.mk
+include tools/packages.mk
 
 # ---- what a newcomer types ----
 demo: deps

@@ -1,6 +1,6 @@
 # install.mk: `make install` and `make uninstall`: the command, the library with its headers and
-# krs.pc, pages of the manual, and completion for bash, zsh and fish.  PREFIX says where they
-# belong, LIBDIR where libraries do below it, DESTDIR where they are put for now, as for a package.
+# krs.pc, pages of the manual, completion for bash, zsh and fish, and what desktops know of
+# scenes (tools/desktop).  PREFIX says where they belong, LIBDIR where libraries do below it, DESTDIR where they are put for now, as for a package.
 
 PREFIX  ?= /usr/local
 LIBDIR  ?= lib
@@ -13,6 +13,8 @@ OLD_NAMES = krs.h krs_vulkan.h krs_camera.h
 INSTALLED = bin/krs $(LIBDIR)/libkrs.a $(LIBDIR)/$(SHARED) $(LIBDIR)/$(SONAME) $(LIBDIR)/libkrs.so $(LIBDIR)/pkgconfig/krs.pc $(PUBLIC) $(OLD_NAMES:%=include/%) \
             share/bash-completion/completions/krs share/zsh/site-functions/_krs \
             share/fish/vendor_completions.d/krs.fish share/man/man1/krs.1 \
+            share/applications/krs.desktop share/icons/hicolor/scalable/apps/krs.svg share/mime/packages/krs.xml \
+            share/thumbnailers/krs.thumbnailer share/metainfo/krs.metainfo.xml \
             $(COMMANDS:%=share/man/man1/krs-%.1) $(if $(VDB),lib/krs/krs-vdb.so)
 
 define KRS_PC
@@ -48,6 +50,11 @@ install: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
 	@for command in $(COMMANDS); do \
 	    $(B)/krs --manual $$command >$(INTO)/share/man/man1/krs-$$command.1 || exit 1; \
 	done
+	@cd tools/desktop && install -m 644 krs.desktop $(INTO)/share/applications
+	@cd tools/desktop && install -m 644 krs.svg $(INTO)/share/icons/hicolor/scalable/apps
+	@cd tools/desktop && install -m 644 krs.mime.xml $(INTO)/share/mime/packages/krs.xml
+	@cd tools/desktop && install -m 644 krs.thumbnailer $(INTO)/share/thumbnailers
+	@cd tools/desktop && install -m 644 krs.metainfo.xml $(INTO)/share/metainfo
 	@echo "installed in $(INTO)"
 uninstall:
 	@rm -f $(INSTALLED:%=$(INTO)/%)

@@ -25,6 +25,10 @@ commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/options/co
     done
     (cd "$root" && find include/krs -type f) | sed 's,^,./usr/,'
     for command in $commands; do echo "./usr/share/man/man1/krs-$command.1"; done
+    for file in applications/krs.desktop icons/hicolor/scalable/apps/krs.svg metainfo/krs.metainfo.xml \
+        mime/packages/krs.xml thumbnailers/krs.thumbnailer; do
+        echo "./usr/share/$file"
+    done
     [ ! -e "$build/krs-vdb.so" ] || echo ./usr/lib/krs/krs-vdb.so
 } | sort >wanted
 cmp -s files wanted

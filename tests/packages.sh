@@ -1,0 +1,65 @@
+#!/bin/sh
+# packages.sh FOLDER: tries Debian's packages, which lie there, as their users would: lintian reads them; in bare systems of
+# Debian 12 and 13, of which only this machine's has to take them, they are installed, used and removed.
+# Bare systems come from the servers of packages, by mmdebstrap; where that or lintian is missing, its part is skipped.
+folder=$(cd "$1" && pwd) || exit 1
+cd "$(dirname "$0")/.." || exit 1
+passed=0 failed=0 skipped=0
+result() { # status, what
+    if [ "$1" -eq 0 ]; then
+        passed=$((passed + 1)) && echo "ok $((passed + failed)) - $2"
+    else
+        failed=$((failed + 1)) && echo "not ok $((passed + failed)) - $2"
+    fi
+}
+skip() { # what, why
+    skipped=$((skipped + 1))
+    echo "ok - $1 # SKIP $2"
+}
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+
+if command -v lintian >/dev/null; then
+    # They are no upload to Debian, which would close a bug there.
+    lintian --fail-on error,warning --suppress-tags initial-upload-closes-no-bugs "$folder"/*.changes >"$work/lintian" 2>&1
+    result $? "lintian finds neither errors nor warnings"
+    grep '^[EW]:' "$work/lintian"
+else
+    skip "lintian finds neither errors nor warnings" "no lintian"
+fi
+
+# Another suite has other versions of libraries: there the packages would have to be built anew.
+for suite in bookworm trixie; do
+    what="$suite: packages are installed, work, and leave nothing"
+    if ! command -v mmdebstrap >/dev/null; then
+        skip "$what" "no mmdebstrap"
+        continue
+    fi
+    if [ "$suite" != "$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)" ]; then
+        skip "$what" "they are built for another system"
+        continue
+    fi
+    cat >"$work/try" <<'END'
+set -e
+export DEBIAN_FRONTEND=noninteractive AUTOPKGTEST_TMP=/tmp/scenes
+left() { find / -xdev \( -path /proc -o -path /tmp -o -path /packages -o -path /var/lib/apt \) -prune -o -name '*krs*' -print | sort; }
+left >/tmp/before
+apt-get install -y -qq --no-install-recommends /packages/*.deb mesa-vulkan-drivers gcc libc6-dev pkgconf >/dev/null
+for test in render library python; do
+    mkdir -p "$AUTOPKGTEST_TMP"
+    /packages/tests/$test
+    rm -rf "$AUTOPKGTEST_TMP"
+done
+apt-get purge -y -qq krs libkrs0.2 libkrs-dev python3-krs krs-doc >/dev/null
+left >/tmp/after
+cmp /tmp/before /tmp/after
+END
+    mkdir -p "$work/packages" && cp -r "$folder"/*.deb debian/tests "$work/packages"
+    # shellcheck disable=SC2016 # mmdebstrap gives $1 to the hook
+    mmdebstrap --variant=apt --customize-hook="copy-in $work/packages /" --customize-hook="copy-in $work/try /tmp" \
+        --customize-hook='chroot "$1" sh /tmp/try' "$suite" /dev/null >"$work/log" 2>&1
+    status=$?
+    [ $status -eq 0 ] || tail -n 20 "$work/log"
+    result $status "$what"
+done
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ]
