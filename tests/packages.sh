@@ -40,7 +40,7 @@ for suite in bookworm trixie; do
     fi
     cat >"$work/try" <<'END'
 set -e
-export DEBIAN_FRONTEND=noninteractive AUTOPKGTEST_TMP=/tmp/scenes
+export DEBIAN_FRONTEND=noninteractive AUTOPKGTEST_TMP=/tmp/scenes XDG_CACHE_HOME=/tmp/caches
 left() { find / -xdev \( -path /proc -o -path /tmp -o -path /packages -o -path /var/lib/apt \) -prune -o -name '*krs*' -print | sort; }
 left >/tmp/before
 apt-get install -y -qq --no-install-recommends /packages/*.deb mesa-vulkan-drivers gcc libc6-dev pkgconf >/dev/null
@@ -51,7 +51,7 @@ for test in render library python; do
 done
 apt-get purge -y -qq krs libkrs0.2 libkrs-dev python3-krs krs-doc >/dev/null
 left >/tmp/after
-cmp /tmp/before /tmp/after
+diff /tmp/before /tmp/after
 END
     mkdir -p "$work/packages" && cp -r "$folder"/*.deb debian/tests "$work/packages"
     # shellcheck disable=SC2016 # mmdebstrap gives $1 to the hook
