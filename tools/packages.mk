@@ -12,5 +12,5 @@ deb: dist
 	@cd $(B)/dist/$(DIST) && dpkg-buildpackage -us -uc >../build.log 2>&1 || { tail -n 30 ../build.log; exit 1; }
 	@cd $(B)/dist && ls ./*.deb
 test-packages: deb
-	@tests/packages.sh $(B)/dist
+	@tools/try-packages.sh $(B)/dist
 .PHONY: dist deb test-packages

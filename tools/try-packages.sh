@@ -1,5 +1,5 @@
 #!/bin/sh
-# packages.sh FOLDER: tries Debian's packages, which lie there, as their users would: lintian reads them; in bare systems of
+# try-packages.sh FOLDER: tries Debian's packages, which lie there, as their users would: lintian reads them; in bare systems of
 # Debian 12 and 13, of which only this machine's has to take them, they are installed, used and removed.
 # Bare systems come from the servers of packages, by mmdebstrap; where that or lintian is missing, its part is skipped.
 folder=$(cd "$1" && pwd) || exit 1
