@@ -18,8 +18,7 @@
 #include <krs/camera.h>
 #include <krs/vulkan.h>
 
-/* The samples of a picture, and the factor by which each of its sides has fewer pixels while
-   something moves. */
+/* While something moves, each side of a picture has fewer pixels by the factor COARSE. */
 enum { SAMPLES = 8, COARSE = 4 };
 
 /* A scene on a device.  There are two: one is shown, one compiles; then they change places. */
