@@ -182,7 +182,7 @@ static void put(float *to, size_t number, float value)
     };
     const bool  identity = number >= FIRST_IDENTITY && number < FIRST_MATERIAL;
     const bool  whole    = identity && identities[number - FIRST_IDENTITY] == TYPE_FLOAT;
-    const float shown = whole ? cell_bits(value > 0 && value < 4294967040.0f ? (uint32_t)value : 0)
+    const float shown = whole ? lane_bits(value > 0 && value < 4294967040.0f ? (uint32_t)value : 0)
                               : value;
     memcpy(to, &shown, sizeof *to);
 }

@@ -158,7 +158,7 @@ static void read_instance(const CellBody *body, const NodeValue *values, uint32_
         const CellColumn *column = &body->columns[k];
         float            *row    = inner + (size_t)column->row * CELL_LANES;
         if (!column->nodes && column->column == NODE_NONE)
-            fill(row, cell_bits(instance));
+            fill(row, lane_bits(instance));
         else
             fill(row, (float)(column->nodes ? values[column->nodes[instance]].v[0]
                                             : numbers[column->column]) +
@@ -284,10 +284,10 @@ bool cell_read_rows(const Graph *graph, const Expr *row, const NodeValue *values
     const uint32_t       column = row_column(id);
     const Node          *nodes  = column_nodes(graph->instances, table, column);
     for (int i = 0; i < CELL_LANES; i++)
-        if (cell_integer(instances[i]) >= table->rows)
+        if (lane_bits_of(instances[i]) >= table->rows)
             return false;
     for (int i = 0; i < CELL_LANES; i++) {
-        const size_t instance = cell_integer(instances[i]);
+        const size_t instance = lane_bits_of(instances[i]);
         to[i]                 = (float)(nodes ? values[nodes[instance]].v[0]
                                               : table->numbers[instance * table->columns + column]);
     }

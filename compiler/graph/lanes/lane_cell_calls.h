@@ -21,27 +21,27 @@ static inline uint32_t lane_scramble(uint32_t x)
 
 static inline float lane_push_id(float a, float b)
 {
-    return cell_bits(cell_integer(a) * 2 + (b != 0));
+    return lane_bits(lane_bits_of(a) * 2 + (b != 0));
 }
 
 static inline float lane_hash_id(float a, float b)
 {
-    return cell_bits(lane_scramble(cell_integer(a) + (b != 0 ? 0x9e3779b9u : 0x7f4a7c15u)));
+    return lane_bits(lane_scramble(lane_bits_of(a) + (b != 0 ? 0x9e3779b9u : 0x7f4a7c15u)));
 }
 
 static inline float lane_join_id(float a, float b)
 {
-    return cell_bits(lane_scramble(lane_scramble(cell_integer(a)) + cell_integer(b)));
+    return lane_bits(lane_scramble(lane_scramble(lane_bits_of(a)) + lane_bits_of(b)));
 }
 
 static inline float lane_to_uint(float a)
 {
-    return cell_bits(a > 0 && a < 4294967296.0f ? (uint32_t)a : 0);
+    return lane_bits(a > 0 && a < 4294967296.0f ? (uint32_t)a : 0);
 }
 
 static inline float lane_id_unit(float a)
 {
-    return (float)(int32_t)(lane_scramble(cell_integer(a)) >> 8) * (1.0f / 16777216);
+    return (float)(int32_t)(lane_scramble(lane_bits_of(a)) >> 8) * (1.0f / 16777216);
 }
 
 /* ---- noise ---- */

@@ -331,7 +331,7 @@ static uint32_t add_step(Pruning *p, CellTape *to, CellStep step)
 
 static uint32_t add_number(Pruning *p, CellTape *to, float number)
 {
-    const CellStep step = {.op = LANE_NUMBER, .from = {cell_integer(number)}};
+    const CellStep step = {.op = LANE_NUMBER, .from = {lane_bits_of(number)}};
     return add_step(p, to, step);
 }
 
@@ -341,7 +341,7 @@ static float number_of_instance(const Pruning *p, const InstanceTable *table, co
 {
     const Instances *groups = p->ball.tape->whole->tape->graph->instances;
     if (step->op == LANE_INSTANCE)
-        return cell_bits(instance);
+        return lane_bits(instance);
     const Node *nodes = column_nodes(groups, table, step->operands[0]);
     return cell_number(
         TYPE_FLOAT, nodes ? p->work->values[nodes[instance]].v[0]

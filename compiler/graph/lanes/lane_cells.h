@@ -19,8 +19,7 @@
 #ifndef KRS_LANE_CELLS_H
 #define KRS_LANE_CELLS_H
 
-#include <string.h>
-
+#include "compiler/graph/lanes/lane_math.h"
 #include "compiler/graph/lanes/lanes.h"
 
 enum { CELL_LANES = 16, CELL_BLOCKS = 8, CELL_WIDE = CELL_BLOCKS * CELL_LANES };
@@ -55,27 +54,15 @@ typedef struct CellTape {
     float           slope;  /* how fast the distance changes in the ball, at most; no more than 1 */
 } CellTape;
 
-/* Rows of integers, as numbers of copies are, hold their bits, since a float is exact up to 2^24 alone. */
-static inline float cell_bits(uint32_t integer)
-{
-    float bits;
-    memcpy(&bits, &integer, sizeof bits);
-    return bits;
-}
-static inline uint32_t cell_integer(float bits)
-{
-    uint32_t integer;
-    memcpy(&integer, &bits, sizeof integer);
-    return integer;
-}
-/* Returns a number as a row of a type holds it; cell_value is the inverse. */
+/* Returns a number as a row of a type holds it; cell_value is the inverse.  Rows of integers, as numbers of
+   copies are, hold their bits, since a float is exact up to 2^24 alone. */
 static inline float cell_number(GraphType type, double number)
 {
-    return type == TYPE_UINT ? cell_bits((uint32_t)number) : (float)number + 0.0f;
+    return type == TYPE_UINT ? lane_bits((uint32_t)number) : (float)number + 0.0f;
 }
 static inline double cell_value(GraphType type, float number)
 {
-    return type == TYPE_UINT ? (double)cell_integer(number) : (double)number;
+    return type == TYPE_UINT ? (double)lane_bits_of(number) : (double)number;
 }
 
 /* The work of one thread; cell_work_new makes it. */

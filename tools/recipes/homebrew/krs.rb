@@ -1,8 +1,8 @@
-# Untested.  A formula for Homebrew on Linux: put krs-0.2.0.tar.gz of `make dist` where `url` says.
+# Untested.  A formula for Homebrew on Linux: put krs-0.2.0.tar.gz of `make dist` beside it.
 class Krs < Formula
   desc "Compiler and renderer of scenes of implicit surfaces"
   license "MIT"
-  url "file:///tmp/krs-0.2.0.tar.gz"
+  url "file://#{__dir__}/krs-0.2.0.tar.gz"
   version "0.2.0"
 
   depends_on "pkgconf" => :build
