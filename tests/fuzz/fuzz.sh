@@ -6,9 +6,10 @@ cd "$(dirname "$0")/../.." || exit 1
 build=${B:-build}
 corpus=$(mktemp -d) && trap 'rm -rf "$corpus"' EXIT
 mkdir "$corpus/seeds" "$corpus/found"
-# A seed of thousands of parts takes longer under the sanitizers than a finding may.
+# A seed of thousands of parts takes the whole time under the sanitizers: nothing would be fuzzed.
 for scene in examples/*.krs compiler/library/*.krs tests/errors/*.krs; do
     case $scene in *-town.krs | *-bath.krs) continue ;; esac
+    grep -qE '\.\.[0-9]{4}' "$scene" && continue
     cp "$scene" "$corpus/seeds/$(echo "$scene" | tr / _)"
 done
 failed=0
@@ -27,7 +28,7 @@ rm -f "$corpus"/found/*
 fuzz() { # harness, seconds; what it says goes to a file
     cp -r "$corpus/seeds" "$corpus/$1"
     mkdir "$corpus/found/$1"
-    if "$build/fuzz/tests/fuzz/$1" -max_total_time="$2" -timeout=20 -rss_limit_mb=4096 \
+    if "$build/fuzz/tests/fuzz/$1" -max_total_time="$2" -timeout=120 -rss_limit_mb=4096 \
         -max_len=4096 -artifact_prefix="$corpus/found/$1/" "$corpus/$1" >"$corpus/$1.log" 2>&1; then
         runs=$(sed -n 's/^Done \([0-9]*\) runs.*/\1/p' "$corpus/$1.log")
         echo "ok - $1: $runs runs without a finding"
