@@ -31,7 +31,8 @@ typedef enum ExportLanguage {
     EXPORT_IN_MSL,
     EXPORT_IN_HLSL_PART,   /* parameters are a global that a shader fills */
     EXPORT_IN_HLSL_STRUCT, /* all is in a struct, for a text within a function */
-    EXPORT_IN_GDSHADER
+    EXPORT_IN_GDSHADER,
+    EXPORT_IN_OSL
 } ExportLanguage;
 
 /* The properties of a target, as its row says them. */

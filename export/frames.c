@@ -16,6 +16,7 @@ typedef struct Words {
 
 typedef struct Frames {
     Text       *to;
+    const char *given;    /* parameters of krs_prepare */
     const char *prepared; /* statements that fill slots of parameters in */
     size_t      slots;
     Text        members;
@@ -97,8 +98,8 @@ static void add_function(Frames *f, const char *from, const char *end)
         add_frame(f);
         const char *last = strrchr(body.bytes, '}');
         text_format(f->to,
-                    "KrsFrame krs_prepare()\n{\n    KrsFrame krs;\n%s%.*s    return krs;\n}\n",
-                    f->prepared, (int)(last - body.bytes - 1), body.bytes + 1);
+                    "KrsFrame krs_prepare(%s)\n{\n    KrsFrame krs;\n%s%.*s    return krs;\n}\n",
+                    f->given, f->prepared, (int)(last - body.bytes - 1), body.bytes + 1);
         return;
     }
     text_add_bytes(f->to, from, (size_t)(open + 1 - from));
@@ -140,9 +141,10 @@ static bool begins(const char *from, const char *word)
     return strncmp(from, word, strlen(word)) == 0;
 }
 
-void add_without_globals(Text *to, const char *text, size_t slots, const char *prepared)
+void add_without_globals(Text *to, const char *text, size_t slots, const char *given,
+                         const char *prepared)
 {
-    Frames frames        = {.to = to, .prepared = prepared, .slots = slots};
+    Frames frames        = {.to = to, .given = given, .prepared = prepared, .slots = slots};
     frames.members.arena = to->arena;
     const char *comment  = NULL;  /* of what comes */
     bool        blank    = false; /* a line before it */

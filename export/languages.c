@@ -169,7 +169,19 @@ static KrsStatus make_gdshader(const Export *export, Text *to, Text *why)
     (void)why;
     Text prepared = {.arena = to->arena};
     set_godot_parameters(&prepared, export);
-    add_without_globals(to, export->text, krs_parameter_slots(export->scene), prepared.bytes);
+    add_without_globals(to, export->text, krs_parameter_slots(export->scene), "", prepared.bytes);
+    return KRS_OK;
+}
+
+static KrsStatus make_osl(const Export *export, Text *to, Text *why)
+{
+    (void)why;
+    Text whole = {.arena = to->arena}, given = whole, prepared = whole;
+    add_osl_given(&given, export);
+    set_osl_parameters(&prepared, export);
+    add_without_globals(&whole, export->text, krs_parameter_slots(export->scene), given.bytes,
+                        prepared.bytes);
+    add_osl(to, whole.bytes);
     return KRS_OK;
 }
 
@@ -190,6 +202,7 @@ static const struct {
     [EXPORT_IN_HLSL_PART]   = {KRS_TARGET_GLSL, true, cut_block, make_hlsl_part},
     [EXPORT_IN_HLSL_STRUCT] = {KRS_TARGET_GLSL, true, cut_block, make_hlsl_struct},
     [EXPORT_IN_GDSHADER]    = {KRS_TARGET_ESSL, true, cut_block, make_gdshader},
+    [EXPORT_IN_OSL]         = {KRS_TARGET_ESSL, false, cut_block, make_osl},
 };
 
 /* Fills the template that another language is made of, in GLSL. */

@@ -66,9 +66,10 @@ void add_march(Text *to, const Export *export);
 
 /* ---- frames.c ---- */
 /* Adds a text without globals that change, as Godot wants it: what is found once for a picture is a struct, KrsFrame, that
-   krs_prepare returns, and that functions which need it are given.  `prepared` are statements that fill its slots in.
-   Prototypes are left out. */
-void add_without_globals(Text *to, const char *text, size_t slots, const char *prepared);
+   krs_prepare returns, and that functions which need it are given.  `prepared` are statements that fill its slots in, perhaps
+   from parameters that krs_prepare is `given`.  Prototypes are left out. */
+void add_without_globals(Text *to, const char *text, size_t slots, const char *given,
+                         const char *prepared);
 
 /* ---- godot.c ---- */
 void add_godot_uniforms(Text *to, const Export *export);
@@ -94,6 +95,21 @@ void add_unity_center(Text *to, const Export *export);
 void add_unity_half(Text *to, const Export *export);
 void add_unreal_inputs(Text *to, const Export *export);
 void add_unreal_parameters(Text *to, const Export *export);
+
+/* ---- osl.c ---- */
+/* Adds a text in ESSL without globals in the Open Shading Language. */
+void add_osl(Text *to, const char *text);
+
+/* ---- blender.c ---- */
+void add_osl_given(Text *to, const Export *export);
+void add_osl_passed(Text *to, const Export *export);
+void add_osl_values(Text *to, const Export *export);
+void set_osl_parameters(Text *to, const Export *export);
+void add_osl_parameters(Text *to, const Export *export);
+void add_seconds(Text *to, const Export *export);
+void add_python_camera(Text *to, const Export *export);
+void add_python_lights(Text *to, const Export *export);
+void add_python_sky(Text *to, const Export *export);
 
 /* ---- cross.c ---- */
 /* Adds GLSL in another language, by spirv-cross.  KRS_BAD_ARGUMENT: `why` says what is missing. */

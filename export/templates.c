@@ -72,6 +72,7 @@ static void add_slots(Text *to, const Export *export)
     text_format(to, "%zu", krs_parameter_slots(export->scene));
 }
 static void add_scene(Text *to, const Export *export) { text_add(to, export->text); }
+static void add_prelude(Text *to, const Export *export) { export_fill(to, export, "prelude.osl"); }
 static void add_normal(Text *to, const Export *export) { export_fill(to, export, "normal.glsl"); }
 static void add_trace(Text *to, const Export *export) { export_fill(to, export, "trace.glsl"); }
 static void add_tracer(Text *to, const Export *export)
@@ -140,7 +141,16 @@ static const struct Piece {
               {"unreal_inputs", add_unreal_inputs},
               {"unreal_parameters", add_unreal_parameters},
               {"godot_uniforms", add_godot_uniforms},
-              {"godot_nodes", add_godot_nodes}};
+              {"godot_nodes", add_godot_nodes},
+              {"prelude", add_prelude},
+              {"osl_given", add_osl_given},
+              {"osl_passed", add_osl_passed},
+              {"osl_values", add_osl_values},
+              {"osl_parameters", add_osl_parameters},
+              {"seconds", add_seconds},
+              {"python_camera", add_python_camera},
+              {"python_lights", add_python_lights},
+              {"python_sky", add_python_sky}};
 
 static const struct Piece *find_piece(const char *word, size_t length)
 {

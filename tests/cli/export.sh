@@ -1,7 +1,7 @@
 #!/bin/sh
 # export.sh: `krs export`: files are complete shaders, numbers of the scene are in them, and what cannot be is refused.
 . "$(dirname "$0")/common.sh"
-plan 36
+plan 44
 
 cat >ball.krs <<'END'
 param radius = 0.5 in [0.1, 1];
@@ -169,9 +169,83 @@ else
     skip "a compiler of C# takes the script for Unity" "no mcs, or no file"
 fi
 
+# ---- Blender: OSL by a compiler of C++, with a stand-in for what that language has ----
+
+# Makes a program of NAME.osl that says of each point distance, normal, colour and roughness, and where its steps end: what the shader
+# is given is a variable then.
+osl_program() { # name
+    awk '/^shader / { head = 1; next }
+         head && /^\{/ { print "void shade()"; head = 0 }
+         head { sub(/ *\[\[.*\]\]/, ""); sub(/ *\/\/.*/, ""); sub(/^ *(output )?/, ""); sub(/[,)]$/, ";") }
+         { print }' "$1.osl" | sed -E 's/output ([A-Za-z0-9]+) ([a-z0-9]+)/\1 \&\2/g' >"$1.cc"
+    cat >>"$1.cc" <<'END'
+int main()
+{
+    vector way;
+    while (scanf("%f %f %f %d", &P.x, &P.z, &P.y, &Steps) == 4) {
+        P.y = -P.y;
+        shade();
+        way = P + Displacement;
+        printf("%.7g %.3f %.3f %.3f  %.3f %.3f %.3f %.3f  %.3f %.3f %.3f\n", Distance, Normal.x, Normal.z, Normal.y, Color.x, Color.y, Color.z, Roughness,
+               way.x, way.z, way.y);
+    }
+}
+END
+    "${CXX:-g++}" -std=c++20 -w -O0 -fwrapv -ffp-contract=off -fsingle-precision-constant -include "$root/tests/cli/export_osl.h" -o "$1" "$1.cc"
+}
+# Counts the lines of out whose distance is that of the command.
+equal_distances() {
+    paste -d' ' out truth | awk '{ away = $1 - $12; size = 1 + ($12 < 0 ? -$12 : $12); equal += away * away <= 1e-8 * size * size } END { print equal + 0 }'
+}
+run export ball.krs --to blender-osl
+[ "$status" -eq 0 ] && head -n 1 ball.osl | grep -q untested && head -n 1 ball.blender.py | grep -q untested &&
+    grep -q 'float param_radius = 0.5 \[\[ float min = 0.1, float max = 1.0 \]\]' ball.osl && grep -q 'color param_tint = color(1.0, 0.21' ball.osl
+result $? "a shader and a script for Blender are written, with parameters and their ranges"
+osl_program ball >out 2>err && printf '%s\n' "0.3 0.6 0.8 0" "0.3 0.6 0.8 8" | ./ball >out 2>err
+sed 's/-0.000/0.000/g' out >plain
+cat >wanted <<'END'
+0.5 0.000 0.600 -0.800  1.000 0.216 0.000 0.600  0.300 0.600 -0.800
+0.5 0.000 0.600 -0.800  1.000 0.216 0.000 0.600  0.300 0.300 -0.400
+END
+cmp -s plain wanted
+result $? "it has distance, normal and colour beside a ball, and the place on it, with z up"
+awk 'BEGIN { srand(7); for (i = 0; i < 200; i++) printf "%.3f %.3f %.3f\n", 8 * rand() - 4, 6 * rand() - 3, 8 * rand() - 4 }' >places
+for scene in 12-fractals 23-lighthouse; do
+    run export "$root/examples/$scene.krs" --to blender-osl -o $scene.osl
+    "$krs" query --quiet "$root/examples/$scene.krs" <places >truth 2>err
+    osl_program $scene >out 2>err && sed 's/$/ 0/' places | ./$scene >out 2>err
+    [ "$(equal_distances)" -eq 200 ]
+    result $? "$scene has the distances of \`krs query\` there"
+done
+sed 's/away = krs_distance/away = 1.001 * krs_distance/' 23-lighthouse.osl >wrong.osl
+osl_program wrong >out 2>err && sed 's/$/ 0/' places | ./wrong >out 2>err
+[ "$(wc -l <out)" -eq 200 ] && [ "$(equal_distances)" -lt 150 ]
+result $? "others would be seen"
+if command -v oslc >/dev/null; then
+    oslc -q -o ball.oso ball.osl >out 2>err && oslc -q -o 12-fractals.oso 12-fractals.osl >>out 2>>err
+    result $? "oslc compiles shaders"
+else
+    skip "oslc compiles shaders" "no oslc"
+fi
+python3 -m py_compile ball.blender.py >out 2>err
+result $? "Python reads the script"
+if command -v blender >/dev/null; then
+    "$krs" mesh ball.krs -o ball.glb --quiet --error 0.02
+    cat >asked.py <<'END'
+import bpy
+print([thing.name for thing in sorted(bpy.context.scene.objects, key=lambda thing: thing.name)],
+      [round(x, 1) for x in bpy.data.objects["ball"].dimensions], [round(x, 1) for x in bpy.context.scene.camera.location])
+END
+    blender -b --factory-startup --python-expr "import numpy; numpy.bool = bool" --python ball.blender.py --python asked.py >out 2>err
+    grep -qF "['Camera.001', 'Light.001', 'ball'] [1.0, 1.0, 1.0] [0.0, -4.0, 0.0]" out
+    result $? "Blender builds its scene"
+else
+    skip "Blender builds its scene" "no blender"
+fi
+
 run export ball.krs
 said 2 "--to shadertoy" "what for must be said"
 run export ball.krs --to blender
-said 2 "shadertoy, three, glsl, essl, wgsl, hlsl, msl, godot, unity or unreal" "other programs are told"
+said 2 "shadertoy, three, glsl, essl, wgsl, hlsl, msl, godot, unity, unreal or blender-osl" "other programs are told"
 run export ball.krs --to three -o missing/folder/x.mjs
 ended 73 "a folder that is not there is told"
