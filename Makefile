@@ -84,6 +84,11 @@ MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) \
                                        shade.comp-SURFACES-MIRRORS-MIXED_RAYS-LAYERS.spv)
 # lavapipe reads the frame as texels (frame.glsl).
 MODULES  += $(MODULES:%.spv=%-FRAME_TEXELS.spv)
+# Lanes draw first pictures there, of scenes with a lens as well.
+MODULES  += $(patsubst %,$(B)/modules/%-PANORAMIC-LENS-FRAME_TEXELS.spv, \
+                       background.comp unproven.comp penumbrae.comp shadow.comp occlusion.comp aim.comp arrive.comp \
+                       aim.comp-MIXED_RAYS arrive.comp-MIXED_RAYS \
+                       shade.comp-SURFACES shade.comp-SURFACES-MIRRORS-MIXED_RAYS)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
 
 # WERROR=1 makes an error of each warning: for developers, `make test` and CI.  Compilers of users are newer.

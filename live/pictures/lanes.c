@@ -23,10 +23,7 @@ void lanes_close(Lanes *lanes)
     *lanes = (Lanes){0};
 }
 
-bool lanes_meet(const Needs *needs)
-{
-    return !needs->paths && needs->lens == 0 && needs->zones == 0 && !needs->points;
-}
+bool lanes_meet(const Needs *needs) { return !needs->paths && needs->zones == 0 && !needs->points; }
 
 static KrsStatus prepare(Lanes *lanes, const View *view, double budget,
                          KrsProgressCallback *compiling, void *user)

@@ -61,8 +61,9 @@ struct KrsRenderer {
     SetLayout      frame_layout; /* set 1: what frame.glsl declares */
     Handle         layout;       /* shared by all shaders */
     /* Each is made when it is needed, with the shaders of the first scene that needs it. */
-    Shader   pixels[RAY_KINDS][PIXEL_SHADERS];
-    Shader   aims[2], arrivals[2];  /* aim.comp and arrive.comp; [1]: paths have such rays, too */
+    Shader pixels[RAY_KINDS][PIXEL_SHADERS];
+    /* aim.comp and arrive.comp, for rays of cameras; [1]: paths have such rays, too. */
+    Shader   aims[RAYS_OF_LISTS][2], arrivals[RAYS_OF_LISTS][2];
     Shader   limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Shader   escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
     Shader   escapes_to_plate;      /* the same for paths that may meet a plate */

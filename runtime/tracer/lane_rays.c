@@ -11,6 +11,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "runtime/tracer/lane_cameras.h"
 #include "runtime/tracer/lane_deal.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/rendering.h"
@@ -38,10 +39,6 @@ const char *lane_rays_refuse(const Job *job)
         return "the integrator is not `preview`";
     if (job->rays)
         return "there are rays of the caller";
-    if (job->view.camera.projection == KRS_PANORAMA)
-        return "the camera is a panorama";
-    if (r->rays != RAYS_OF_CAMERAS)
-        return "a camera of the scene is a panorama, or has a lens or a shift";
     if (r->program->media)
         return "light goes through something";
     if (rebased)
@@ -68,6 +65,7 @@ typedef struct Slice {
     const Job       *job;
     RayField        *field;
     const WorkBlock *work;
+    CameraRays       rays;
     const uint32_t  *slots;   /* of pixels whose paths go on */
     FrameBlock       box;     /* around what is marched */
     uint32_t across, tile[2]; /* of all tiles: in a row, and the first one's column and row */
@@ -100,24 +98,15 @@ static bool find_pixel(const WorkBlock *work, Corner corner, uint32_t ray, uint3
            pixel[1] < work->extent[1];
 }
 
-/* Aims a ray as find_ray_of_picture of frame.glsl does. */
-static void aim(const Job *job, const float at[2], RayBlock *block, uint32_t ray)
+static void aim(const CameraRays *rays, const uint32_t pixel[2], RayBlock *block, uint32_t i)
 {
-    const FrameBlock *frame       = &job->frame;
-    const bool        perspective = job->view.camera.projection == KRS_PERSPECTIVE;
-    const float       across = 2 * at[0] / frame->size[0] - 1, up = 1 - 2 * at[1] / frame->size[1];
-    float             straight[3], square                         = 0;
+    const CameraRay ray = camera_ray(rays, pixel);
     for (int k = 0; k < 3; k++) {
-        const float aside     = across * frame->right[k] + up * frame->up[k];
-        block->origin[k][ray] = frame->eye[k] + (perspective ? 0 : aside);
-        straight[k]           = frame->forward[k] + (perspective ? aside : 0);
-        square += straight[k] * straight[k];
+        block->origin[k][i]    = ray.origin[k];
+        block->direction[k][i] = ray.direction[k];
     }
-    const float stretch = perspective ? sqrtf(square) : 1;
-    for (int k = 0; k < 3; k++)
-        block->direction[k][ray] = straight[k] / stretch;
-    block->width[ray]  = frame->pixel_base;
-    block->spread[ray] = frame->pixel_slope / stretch;
+    block->width[i]  = ray.width;
+    block->spread[i] = ray.spread;
 }
 
 /* Clips a ray to a box as clip_to of frame.glsl does. */
@@ -143,12 +132,9 @@ static void begin_block(const Slice *slice, Corner corner, RayBlock *block)
         const bool asked = find_pixel(slice->work, corner, i, pixel);
         const bool there = corner.at[0] + i % BLOCK_SIDE < slice->job->options.width &&
                            corner.at[1] + i / BLOCK_SIDE < slice->job->options.height;
-        float at[2];
-        for (int k = 0; k < 2; k++)
-            at[k] = (float)(corner.at[k] + (k == 0 ? i % BLOCK_SIDE : i / BLOCK_SIDE)) +
-                    slice->work->offset[k];
+        const uint32_t at[2] = {corner.at[0] + i % BLOCK_SIDE, corner.at[1] + i / BLOCK_SIDE};
         if (there)
-            aim(slice->job, at, block, i);
+            aim(&slice->rays, at, block, i);
         block->state[i] = asked ? RAY_MARCHES : there ? RAY_IS_BESIDE : RAY_IS_ABSENT;
         if (there)
             clip(slice->box.low, slice->box.high, slice->job->frame.farthest, block, i);
@@ -395,7 +381,7 @@ static bool march_camera_rays(Job *job, Slice *slice)
 
 bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const LanePaths *paths)
 {
-    Slice slice = {.job = job, .field = field, .work = work};
+    Slice slice = {.job = job, .field = field, .work = work, .rays = camera_rays(job, work)};
     place_box(&slice);
     if (paths) {
         slice.slots = paths->slots;
@@ -423,18 +409,19 @@ bool lane_rays_try(Job *job, RayField *field, double budget_ms, LaneTrial *trial
     enum { FIRST = 4, QUARTER = BLOCKS_OF_TILE / 4 };
     const uint32_t size[2] = {job->options.width, job->options.height};
     WorkBlock      whole   = {.extent = {size[0], size[1]}, .offset = {0.5f, 0.5f}};
-    Slice          slice   = {.job = job, .field = field, .work = &whole};
-    const RayRule  rule    = rule_of(job, false);
-    RayBlock      *blocks  = gpu_alloc(job->gpu, QUARTER, sizeof *blocks, "march rays");
-    uint32_t       tried = 0, count = FIRST;
-    double         rays = 0;
+    Slice slice = {.job = job, .field = field, .work = &whole, .rays = camera_rays(job, &whole)};
+    const RayRule rule   = rule_of(job, false);
+    RayBlock     *blocks = gpu_alloc(job->gpu, QUARTER, sizeof *blocks, "march rays");
+    uint32_t      tried = 0, count = FIRST;
+    double        rays = 0;
     if (!blocks)
         return false;
     place_box(&slice);
-    slice.across         = (size[0] + SIDE - 1) / SIDE;
-    const uint32_t tiles = slice.across * ((size[1] + SIDE - 1) / SIDE);
-    const uint64_t step  = rendering_spread(job->rendering, tiles);
-    const double   start = thread_ms();
+    slice.rays.through_middle = false; /* as most are */
+    slice.across              = (size[0] + SIDE - 1) / SIDE;
+    const uint32_t tiles      = slice.across * ((size[1] + SIDE - 1) / SIDE);
+    const uint64_t step       = rendering_spread(job->rendering, tiles);
+    const double   start      = thread_ms();
     for (*trial = (LaneTrial){0}; tried < tiles && trial->ms < budget_ms;
          tried++, count = QUARTER) {
         const uint32_t tile = (uint32_t)((tiles / 2 + tried * step) % tiles);

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "runtime/tracer/lane_cameras.h"
 #include "runtime/tracer/lane_deal.h"
 #include "runtime/tracer/lane_fields.h"
 #include "runtime/tracer/rendering.h"
@@ -43,6 +44,7 @@ typedef struct Slice {
     const Job          *job;
     const SurfaceField *field;
     const WorkBlock    *work;
+    CameraRays          rays;
     const LanePaths    *paths;       /* that have hit; NULL: hits are the camera's */
     uint32_t            across;      /* squares in a row */
     uint32_t            list, count; /* where the list of occluders begins, and how many they are */
@@ -56,24 +58,14 @@ typedef struct Slice {
 static float find_hit(const Slice *slice, const uint32_t pixel[2], float t, float position[3],
                       float direction[3])
 {
-    const FrameBlock *frame       = &slice->job->frame;
-    const bool        perspective = slice->job->view.camera.projection == KRS_PERSPECTIVE;
-    const float       x      = (float)(slice->work->corner[0] + pixel[0]) + slice->work->offset[0];
-    const float       y      = (float)(slice->work->corner[1] + pixel[1]) + slice->work->offset[1];
-    const float       across = 2 * x / frame->size[0] - 1, up = 1 - 2 * y / frame->size[1];
-    float             square = 0;
+    const uint32_t  in_picture[2] = {slice->work->corner[0] + pixel[0],
+                                     slice->work->corner[1] + pixel[1]};
+    const CameraRay ray           = camera_ray(&slice->rays, in_picture);
     for (int k = 0; k < 3; k++) {
-        const float aside = across * frame->right[k] + up * frame->up[k];
-        position[k]       = frame->eye[k] + (perspective ? 0 : aside);
-        direction[k]      = frame->forward[k] + (perspective ? aside : 0);
-        square += direction[k] * direction[k];
+        direction[k] = ray.direction[k];
+        position[k]  = ray.origin[k] + t * ray.direction[k];
     }
-    const float stretch = perspective ? sqrtf(square) : 1;
-    for (int k = 0; k < 3; k++) {
-        direction[k] /= stretch;
-        position[k] += t * direction[k];
-    }
-    return fmaxf(frame->pixel_base + frame->pixel_slope / stretch * t, 1e-30f);
+    return fmaxf(ray.width + ray.spread * t, 1e-30f);
 }
 
 /* Returns the same for the ray of a path. */
@@ -164,6 +156,7 @@ bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *wo
     Slice          slice = {.job    = job,
                             .field  = field,
                             .work   = work,
+                            .rays   = camera_rays(job, work),
                             .paths  = paths,
                             .across = (work->extent[0] + SIDE - 1) / SIDE};
     return paths ? lane_deal(job, &slice.deal, KRS_PHASE_BOUNCES,
@@ -174,60 +167,6 @@ bool lane_surfaces_find(Job *job, const SurfaceField *field, const WorkBlock *wo
 }
 
 /* ---- occluders ---- */
-
-/* Spreads bits as samples.glsl does. */
-static uint32_t spread_bits(uint32_t bits)
-{
-    bits = (bits | bits << 8) & 0x00ff00ffu;
-    bits = (bits | bits << 4) & 0x0f0f0f0fu;
-    bits = (bits | bits << 2) & 0x33333333u;
-    return (bits | bits << 1) & 0x55555555u;
-}
-
-static uint32_t reverse_bits(uint32_t bits)
-{
-    bits = (bits >> 1 & 0x55555555u) | (bits & 0x55555555u) << 1;
-    bits = (bits >> 2 & 0x33333333u) | (bits & 0x33333333u) << 2;
-    bits = (bits >> 4 & 0x0f0f0f0fu) | (bits & 0x0f0f0f0fu) << 4;
-    bits = (bits >> 8 & 0x00ff00ffu) | (bits & 0x00ff00ffu) << 8;
-    return bits >> 16 | bits << 16;
-}
-
-static uint32_t scramble_bits(uint32_t bits, uint32_t seed)
-{
-    bits ^= bits * 0x3d20adeau;
-    bits += seed;
-    bits *= seed >> 16 | 1u;
-    bits ^= bits * 0x05526c56u;
-    return bits ^ bits * 0x53a22864u;
-}
-
-static uint32_t hash_bits(uint32_t bits)
-{
-    bits = bits * 747796405u + 2891336453u;
-    bits = (bits >> ((bits >> 28) + 4) ^ bits) * 277803737u;
-    return bits >> 22 ^ bits;
-}
-
-/* Samples a square as sample_square does for use 0. */
-static void sample_square(const uint32_t pixel[2], uint32_t ray, uint32_t seed, float square[2])
-{
-    static const float step[2] = {0.6287067f, 0.5385973f};
-    const uint32_t     number  = spread_bits(pixel[0]) | spread_bits(pixel[1]) << 1;
-    const uint32_t     own     = hash_bits(977u * seed);
-    const uint32_t     x       = scramble_bits(reverse_bits(number), own);
-    uint32_t           y       = x ^ (x & 0x55555555u) << 1;
-    y ^= (y & 0x33333333u) << 2;
-    y ^= (y & 0x0f0f0f0fu) << 4;
-    y ^= (y & 0x00ff00ffu) << 8;
-    y ^= (y & 0x0000ffffu) << 16;
-    y ^= hash_bits(own);
-    const uint32_t bits[2] = {x, y};
-    for (int k = 0; k < 2; k++) {
-        const float place = (float)(bits[k] >> 8) / 16777216.0f + step[k] * (float)ray;
-        square[k]         = place - floorf(place);
-    }
-}
 
 /* Finds the direction of a point of the square as find_hemisphere_ray of hemisphere.glsl does. */
 static void aim_over_hemisphere(const float normal[3], const float square[2], float direction[3])
@@ -266,7 +205,7 @@ static void add_occluder(const Slice *slice, uint32_t slot, SurfacePoint *to, fl
     memcpy(&t, &end[0], sizeof t);
     memcpy(&length, occluder_of(slice, pixel), sizeof length);
     find_hit(slice, pixel, t, to->position, along);
-    sample_square(in_picture, control->ray, control->seed, square);
+    sample_hemisphere(in_picture, control->ray, control->seed, square);
     aim_over_hemisphere(facing_of(slice, slot), square, to->view);
     for (int k = 0; k < 3; k++) {
         to->position[k] += length * to->view[k];
@@ -311,8 +250,12 @@ bool lane_surfaces_find_occluders(Job *job, const SurfaceField *field, uint32_t 
                                   const WorkBlock *work)
 {
     const ControlBlock *control = job->rendering->control.bytes;
-    Slice               slice   = {
-                        .job = job, .field = field, .work = work, .list = list, .count = control->remaining};
+    Slice               slice   = {.job   = job,
+                                   .field = field,
+                                   .work  = work,
+                                   .rays  = camera_rays(job, work),
+                                   .list  = list,
+                                   .count = control->remaining};
     return lane_deal(job, &slice.deal, KRS_PHASE_OCCLUSION,
                      (slice.count + OCCLUDERS_AT_ONCE - 1) / OCCLUDERS_AT_ONCE, BYTES_OF_PART,
                      find_occluders, &slice);

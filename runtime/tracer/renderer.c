@@ -39,6 +39,12 @@ static const char *const map_defines[RAYS_OF_PATHS][SHADER_READS] = {
     [RAYS_OF_LENSES]    = ALL_READS(SKY_MAP LENS),
     [RAYS_OF_LISTS]     = ALL_READS(SKY_MAP LISTED_RAYS),
 };
+/* The same for rays of paths as well. */
+static const char *const mixed_defines[RAYS_OF_LISTS][SHADER_READS] = {
+    [RAYS_OF_CAMERAS]   = ALL_READS(MIXED_RAYS),
+    [RAYS_OF_PANORAMAS] = ALL_READS(MIXED_RAYS PANORAMIC),
+    [RAYS_OF_LENSES]    = ALL_READS(MIXED_RAYS LENS),
+};
 
 /* The same for paths that may meet the plate of another renderer. */
 static const char *const plate_defines[SHADER_READS] = ALL_READS(PATH_RAYS CATCHES);
@@ -173,9 +179,9 @@ void krs_renderer_free(KrsRenderer *renderer)
             shader_destroy(gpu, &renderer->limits[kind]);
             shader_destroy(gpu, &renderer->escapes[kind]);
         }
-        for (int i = 0; i < 2; i++) {
-            shader_destroy(gpu, &renderer->aims[i]);
-            shader_destroy(gpu, &renderer->arrivals[i]);
+        for (int i = 0; i < 2 * RAYS_OF_LISTS; i++) {
+            shader_destroy(gpu, &renderer->aims[i / 2][i % 2]);
+            shader_destroy(gpu, &renderer->arrivals[i / 2][i % 2]);
         }
         shader_destroy(gpu, &renderer->escapes_to_plate);
         shader_destroy(gpu, &renderer->noise);
@@ -247,11 +253,10 @@ static const Shader *make_ready(KrsRenderer *renderer, Shader *shader, const cha
 static const Shader *make_for_lanes(KrsRendering *rendering, Shader *shader, const char *file,
                                     bool paths)
 {
-    static const char *const mixed[SHADER_READS] = ALL_READS(MIXED_RAYS);
-    KrsRenderer             *renderer            = rendering->renderer;
-    ShaderRequest            request = request_shader(renderer, shader, file, RAYS_OF_CAMERAS);
+    KrsRenderer  *renderer = rendering->renderer;
+    ShaderRequest request  = request_shader(renderer, shader, file, rendering->rays);
     if (paths)
-        request.source.defines = mixed[variants_reads(&renderer->gpu)];
+        request.source.defines = mixed_defines[rendering->rays][variants_reads(&renderer->gpu)];
     return make_request(renderer, &request, &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
@@ -264,13 +269,15 @@ const Shader *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_
 const Shader *renderer_aim(KrsRendering *rendering)
 {
     const bool paths = rendering->program->mirrors;
-    return make_for_lanes(rendering, &rendering->renderer->aims[paths], "aim.comp", paths);
+    return make_for_lanes(rendering, &rendering->renderer->aims[rendering->rays][paths], "aim.comp",
+                          paths);
 }
 
 const Shader *renderer_arrive(KrsRendering *rendering)
 {
     const bool paths = rendering->program->mirrors;
-    return make_for_lanes(rendering, &rendering->renderer->arrivals[paths], "arrive.comp", paths);
+    return make_for_lanes(rendering, &rendering->renderer->arrivals[rendering->rays][paths],
+                          "arrive.comp", paths);
 }
 
 const Shader *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)

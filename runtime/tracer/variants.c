@@ -140,13 +140,14 @@ ShaderReads variants_reads(const Gpu *gpu)
 /* Tells whether sums over lanes are worth it: lavapipe compiles one to a loop. */
 static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
 
+static const char *const ray_defines[RAY_KINDS] = {
+    [RAYS_OF_CAMERAS] = "",        [RAYS_OF_PANORAMAS] = PANORAMIC, [RAYS_OF_LENSES] = LENS,
+    [RAYS_OF_LISTS] = LISTED_RAYS, [RAYS_OF_PATHS] = PATH_RAYS,
+};
+
 static ShaderVariant begin_variant(const KrsRendering *rendering, KrsTrace trace,
                                    KrsSchedule schedule)
 {
-    static const char *const ray_defines[RAY_KINDS] = {
-        [RAYS_OF_CAMERAS] = "",        [RAYS_OF_PANORAMAS] = PANORAMIC, [RAYS_OF_LENSES] = LENS,
-        [RAYS_OF_LISTS] = LISTED_RAYS, [RAYS_OF_PATHS] = PATH_RAYS,
-    };
     static const char *const read_defines[SHADER_READS] = {
         [READ_BUFFERS] = NO_TEXELS, [READ_TEXELS] = "", [READ_FRAME_TEXELS] = FRAME_TEXELS};
     const Gpu    *gpu             = &rendering->renderer->gpu;
@@ -313,6 +314,7 @@ ShaderVariant variant_of_shade_found(const KrsRendering *rendering)
         define(&to, SKY_MAP);
     if (rendering->catches)
         define(&to, CATCHES);
+    define(&to, "%s", ray_defines[rendering->rays]);
     if (variants_reads(&rendering->renderer->gpu) == READ_FRAME_TEXELS)
         define(&to, FRAME_TEXELS);
     return to;
