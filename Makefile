@@ -25,6 +25,7 @@
 # make web        the package `krs` for pages, in build/web/ (web/package/README.md); web-pack: its archive
 # make python     the package for Python, in build/python/; make wheel: as a file for pip (docs/python.md)
 # make playground the playground, a static folder in build/playground/ (docs/playground.md); serve: shows it at localhost
+# make site       the site: documents, references, gallery and playground, in build/site/ (site/README.md); serve-site: shows it
 # make kernels    the runtime's shaders as WGSL, in build/kernels (web/tracer/README.md), with packages of npm
 # make vscode     the extension for VS Code, in build/vscode, with packages of npm
 # make dist       the sources as one file; make deb: packages for Debian, both in build/dist (docs/packaging.md)
@@ -235,6 +236,7 @@ include python/python.mk
 include web/package/package.mk
 include web/playground/playground.mk
 include web/tracer/tracer.mk
+include site/site.mk
 include tests/tests.mk
 include bench/bench.mk
 include tools/install.mk

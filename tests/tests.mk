@@ -199,7 +199,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format -i $$(find api bench cli compiler examples export grid import include live measure mesh platform rays runtime slice tests web -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find api bench cli compiler examples export grid import include live measure mesh platform rays runtime site slice tests web -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 
@@ -211,7 +211,7 @@ test-long: SET := long
 test-all:  SET := all
 # What scripts of tests/web use, which run side by side, where test-deps could install what builds it.  They tell what is missing.
 web        = $(if $(and $(shell command -v emcc),$(shell command -v node)),web $(B)/tests/web/texts $(B)/tests/web/points $(B)/tests/web/record)
-played     = $(if $(and $(web),$(shell command -v npm),$(shell command -v esbuild)),playground kernels)
+played     = $(if $(and $(web),$(shell command -v npm),$(shell command -v esbuild)),playground kernels $(NPM)/site.mjs $(B)/site-words)
 scripts    = $(call scripts_$(SET), $(1))
 programs   = $(patsubst %,$(B)/%,$(programs_$(SET)))
 sanitized  = $(patsubst %,$(B)/asan/%,$(sanitized_$(SET)))

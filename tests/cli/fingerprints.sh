@@ -8,7 +8,7 @@ plan 19
 
 # ---- sources ----
 mkdir tree tree/tests tree/bench
-(cd "$root" && cp -r Makefile tools api cli compiler editors export import python rays include mesh platform slice grid measure runtime live web "$work/tree" && cp tests/*.mk "$work/tree/tests" &&
+(cd "$root" && cp -r Makefile tools api cli compiler editors export import python rays include mesh platform slice grid measure runtime live site web "$work/tree" && cp tests/*.mk "$work/tree/tests" &&
     cp bench/*.mk "$work/tree/bench")
 fingerprints() { make --no-print-directory -s -C tree "$@" fingerprints 2>>err; }
 fingerprints >before

@@ -9,6 +9,7 @@ import crypto from 'node:crypto';
 import fs from 'node:fs';
 import { createRequire } from 'node:module';
 import path from 'node:path';
+import { smaller } from './smaller.mjs';
 
 const [task, ...args] = process.argv.slice(2);
 const require = createRequire(path.join(process.cwd(), 'package.json'));
@@ -18,22 +19,6 @@ const filesOf = folder => fs.readdirSync(folder, { withFileTypes: true, recursiv
 // ---- examples ----
 
 const WIDTH = 320, HEIGHT = 180, QUALITY = 82;
-
-// The mean of all pixels below each new one; what is of another form is cut.
-function smaller({ width, height, data }) {
-    const size = Math.min(width / WIDTH, height / HEIGHT), left = (width - size * WIDTH) / 2, top = (height - size * HEIGHT) / 2;
-    const made = Buffer.alloc(4 * WIDTH * HEIGHT, 255);
-    for (let y = 0; y < HEIGHT; y++)
-        for (let x = 0; x < WIDTH; x++)
-            for (let k = 0; k < 3; k++) {
-                let sum = 0, count = 0;
-                for (let j = Math.floor(top + y * size); j < top + (y + 1) * size && j < height; j++)
-                    for (let i = Math.floor(left + x * size); i < left + (x + 1) * size && i < width; i++, count++)
-                        sum += data[4 * (j * width + i) + k];
-                made[4 * (y * WIDTH + x) + k] = sum / count;
-            }
-    return { width: WIDTH, height: HEIGHT, data: made };
-}
 
 // The rows of tools/pictures.txt that show a scene first: a picture's name, and what it shows.
 function pictured(root) {
@@ -55,7 +40,7 @@ function examples(root, folder) {
     const list = fs.readdirSync(from).filter(file => file.endsWith('.krs')).map(file => path.basename(file, '.krs')).map(name => {
         const { picture, about } = shown.get(name), title = name.replace(/^\d+-/, '').replaceAll('-', ' ');
         const read = PNG.sync.read(fs.readFileSync(path.join(root, `docs/pictures/${picture}.png`)));
-        fs.writeFileSync(path.join(to, `${name}.jpg`), jpeg.encode(smaller(read), QUALITY).data);
+        fs.writeFileSync(path.join(to, `${name}.jpg`), jpeg.encode(smaller(read, WIDTH, HEIGHT), QUALITY).data);
         return { name, title: title[0].toUpperCase() + title.slice(1), about: about[0].toUpperCase() + about.slice(1),
                  text: fs.readFileSync(path.join(from, `${name}.krs`), 'utf8') };
     });

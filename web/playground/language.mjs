@@ -92,6 +92,6 @@ const outside = {
 export const krsLanguage = StreamLanguage.define(outside);
 
 // Colours are properties of style.css, by the name of the class.
-const colours = HighlightStyle.define(Object.entries(classes).map(([name, tag]) => ({ tag, class: `t-${name}` })));
+export const colours = HighlightStyle.define(Object.entries(classes).map(([name, tag]) => ({ tag, class: `t-${name}` })));
 
 export const language = [krsLanguage, syntaxHighlighting(colours)];
