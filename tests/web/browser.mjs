@@ -86,8 +86,8 @@ class Browser {
             this.#sessions.get(sessionId)?.take(method, params);
     }
 
-    // `inWorkers` is a script that workers run before their own; `page.workers` are asked by `evaluate`.
-    async open(url, { width = 1280, height = 720, inWorkers } = {}) {
+    // `inPage` and `inWorkers` are scripts that the page and its workers run before their own; `page.workers` are asked by `evaluate`.
+    async open(url, { width = 1280, height = 720, inPage, inWorkers } = {}) {
         const { targetId } = await this.send('Target.createTarget', { url: 'about:blank' });
         const { sessionId } = await this.send('Target.attachToTarget', { targetId, flatten: true });
         const page = new Page(this, sessionId, targetId);
@@ -96,6 +96,8 @@ class Browser {
             await page.prepareWorkers(inWorkers);
         for (const domain of ['Page', 'Runtime', 'Log'])
             await page.send(`${domain}.enable`);
+        if (inPage)
+            await page.send('Page.addScriptToEvaluateOnNewDocument', { source: inPage });
         await page.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false });
         if (url)
             await page.go(url);

@@ -1,5 +1,5 @@
-// pictures.mjs: pictures of a page beside those of `krs render`: all examples are drawn without an error; rays of some hit
-// what its rays hit, and colours differ by little.
+// pictures.mjs: pictures of a page beside those of `krs render`: all examples are drawn without an error, a coarse picture
+// first, by tiles that begin small; rays of some hit what its rays hit, and colours differ by little.
 //
 //     node pictures.mjs build/web build/krs [EXAMPLE...]
 import { execFileSync } from 'node:child_process';
@@ -8,6 +8,7 @@ import os from 'node:os';
 import path from 'node:path';
 import { launch, serve } from './browser.mjs';
 import { readExr } from './exr.mjs';
+import { counting, isTile, loggedBy } from './work.mjs';
 
 const width = 160, height = 90, samples = 8;
 const [, , built, krs, ...chosen] = process.argv;
@@ -26,14 +27,40 @@ const report = (good, what) => {
 const server = await serve({ '/': 'tests/web/pages', '/krs/': built, '/examples/': 'examples', '/work/': work });
 const browser = await launch();
 
-// In the page: shows an example; the last frame tells whether it is there.
-async function show(name, width, height) {
+// In the page: shows an example, and returns when something of it is there.
+async function show(file) {
+    const text = await (await fetch(file)).text(), update = await view.update(text, { name: file.split('/').at(-1), base: '/examples/' });
+    await Promise.race(['krs-frame', 'krs-error'].map(name => new Promise(resolve => view.addEventListener(name, resolve, { once: true }))));
+    return { ok: update.ok && frames.length > 0, said: update.diagnostics.map(d => d.message).join('; '), first: frames[0]?.samples };
+}
+
+// The same in this size, with a sample; the last frame tells whether it is there.
+async function finish(width, height) {
     Object.assign(view.style, { width: `${width}px`, height: `${height}px` });
     view.samples = 1;
-    const text = await (await fetch(`/examples/${name}.krs`)).text(), update = await view.update(text, { name: `${name}.krs`, base: '/examples/' });
-    await Promise.race([view.ready, new Promise(resolve => view.addEventListener('krs-error', resolve, { once: true }))]);
-    return { ok: update.ok && frames.at(-1)?.samples >= 1, said: update.diagnostics.map(d => d.message).join('; ') };
+    frames.length = 0;
+    while (!(frames.at(-1)?.samples >= 1 && frames.at(-1).width === width))
+        await new Promise(resolve => view.addEventListener('krs-frame', resolve, { once: true }));
+    await view.ready;
+    return frames.at(-1).samples >= 1;
 }
+
+// ---- work ----
+
+const MOST_COPIED = 2 << 20; // bytes in a message: some milliseconds
+const FIRST_PIXELS = 128, FIRST_TILE = 16, GROWTH = 4; // of a first picture, with draws that tell what a draw costs; of its tiles
+
+// What a page does until something is seen, counted: no clock decides.
+function reportWork(name, first, log, work) {
+    const shown = log.findIndex(what => what.frame !== undefined), tiles = log.slice(0, shown).filter(isTile).map(({ tile }) => tile);
+    const pixels = tiles.reduce((sum, tile) => sum + tile, 0), copied = Math.max(work.copied, ...log.map(what => what.copied ?? 0));
+    report(first < 0.01 && shown > 0 && pixels <= FIRST_PIXELS, `${name}: a coarse picture comes first (${pixels} pixels)`);
+    const most = i => Math.max(FIRST_TILE, GROWTH * Math.max(0, ...tiles.slice(0, i)));
+    report(tiles.length > 0 && tiles.every((tile, i) => tile <= most(i)), `${name}: its tiles begin small (${tiles.join(' ')})`);
+    report(work.drawn === 0 && work.compiled === 0 && copied < MOST_COPIED, `${name}: the page draws and compiles nothing itself, and copies ${copied} bytes at most`);
+}
+
+// ---- pictures beside those of krs render ----
 
 // Where rays hit: depth along the view, and the component there, or 0.  Which way rays go is found here once more.
 async function hits(width, height) {
@@ -92,13 +119,41 @@ async function compare(page, name) {
     last = { Z, name };
 }
 
-for (const name of names) {
+async function draw(name) {
+    const page = await browser.open(`${server.url}/view.html`, counting);
+    await page.until('window.krs');
+    const { ok, said, first } = await page.evaluate(show, `/examples/${name}.krs`), log = await loggedBy(page, 'scene'), counted = await page.evaluate('work');
+    const done = ok && await page.evaluate(finish, width, height);
+    report(done && page.errors.length === 0, `${name} is drawn ${said} ${page.errors.join('; ').slice(0, 300)}`);
+    reportWork(name, first, log, counted);
+    if (done && name in compared)
+        await compare(page, name);
+    await page.close();
+}
+
+for (const name of names)
+    await draw(name);
+
+// ---- how a picture is shown, and where the rays of a pixel go ----
+
+const BARS = 'show box([0.06, 3, 0.1]).repeat([0.14, 0, 0], [40, 1, 1]).rotate([0, 0, 1], 10deg).paint(#d0a040);\n' +
+    'camera { eye: [0, 0, 7], target: [0, 0, 0], fov: 35deg }\nlight { direction: [0, 0, 1], intensity: 3 }\nsky { zenith: black, horizon: black, ground: black }\n';
+
+async function compareShown(page, name, image) {
+    const file = path.join(work, name);
+    fs.writeFileSync(`${file}.krs`, `${BARS}image { ${image} }\n`);
+    execFileSync(krs, ['render', `${file}.krs`, '--size', `${width}x${height}`, '--quiet', '--samples', `${samples}`, '-o', `${file}.png`]);
+    await page.evaluate(show, `/work/${name}.krs`);
+    await page.evaluate(finish, width, height);
+    const [own, plain] = [await page.evaluate(difference, `/work/${name}.png`, width, height, samples), await page.evaluate(difference, '/work/plain.png', width, height, samples)];
+    report(own < 0.5 && (name === 'plain' || plain > 4 * own + 1), `${name}: colours differ by ${own.toFixed(2)} of 255 from those of krs render, by ${plain.toFixed(2)} from plain ones`);
+}
+
+if (chosen.length === 0) {
     const page = await browser.open(`${server.url}/view.html`);
     await page.until('window.krs');
-    const { ok, said } = await page.evaluate(show, name, width, height);
-    report(ok && page.errors.length === 0, `${name} is drawn ${said} ${page.errors.join('; ').slice(0, 300)}`);
-    if (ok && name in compared)
-        await compare(page, name);
+    for (const [name, image] of Object.entries({ plain: '', balanced: 'white_balance: [3200, 20]', blackman: 'pixel_filter: "blackman-harris"', gaussian: 'pixel_filter: "gaussian"' }))
+        await compareShown(page, name, image);
     await page.close();
 }
 await browser.close();

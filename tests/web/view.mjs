@@ -3,6 +3,7 @@
 //
 //     node view.mjs build/web
 import { launch, serve } from './browser.mjs';
+import { counting, isTile, loggedBy } from './work.mjs';
 
 let number = 0, failed = 0;
 const report = (good, what) => {
@@ -12,15 +13,10 @@ const report = (good, what) => {
 
 const server = await serve({ '/': 'tests/web/pages', '/krs/': process.argv[2], '/examples/': 'examples' });
 const browser = await launch();
-// What workers do is logged: messages, programs that are linked, tiles that are read, pictures that begin.
-const page = await browser.open(`${server.url}/view.html`, { inWorkers: `
-    self.log = [];
-    for (const [name, what] of Object.entries({ linkProgram: 'program', readPixels: 'tile', clearBufferfv: 'begin' })) {
-        const call = WebGL2RenderingContext.prototype[name];
-        WebGL2RenderingContext.prototype[name] = function (...values) { log.push(what); return call.apply(this, values); };
-    }
-    addEventListener('message', ({ data }) => log.push(data.call));` });
+const page = await browser.open(`${server.url}/view.html`, counting);
 await page.until('window.krs');
+
+const MOST_COPIED = 2 << 20; // bytes in a message of the page: some milliseconds
 
 // The mean colour of a part of the picture as it is shown, from 0 to 255.
 await page.evaluate(() => {
@@ -32,14 +28,6 @@ await page.evaluate(() => {
         return sums.map(sum => sum / (width * height));
     };
     window.settled = () => view.ready;
-    // How long the page was held up at most, in milliseconds.
-    window.longest = 0;
-    let last = performance.now();
-    setInterval(() => {
-        const now = performance.now();
-        longest = Math.max(longest, now - last);
-        last = now;
-    }, 1);
 });
 const scene = 'param radius = 1 in [0.2, 1.5];\nparam tint = #d02020;\nmaterial matte { color: tint, roughness: 1 }\n' +
     'show sphere(radius).paint(matte);\ncamera { eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg }\n' +
@@ -55,11 +43,21 @@ const started = await page.evaluate(async text => {
 report(started.ok && started.middle[0] > 100 && started.middle[0] > 2 * started.middle[1] && started.corner.every(c => c < 8),
     `a red ball is in the middle (${started.middle.map(Math.round)}), and black around it`);
 
-// The log of the worker that draws, since it was asked last.
-async function logged() {
-    const logs = await Promise.all(page.workers.map(worker => worker.evaluate('log.splice(0)')));
-    return logs.find(log => log.some(what => what === 'state' || what === 'scene')) ?? [];
+// What the worker that draws has done since it was asked last.
+const logged = () => loggedBy(page, 'state', 'scene');
+// Moves the camera, and returns how many tiles of the picture before are drawn after it.
+async function tilesAfterMove() {
+    await logged();
+    await page.evaluate(() => new Promise(resolve => {
+        const begun = performance.now();
+        view.addEventListener('krs-frame', ({ detail }) => detail.elapsed < performance.now() - begun && resolve());
+        view.camera = { fov: 0.9 * view.camera.fov };
+    }));
+    const log = await logged(), moved = log.indexOf('state'), begun = log.indexOf('begin', moved);
+    return moved >= 0 && begun > moved ? log.slice(moved, begun).filter(isTile).length : Infinity;
 }
+const reportDropped = (tiles, what) => report(tiles <= 1, `${what} is dropped when the camera moves (${tiles} tiles later)`);
+
 await logged();
 const followed = await page.evaluate(async text => {
     const first = await view.update(text.replace('[0, 0, 5]', '[0, 0, 4.5]')), { change } = await view.update(text);
@@ -158,6 +156,25 @@ report(await page.evaluate(async () => {
     return Math.abs(frames.at(-1).time - 2) < 1e-9;
 }), 'time runs and stops');
 
+// What is not drawn as krs render draws it is said in the corner.
+const noted = await page.evaluate(async () => {
+    const scenes = {
+        'nothing': 'show sphere(1);', 'two eyes': 'show sphere(1); camera { eye: [0, 0, 5], eyes: 0.1 }',
+        'motion blur': 'show sphere(1); camera { eye: [0, 0, 5], shutter: [0, 0.5] }',
+        'the light of the integrator "path"': 'show sphere(1); image { integrator: "path" }',
+        'what is inside of glass, and light through it': 'material glass { transmission: 1, roughness: 0 } show sphere(1).paint(glass);',
+    }, wrong = [], note = view.shadowRoot.querySelector('p');
+    for (const [what, text] of Object.entries(scenes)) {
+        await view.update(text, { name: 'noted.krs' });
+        await settled();
+        const wanted = what === 'nothing' ? '' : `Not shown here: ${what}. See \`krs render noted.krs\`.`;
+        if (note.textContent !== wanted)
+            wrong.push(`${what}: "${note.textContent}"`);
+    }
+    return wrong.join('; ');
+});
+report(noted === '', `what the preview does not show is said in the corner ${noted}`);
+
 const heavy = await page.evaluate(async () => {
     view.style.width = '640px';
     view.style.height = '360px';
@@ -167,24 +184,13 @@ const heavy = await page.evaluate(async () => {
     while (!(frames.length > 0 && frames.at(-1).samples > 0))
         await new Promise(resolve => view.addEventListener('krs-frame', resolve, { once: true }));
     const coarse = frames.at(-1);
-    longest = 0;
-    await new Promise(resolve => setTimeout(resolve, 1000));
-    const page = longest;
-    // The camera moves while a picture is drawn that takes much longer.
-    const begun = performance.now();
-    view.camera = { fov: 0.9 * view.camera.fov };
-    await new Promise(resolve => {
-        const heard = event => {
-            if (event.detail.elapsed < performance.now() - begun + 1) {
-                view.removeEventListener('krs-frame', heard);
-                resolve();
-            }
-        };
-        view.addEventListener('krs-frame', heard);
-    });
-    return { coarse, page, moved: performance.now() - begun };
+    while (frames.at(-1).samples <= coarse.samples)
+        await new Promise(resolve => view.addEventListener('krs-frame', resolve, { once: true }));
+    return { coarse, finer: frames.at(-1) };
 });
 report(heavy.coarse.samples < 1, `a scene that is heavy is coarse at first (${heavy.coarse.samples} of a sample, after ${Math.round(heavy.coarse.elapsed)} ms)`);
+// The camera moves while a picture is drawn that takes much longer.
+reportDropped(await tilesAfterMove(), 'a heavy picture');
 const light = 'show box([1, 1, 1]);';
 await page.evaluate(async text => {
     view.samples = 100000;
@@ -193,14 +199,9 @@ await page.evaluate(async text => {
     while (!(frames.at(-1)?.samples >= 2 && frames.at(-1).wanted === 100000))
         await new Promise(resolve => view.addEventListener('krs-frame', resolve, { once: true }));
 }, light);
-await logged();
-await page.evaluate(() => new Promise(resolve => {
-    view.camera = { fov: 0.9 * view.camera.fov };
-    view.addEventListener('krs-frame', ({ detail }) => detail.samples < 1 && resolve());
-}));
-const moves = await logged(), moved = moves.indexOf('state'), old = moves.slice(moved, moves.indexOf('begin', moved)).filter(what => what === 'tile').length;
-report(moved >= 0 && moves.slice(0, moved).includes('tile') && old <= 1, `a picture that goes on for long ends when the camera moves (${old} tiles later)`);
-console.log(`# the page was held up for ${Math.round(heavy.page)} ms at most; a moved camera showed after ${Math.round(heavy.moved)} ms`);
+reportDropped(await tilesAfterMove(), 'a picture of many samples');
+const work = await page.evaluate('work');
+report(work.drawn === 0 && work.compiled === 0 && work.copied < MOST_COPIED, `the page itself draws and compiles nothing, and copies ${work.copied} bytes at most`);
 
 report(page.errors.length === 0, `the console has no errors ${page.errors.join('; ').slice(0, 500)}`);
 await browser.close();

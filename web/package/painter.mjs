@@ -10,7 +10,7 @@ const calls = {
         picture = new Picture(canvas, tell);
         picture.begun.catch(failed);
     },
-    scene({ scene, state }) { return picture.setScene(scene, state).then(() => tell({ kind: 'compiled', key: scene.key })); },
+    scene({ scene, state }) { return picture.setScene(scene, state); },
     state({ state }) { picture.setState(state); },
     size({ width, height }) { picture.setSize(width, height); },
     samples({ samples }) { picture.setWanted(samples); },

@@ -5,10 +5,10 @@
 import { balanceOf, placeRay } from './display.mjs';
 import { frameOf, lightRowsOf, projections } from './frame.mjs';
 import { compilePasses, compileResolve, passes } from './programs.mjs';
+import { Costs, Tiles } from './tiles.mjs';
 
-const tileTime = 20, firstTime = 40;   // milliseconds: of a tile, and of a picture while something moves
+const firstTime = 40;                   // milliseconds: of a picture while something moves
 const levels = [1, 2, 4, 8, 16, 32, 64]; // sides of the pixels
-const smallest = 64, bands = 32;        // pixels of a tile; rows of which the costs are known together
 const firstTiles = 4;                  // of a first level that goes on although something newer has come
 const lightsAt = 5120, inputWidth = 64; // the row of the first light (blocks.h); the width of that texture
 const textureWidth = 4096;
@@ -89,11 +89,11 @@ class Sums {
 export class Picture {
     constructor(canvas, tell) {
         Object.assign(this, { canvas, tell, scene: null, state: null, programs: null, width: 0, height: 0, wanted: 64,
-            cost: 0.002, sums: new Map(), job: null, running: false, shots: [] });
+            costs: null, sums: new Map(), job: null, running: false, shots: [] });
         canvas.addEventListener('webglcontextlost', event => {
             event.preventDefault();
             this.lost = true;
-            this.job = null;
+            this.#dropJobs();
             if (this.ours && !this.released) // it is wanted again already
                 setTimeout(() => this.losing.restoreContext());
         });
@@ -117,13 +117,13 @@ export class Picture {
 
     // ---- what comes in ----
 
-    // { key, text, about }: a scene whose text has changed, and its state.
+    // { text, about }: a scene whose text has changed, and its state.
     async setScene(scene, state = this.state) {
         this.scene = scene;
         this.setState(state);
         await this.begun;
         const { gl } = this, previous = this.programs;
-        if (this.compiled !== scene.key || !this.programs) {
+        if (this.compiled !== scene.text || !this.programs) {
             if (scene.about.shaders.layers)
                 this.albedos ??= await fetchAlbedos();
             const programs = await compilePasses(gl, scene.about, scene.text);
@@ -131,12 +131,12 @@ export class Picture {
                 freePasses(programs);
                 return;
             }
-            this.compiled = scene.key;
+            this.compiled = scene.text;
             this.programs = programs;
-            this.warm = false;
+            this.costs = null;
             if (previous)
                 freePasses(previous);
-            this.job = null;
+            this.#dropJobs();
         }
         this.setState(this.state);
     }
@@ -208,7 +208,13 @@ export class Picture {
 
     // A job is a picture: its state, its size, and how far it is.
     #jobOf(width, height, wanted, coarse) {
-        return { state: this.state, width, height, wanted, level: coarse, sample: 0, at: null, begun: performance.now(), first: coarse, tiles: 0 };
+        return { state: this.state, width, height, wanted, level: coarse, sample: 0, sums: null, begun: performance.now(), first: coarse, tiles: 0 };
+    }
+
+    // Of pictures that are kept, nothing is there yet.
+    #dropJobs() {
+        this.job = null;
+        this.shots.forEach(shot => { shot.job = null; });
     }
 
     #restart() {
@@ -217,12 +223,12 @@ export class Picture {
     }
 
     // There are a state and the shaders of its scene.
-    #isReady() { return this.state && this.programs && !this.lost && this.compiled === this.scene.key; }
+    #isReady() { return this.state && this.programs && !this.lost && this.compiled === this.scene.text; }
 
-    // The finest level that is over within a frame; of what draws for the first time nothing is known.
-    #firstLevel() {
-        const pixels = this.width * this.height;
-        return this.warm ? levels.find(level => pixels / level ** 2 * this.cost < firstTime) ?? levels.at(-1) : 16;
+    // The finest level that is soon over; of what draws for the first time nothing is known.
+    #firstLevel(width, height) {
+        const isSoonOver = level => this.costs?.isSoonOver({ width: Math.ceil(width / level), height: Math.ceil(height / level) }, firstTime);
+        return levels.find(isSoonOver) ?? levels.at(-1);
     }
 
     // Whether the job goes on although something newer has come: its first, coarse picture is soon over, or nothing would
@@ -239,7 +245,7 @@ export class Picture {
             while (!this.lost && (this.next || this.job || (this.shots.length && this.#isReady()))) {
                 if (this.next && !(this.job && this.#isSoonOver(this.job))) {
                     this.next = null;
-                    this.job = this.#jobOf(this.width, this.height, this.wanted, this.#firstLevel());
+                    this.job = this.#jobOf(this.width, this.height, this.wanted, this.#firstLevel(this.width, this.height));
                 }
                 if (this.shots.length && this.#isReady() && !this.next && !(this.job && this.job.level === this.job.first && this.job.sample === 0))
                     this.#continueShot();
@@ -265,14 +271,23 @@ export class Picture {
     #beginLevel(job) {
         const { level } = job, last = this.shown, { gl } = this;
         job.sums = this.#sumsOf(Math.ceil(job.width / level), Math.ceil(job.height / level));
-        job.sums.sums.clear();
-        job.frame = frameOf(job.state.camera, job.state.view, job.state.about.shaders, job.width / level, job.height / level, job.wanted);
-        Object.assign(job, { at: { x: 0, y: 0, height: 0 }, spent: 0, drawn: 0, found: Array(bands).fill(0), last: performance.now() });
+        this.#beginSums(job, job.width / level, job.height / level);
+        job.last = performance.now();
         this.shown = job.sums.shown;
         if (last && last !== this.shown)
             this.#copy(last, this.shown.framebuffer, this.shown.width, this.shown.height, false);
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     }
+
+    #beginSums(job, width, height) {
+        const { state, sums, wanted } = job;
+        sums.sums.clear();
+        job.frame = frameOf(state.camera, state.view, state.about.shaders, width, height, wanted);
+        this.costs ??= this.#measureDraws(job);
+        this.#beginSample(job);
+    }
+
+    #beginSample(job) { job.cut = new Tiles(this.costs, job.sums.width, job.sums.height); }
 
     #copy(from, framebuffer, width, height, flips) {
         const { gl } = this;
@@ -285,14 +300,14 @@ export class Picture {
 
     // Draws a tile; true: the job has all its samples.
     #continue(job) {
-        if (!job.at)
+        if (!job.sums)
             this.#beginLevel(job);
         this.#drawTile(job);
         job.tiles++;
-        const over = job.at.y >= job.sums.height, now = performance.now();
+        const over = job.cut.isOver, now = performance.now();
         if (over) {
-            job.at = { x: 0, y: 0, height: 0 };
             job.sample++;
+            this.#beginSample(job);
         }
         const done = job.level === 1 && job.sample >= job.wanted;
         if (over || now - job.last > (job.level < job.first || job.sample > 0 ? 100 : 500)) {
@@ -302,9 +317,9 @@ export class Picture {
                 elapsed: now - job.begun, width: job.width, height: job.height, time: job.state.time, done, number: job.state.number });
         }
         if (over && job.level > 1) {
-            job.level = levels[levels.indexOf(job.level) - 1];
+            job.level = Math.min(job.level / 2, this.#firstLevel(job.width, job.height));
             job.sample = 0;
-            job.at = null;
+            job.sums = null;
         }
         if (done)
             this.job = null;
@@ -313,67 +328,27 @@ export class Picture {
 
     // ---- drawing ----
 
-    #drawTile(job) {
-        const { at, sums } = job;
-        if (!this.warm) { // drivers compile at the first draw, which tells nothing; the second tells what draws cost by themselves
-            this.#timeTile(job, 0, 0, 1, 1);
-            this.overhead = this.#timeTile(job, 0, 0, 1, 1);
-            sums.sums.clear();
-            Object.assign(this, { warm: true, known: Array(bands).fill(Infinity) });
-        }
-        if (at.x === 0)
-            at.height = this.#heightAt(at.y, sums);
-        const width = Math.min(Math.max(Math.floor(Math.max(tileTime, 2 * this.overhead) / this.#costOf(at.y, at.height, sums) / at.height), smallest), sums.width - at.x);
-        const took = this.#timeTile(job, at.x, at.y, width, at.height), pixels = width * at.height;
-        this.#learn(job, Math.max(took - this.overhead, 0.2 * took) / pixels);
-        job.spent += took;
-        job.drawn += pixels;
-        if (8 * job.drawn > sums.width * sums.height) // what little of a level costs tells too little of the picture
-            this.cost = job.spent / job.drawn;
-        at.x += width;
-        if (at.x >= sums.width) {
-            at.x = 0;
-            at.y += at.height;
-        }
-    }
+    #drawTile(job) { job.cut.took(this.#timeTile(job, job.cut.next())); }
 
-    // As many rows as are drawn in the time of a tile, one at least.
-    #heightAt(y, sums) {
-        let height = 1;
-        while (y + height < sums.height && this.#costOf(y, height + 1, sums) * sums.width * (height + 1) < tileTime)
-            height++;
-        return height;
-    }
-
-    // The largest time of a pixel that is known of rows: pictures are expensive in places.
-    #costOf(y, height, sums) {
-        const [first, last] = [y, y + height - 1].map(row => bandOf(row, sums));
-        return Math.max(...this.known.slice(first, last + 1));
-    }
-
-    // What the last level took is known of the next.
-    #learn({ at, sums, found }, cost) {
-        const first = bandOf(at.y, sums), last = bandOf(at.y + at.height - 1, sums);
-        for (let band = first; band <= last; band++) {
-            found[band] = found[band] ? risen(found[band], cost) : cost;
-            this.known[band] = Number.isFinite(this.known[band]) ? risen(this.known[band], cost) : Infinity;
-        }
-        if (at.y + at.height >= sums.height)
-            this.known = found.map((own, band) => own || this.known[band]);
+    // What draws cost by themselves.  Drivers compile at the first, which tells nothing.
+    #measureDraws(job) {
+        const [, ...times] = [0, 1, 2].map(() => this.#timeTile(job, { x: 0, y: 0, width: 1, height: 1 }));
+        job.sums.sums.clear();
+        return new Costs(Math.min(...times));
     }
 
     // Draws a tile, and waits until it is there.
-    #timeTile(job, x, y, width, height) {
+    #timeTile(job, tile) {
         const { gl } = this, { shown } = job.sums, began = performance.now();
-        this.#drawPasses(job, x, y, width, height);
+        this.#drawPasses(job, tile);
         shown.bind();
         this.#drawResolved(job);
         gl.readBuffer(gl.COLOR_ATTACHMENT0);
-        gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        gl.readPixels(tile.x, tile.y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
         return performance.now() - began;
     }
 
-    #drawPasses(job, x, y, width, height) {
+    #drawPasses(job, { x, y, width, height }) {
         const { gl } = this, { sums, state, level, sample, frame } = job;
         const common = { ray_number: sample, light_count: state.view.lights.length, projection: projections.indexOf(state.camera.projection),
             from_middles: level > 1 ? 1 : 0, input_rows: 0, krs_rows: 1, krs_cells: 2, ends: 3, facings: 4, secondaries: 5,
@@ -446,18 +421,17 @@ export class Picture {
     #continueShot() {
         const [shot] = this.shots, { gl } = this, { width, height, samples } = shot;
         if (!shot.job) {
-            const sums = new Sums(gl, width, height, this.sumFormat, this.programs.mirrors), { state } = this;
-            shot.job = { ...this.#jobOf(width, height, samples, 1), sums, at: { x: 0, y: 0, height: 0 }, spent: 0, drawn: 0, found: Array(bands).fill(0),
-                frame: frameOf(state.camera, state.view, state.about.shaders, width, height, samples) };
-            sums.sums.clear();
+            shot.job = this.#jobOf(width, height, samples, 1);
+            shot.job.sums = new Sums(gl, width, height, this.sumFormat, this.programs.mirrors);
+            this.#beginSums(shot.job, width, height);
         }
         const { job } = shot;
         this.#drawTile(job);
-        if (job.at.y < height)
+        if (!job.cut.isOver)
             return;
         if (job.sample === 0)
             shot.rays = this.#readRays(job);
-        job.at = { x: 0, y: 0, height: 0 };
+        this.#beginSample(job);
         if (++job.sample < samples)
             return;
         this.shots.shift();
@@ -492,9 +466,6 @@ export class Picture {
     }
 }
 
-// What is dearer counts at once, what is cheaper by half: one tile may have waited for others.
-const risen = (known, cost) => (cost > known ? cost : (known + cost) / 2);
-const bandOf = (row, { height }) => Math.floor(bands * row / height);
 const freePasses = programs => passes.forEach(pass => programs[pass].free());
 
 // Tables that materials of several layers need.

@@ -116,7 +116,7 @@ export class KrsViewElement extends HTMLElement {
             this.#update('scene');
     }
 
-    #paint(message) { this.#painter?.postMessage(message); }
+    #paint(message, transfer = []) { this.#painter?.postMessage(message, transfer); }
 
     #hear(message) {
         if (message.kind === 'frame')
@@ -257,7 +257,8 @@ export class KrsViewElement extends HTMLElement {
         this.#shown = this.#named(view.cameras);
         this.#sent = { parameters, values, tables: { version: tables.version }, view, about: { image, shaders }, time };
         const state = this.#stateAt({ tables });
-        this.#paint(text ? { call: 'scene', scene: { key: text, text, about: scene.about }, state } : { call: 'state', state });
+        this.#paint(text ? { call: 'scene', scene: { text, about: scene.about }, state } : { call: 'state', state },
+            tables.rows ? [tables.rows.buffer, tables.cells.buffer] : []);
     }
 
     // The last state with the present camera.
