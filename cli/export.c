@@ -51,12 +51,18 @@ static KrsStatus export_to(const Options *options, const KrsScene *scene, KrsSta
                            const char *path)
 {
     const char *base = find_base(options, path), *slash = strrchr(base, '/');
-    Text        why    = {.arena = options->arena};
-    ExportFiles files  = {0};
-    ExportWish  wish   = {.target = (ExportId)options->export_to,
-                          .name   = scene_name(options->arena, options->files.items[0]),
-                          .stem   = slash ? slash + 1 : base};
-    KrsStatus   status = scene_camera(options, scene, &wish.camera);
+    Text        why   = {.arena = options->arena};
+    ExportFiles files = {0};
+    ExportWish  wish  = {.target = (ExportId)options->export_to,
+                         .name   = scene_name(options->arena, options->files.items[0]),
+                         .stem   = slash ? slash + 1 : base};
+    wish.bake         = options->export_bake;
+    wish.within       = options->within.given;
+    memcpy(wish.low, options->within.low, sizeof wish.low);
+    memcpy(wish.high, options->within.high, sizeof wish.high);
+    KrsStatus status = scene_camera(options, scene, &wish.camera);
+    if (status == KRS_OK)
+        status = scene_component(options, scene, &wish.component);
     if (status != KRS_OK)
         return status;
     status = export_scene(state, &wish, &files, &why);
@@ -78,6 +84,8 @@ KrsStatus command_export(Options *options)
     KrsState *state;
     if (options->export_to < 0)
         return say_usage(options, "export wants to know what for: --to shadertoy, for example");
+    if (options->export_bake == 0 && (options->component || options->within.given))
+        return say_usage(options, "--component and --within are for samples: --bake N");
     if (options->outputs.count > 1)
         return say_usage(options, "export wants one file");
     const char *path   = first_path(options);

@@ -9,7 +9,7 @@
 static void add_slots(Text *to, const Export *export,
                       void (*slot)(Text *to, const Export *export, size_t slot))
 {
-    const size_t slots = 1 + krs_parameter_count(export->scene);
+    const size_t slots = 1 + exported_parameters(export);
     for (size_t i = 0; i < slots; i++) {
         text_add(to, i ? ", " : "");
         slot(to, export, i);
@@ -57,14 +57,14 @@ void add_osl_values(Text *to, const Export *export) { add_slots(to, export, add_
 
 void set_osl_parameters(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < 1 + krs_parameter_count(export->scene); i++)
+    for (size_t i = 0; i < 1 + exported_parameters(export); i++)
         text_format(to, "    krs.parameter[%zu] = given%zu;\n", i, i);
 }
 
 /* Adds lines of the shader's head, with ranges where an editor may show them. */
 void add_osl_parameters(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         const float       *value     = export->block[1 + i];
         text_format(to, "    %s ",

@@ -8,7 +8,7 @@
 #include "krs/krs.h"
 
 typedef enum ExportId {
-#define EXPORT_TARGET(id, name, words, language, source, tables, cameras, longest, about) \
+#define EXPORT_TARGET(id, name, words, language, source, tables, baked, cameras, longest, about) \
     EXPORT_##id,
 #include "export/targets.def"
     EXPORT_COUNT
@@ -42,6 +42,7 @@ typedef struct ExportTarget {
     const char
         *source; /* the template of what another language is made of; NULL: the scene's text */
     ExportTables tables;
+    const char  *baked; /* NULL: it can have no samples; else how their file ends */
     bool         cameras;
     size_t       longest;
 } ExportTarget;
@@ -66,6 +67,10 @@ typedef struct ExportWish {
     ExportId    target;
     const char *name, *stem; /* of the scene; of the files, without their endings */
     size_t      camera;
+    uint32_t    bake;      /* samples along the longest side; 0: the scene is a text */
+    size_t      component; /* which is sampled alone, from 1; 0: all */
+    bool        within;    /* of what is in a box alone */
+    double      low[3], high[3];
 } ExportWish;
 
 /* Adds the files for a target, in memory of the arena of `why`.  KRS_BAD_ARGUMENT: the target cannot have the scene, and

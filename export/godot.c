@@ -52,14 +52,14 @@ static void add_uniform(Text *to, const Export *export, size_t i)
 
 void add_godot_uniforms(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++)
+    for (size_t i = 0; i < exported_parameters(export); i++)
         add_uniform(to, export, i);
 }
 
 void set_godot_parameters(Text *to, const Export *export)
 {
     text_add(to, "    krs.parameter[0] = vec4(TIME, 0.0, 0.0, 0.0);\n");
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         text_format(to, "    krs.parameter[%zu] = vec4(", 1 + i);
         add_parameter_name(to, "param_", parameter.name, 1 + i);

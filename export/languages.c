@@ -125,12 +125,27 @@ static const char *without_entry(const Text *whole)
     return whole->bytes;
 }
 
+/* Adds HLSL whose textures are at no place of their own, and whose samplers have names as Unity wants them. */
+static void add_unbound(Text *to, const char *text)
+{
+    static const char bound[] = " : register(", sampler[] = "_krs_baked_sampler";
+    for (const char *from = text; *from;) {
+        if (begins(from, bound))
+            from = strchr(from, ')') + 1;
+        else if (begins(from, sampler)) {
+            text_add(to, "samplerkrs_baked");
+            from += sizeof sampler - 1;
+        } else
+            text_add_bytes(to, from++, 1);
+    }
+}
+
 static KrsStatus make_hlsl_part(const Export *export, Text *to, Text *why)
 {
     Text            whole  = {.arena = to->arena};
     const KrsStatus status = cross_compile(export->text, hlsl_options, &whole, why);
     if (status == KRS_OK)
-        text_add(to, without_entry(&whole));
+        add_unbound(to, without_entry(&whole));
     return status;
 }
 
@@ -169,7 +184,7 @@ static KrsStatus make_gdshader(const Export *export, Text *to, Text *why)
     (void)why;
     Text prepared = {.arena = to->arena};
     set_godot_parameters(&prepared, export);
-    add_without_globals(to, export->text, krs_parameter_slots(export->scene), "", prepared.bytes);
+    add_without_globals(to, export->text, exported_slots(export), "", prepared.bytes);
     return KRS_OK;
 }
 
@@ -179,8 +194,7 @@ static KrsStatus make_osl(const Export *export, Text *to, Text *why)
     Text whole = {.arena = to->arena}, given = whole, prepared = whole;
     add_osl_given(&given, export);
     set_osl_parameters(&prepared, export);
-    add_without_globals(&whole, export->text, krs_parameter_slots(export->scene), given.bytes,
-                        prepared.bytes);
+    add_without_globals(&whole, export->text, exported_slots(export), given.bytes, prepared.bytes);
     add_osl(to, whole.bytes);
     return KRS_OK;
 }
@@ -205,15 +219,15 @@ static const struct {
     [EXPORT_IN_OSL]         = {KRS_TARGET_ESSL, false, cut_block, make_osl},
 };
 
-/* Fills the template that another language is made of, in GLSL. */
-static const char *fill_source(const Export *export, Arena *arena)
+/* Fills a template that another language is made of, in GLSL. */
+static const char *fill_in_glsl(const Export *export, Arena *arena, const char *template)
 {
     Text         text   = {.arena = arena};
     ExportTarget target = *export->target;
     Export       own    = *export;
     target.words        = "vec#";
     own.target          = &target;
-    export_fill(&text, &own, target.source);
+    export_fill(&text, &own, template);
     return text.bytes;
 }
 
@@ -223,15 +237,19 @@ KrsStatus find_scene_text(Export *export, Arena *arena, Text *why)
     const KrsTextOptions how      = {.no_early_outs = !languages[language].lod};
     char                *printed;
     Text                 made = {.arena = arena};
-    KrsStatus status = krs_text(export->scene, languages[language].printed, &how, &printed);
-    if (status != KRS_OK)
+    KrsStatus            status;
+    if (export->baked)
+        export->text = fill_in_glsl(export, arena, "baked.glsl");
+    else if ((status = krs_text(export->scene, languages[language].printed, &how, &printed)) ==
+             KRS_OK) {
+        if (languages[language].cut)
+            languages[language].cut(printed);
+        export->text = arena_copy_text(arena, printed, strlen(printed));
+        free(printed);
+    } else
         return status;
-    if (languages[language].cut)
-        languages[language].cut(printed);
-    export->text = arena_copy_text(arena, printed, strlen(printed));
-    free(printed);
     if (export->target->source)
-        export->text = fill_source(export, arena);
+        export->text = fill_in_glsl(export, arena, export->target->source);
     if (!languages[language].make)
         return KRS_OK;
     status       = languages[language].make(export, &made, why);

@@ -51,7 +51,7 @@ static void value_of(const Export *export, size_t slot, double value[4])
 /* Adds lines, each a constant with its range behind it. */
 void add_constant_parameters(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         double             value[4];
         value_of(export, 1 + i, value);
@@ -79,14 +79,14 @@ void add_constant_parameters(Text *to, const Export *export)
 void set_constant_parameters(Text *to, const Export *export)
 {
     static const char *const padding[] = {"", ", 0.0, 0.0, 0.0", ", 0.0, 0.0", ", 0.0", ""};
-    const size_t             count     = krs_parameter_count(export->scene);
+    const size_t             count     = exported_parameters(export);
     for (size_t i = 0; i < count; i++) {
         const KrsParameter parameter = parameter_of(export, i);
         text_format(to, "    krs_parameter[%zu] = vec4(", 1 + i);
         add_parameter_name(to, "PARAM_", parameter.name, 1 + i);
         text_format(to, "%s);\n", padding[parameter.components]);
     }
-    for (size_t i = 1 + count; i < krs_parameter_slots(export->scene); i++) {
+    for (size_t i = 1 + count; i < exported_slots(export); i++) {
         double value[4];
         value_of(export, i, value);
         text_format(to, "    krs_parameter[%zu] = ", i);
@@ -98,7 +98,7 @@ void set_constant_parameters(Text *to, const Export *export)
 void add_parameters_json(Text *to, const Export *export)
 {
     text_add(to, "[");
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         text_add(to, i ? ",\n    { name: " : "\n    { name: ");
         text_json(to, parameter.name);
@@ -116,7 +116,7 @@ void add_parameters_json(Text *to, const Export *export)
 void add_block(Text *to, const Export *export)
 {
     text_add(to, "[");
-    for (size_t i = 0; i < 4 * krs_parameter_slots(export->scene); i++) {
+    for (size_t i = 0; i < 4 * exported_slots(export); i++) {
         text_add(to, i ? ", " : "");
         text_json_number(to, (double)export->block[i / 4][i % 4]);
     }
@@ -128,7 +128,7 @@ void add_parameter_lines(Text *to, const Export *export)
 {
     static const char *const parts[] = {"", ".x", ".xy", ".xyz", ""};
     text_add(to, "//   krs_parameter[0].x: the time\n");
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         text_format(to, "//   krs_parameter[%zu]%s: %s", 1 + i, parts[parameter.components],
                     parameter.name);
@@ -145,7 +145,7 @@ void add_parameter_lines(Text *to, const Export *export)
 /* Adds all slots, with commas between. */
 void add_defaults(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_slots(export->scene); i++) {
+    for (size_t i = 0; i < exported_slots(export); i++) {
         double value[4];
         value_of(export, i, value);
         text_add(to, i ? ", " : "");

@@ -7,6 +7,9 @@
 #include "compiler/scene/program.h"
 #include "export/export.h"
 
+/* What a scene is sampled to (bake.c). */
+typedef struct Baked Baked;
+
 typedef struct Export {
     const KrsScene     *scene;
     KrsState           *state;
@@ -15,7 +18,8 @@ typedef struct Export {
     const char         *stem; /* of the files, without their endings */
     KrsView             view;
     float (*block)[4];
-    const char *text; /* of the scene, in the language of the target */
+    const Baked *baked; /* NULL: the scene is a text */
+    const char  *text;  /* of the scene, in the language of the target */
 } Export;
 
 /* Fills the template of this name. */
@@ -33,12 +37,32 @@ double find_rise(const KrsCamera *camera);
 void find_upright(const KrsCamera *camera, double up[3]);
 /* Returns how far from the eye there may be something. */
 double find_farthest(const Export *export);
-/* Finds the box of the scene; where that has no end, a hundred times as far as
+/* Finds the box of the scene, or of its samples. */
+void find_extent(const Export *export, double low[3], double high[3]);
+/* Finds the same; where that has no end, a hundred times as far as
    the camera looks. */
 void find_box(const Export *export, double low[3], double high[3]);
 void add_constants(Text *to, const Export *export);
 void add_farthest(Text *to, const Export *export);
 void add_camera(Text *to, const Export *export);
+
+/* ---- bake.c ---- */
+/* Samples the scene.  KRS_BAD_ARGUMENT: `why` says what hinders it. */
+KrsStatus bake_scene(Export *export, const ExportWish *wish, Arena *arena, Text *why);
+/* Return how many parameters the text has, and how many slots: samples have none, and the time. */
+size_t exported_parameters(const Export *export);
+size_t exported_slots(const Export *export);
+/* Finds the box of the samples. */
+void                 find_baked_box(const Export *export, double low[3], double high[3]);
+const unsigned char *baked_bytes(const Export *export, size_t *length);
+/* Adds a file that has them. */
+void add_baked_file(Text *to, const Export *export);
+void add_baked_low(Text *to, const Export *export);
+void add_baked_size(Text *to, const Export *export);
+void add_baked_cell(Text *to, const Export *export);
+void add_baked_count(Text *to, const Export *export);
+void add_baked_sampler(Text *to, const Export *export);
+void add_normal_reach(Text *to, const Export *export);
 
 /* ---- parameters.c ---- */
 KrsParameter parameter_of(const Export *export, size_t index);
@@ -57,6 +81,7 @@ bool has_tables(const Export *export);
 const unsigned char *table_bytes(const Export *export, bool rows, size_t *length, Arena *arena);
 void                 add_rows(Text *to, const Export *export);
 void                 add_cells(Text *to, const Export *export);
+void                 add_baked_text(Text *to, const Export *export);
 
 /* ---- languages.c ---- */
 /* Finds the scene's text in the language of the target.  KRS_BAD_ARGUMENT: `why` says what hinders it. */

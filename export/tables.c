@@ -20,7 +20,10 @@ static void add_base64(Text *to, const unsigned char *bytes, size_t length)
     }
 }
 
-bool has_tables(const Export *export) { return krs_table_cells(export->scene) > 0; }
+bool has_tables(const Export *export)
+{
+    return !export->baked && krs_table_cells(export->scene) > 0;
+}
 
 const unsigned char *table_bytes(const Export *export, bool rows, size_t *length, Arena *arena)
 {
@@ -43,3 +46,12 @@ static void add_table(Text *to, const Export *export, bool rows)
 
 void add_rows(Text *to, const Export *export) { add_table(to, export, true); }
 void add_cells(Text *to, const Export *export) { add_table(to, export, false); }
+
+void add_baked_text(Text *to, const Export *export)
+{
+    size_t length;
+    if (export->baked) {
+        const unsigned char *bytes = baked_bytes(export, &length);
+        add_base64(to, bytes, length);
+    }
+}

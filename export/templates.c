@@ -12,8 +12,9 @@
 #include "export/parts.h"
 
 const ExportTarget export_targets[EXPORT_COUNT] = {
-#define EXPORT_TARGET(id, name, words, language, source, tables, cameras, longest, about) \
-    [EXPORT_##id] = {name, words, EXPORT_IN_##language, source, EXPORT_##tables, cameras, longest},
+#define EXPORT_TARGET(id, name, words, language, source, tables, baked, cameras, longest, about) \
+    [EXPORT_##id] = {name,    words,  EXPORT_IN_##language, source, EXPORT_##tables, baked,      \
+                     cameras, longest},
 #include "export/targets.def"
 };
 
@@ -69,7 +70,7 @@ static void add_language(Text *to, const Export *export)
 }
 static void add_slots(Text *to, const Export *export)
 {
-    text_format(to, "%zu", krs_parameter_slots(export->scene));
+    text_format(to, "%zu", exported_slots(export));
 }
 static void add_scene(Text *to, const Export *export) { text_add(to, export->text); }
 static void add_prelude(Text *to, const Export *export) { export_fill(to, export, "prelude.osl"); }
@@ -82,11 +83,15 @@ static void add_tracer(Text *to, const Export *export)
 }
 static void add_low(Text *to, const Export *export)
 {
-    text_json_vector(to, export->scene->program.low, 3);
+    double low[3], high[3];
+    find_extent(export, low, high);
+    text_json_vector(to, low, 3);
 }
 static void add_high(Text *to, const Export *export)
 {
-    text_json_vector(to, export->scene->program.high, 3);
+    double low[3], high[3];
+    find_extent(export, low, high);
+    text_json_vector(to, high, 3);
 }
 static void add_low_vector(Text *to, const Export *export)
 {
@@ -125,6 +130,13 @@ static const struct Piece {
               {"rows", add_rows},
               {"cells", add_cells},
               {"normal", add_normal},
+              {"normal_reach", add_normal_reach},
+              {"baked_sampler", add_baked_sampler},
+              {"baked_low", add_baked_low},
+              {"baked_size", add_baked_size},
+              {"baked_cell", add_baked_cell},
+              {"baked_count", add_baked_count},
+              {"baked_text", add_baked_text},
               {"trace", add_trace},
               {"center", add_center},
               {"half", add_half},
@@ -168,9 +180,19 @@ static const char *find_template(const char *name)
     return "";
 }
 
+/* What stands from @if_baked@ to @end@ is left out of a scene that is a text. */
 static void fill_text(Text *to, const Export *export, const char *from)
 {
+    static const char begin[] = "@if_baked@", end[] = "@end@";
     for (const char *at; (at = strchr(from, '@'));) {
+        const bool opens = strncmp(at, begin, sizeof begin - 1) == 0;
+        if (opens || strncmp(at, end, sizeof end - 1) == 0) {
+            text_add_bytes(to, from, (size_t)(at - from));
+            from = !opens          ? at + sizeof end - 1
+                   : export->baked ? at + sizeof begin - 1
+                                   : strstr(at, end) + sizeof end - 1;
+            continue;
+        }
         const size_t        length = strcspn(at + 1, "@");
         const struct Piece *piece  = find_piece(at + 1, length);
         text_add_bytes(to, from, (size_t)(at - from) + (piece ? 0 : 1));
@@ -187,6 +209,13 @@ void export_fill(Text *to, const Export *export, const char *template)
 }
 
 /* ---- what a target cannot have ---- */
+
+/* Tells what else there is. */
+static void tell_other_ways(const Export *export, Text *why)
+{
+    text_add(why, export->target->baked ? "--bake N samples the scene instead"
+                                        : "`krs mesh` and `krs grid` write triangles and samples");
+}
 
 /* Adds what is read from tables: parts that are alike, at their place in a text, or a picture. */
 static void tell_tabled(const Export *export, Text *why)
@@ -206,27 +235,39 @@ static void tell_tabled(const Export *export, Text *why)
         krs_texture(export->scene, 0, &texture);
         text_format(why, "the picture `%s` is", texture.file);
     }
-    text_format(why,
-                " read from tables, which %s has no room for; `krs mesh` and `krs grid` write "
-                "triangles and samples",
-                export->target->name);
+    text_format(why, " read from tables, which %s has no room for; ", export->target->name);
+    tell_other_ways(export, why);
 }
 
-/* Tells whether the target cannot have the scene, and why, in words of its author. */
-static bool refuse(const Export *export, Text *why)
+/* Adds what a text of the scene cannot have. */
+static void refuse_text(const Export *export, Text *why)
 {
     const KrsDiagnostic *large  = krs_scene_too_large(export->scene);
     const bool           tables = export->target->tables != EXPORT_WITHOUT_TABLES;
     KrsStateSlope        slope;
-    if (large)
-        text_format(why, "%s, so no shader is made of it (%s)", large->message, large->code);
-    else if (!tables && has_tables(export))
+    if (large) {
+        text_format(why, "%s, so no shader is made of it (%s); ", large->message, large->code);
+        tell_other_ways(export, why);
+    } else if (!tables && has_tables(export))
         tell_tabled(export, why);
-    else if (!tables && krs_state_slope(export->scene, 0, &slope) == KRS_OK)
+    else if (!tables && krs_state_slope(export->scene, 0, &slope) == KRS_OK) {
         text_format(
-            why, "the distance at %s is divided by a number that is known for each picture alone",
+            why, "the distance at %s is divided by a number that is known for each picture alone; ",
             slope.location);
-    else if (export->view.sky.map && export->target->language == EXPORT_IN_SHORT_ESSL)
+        tell_other_ways(export, why);
+    }
+}
+
+/* Tells whether the target cannot have the scene, and why, in words of its author. */
+static bool refuse(const Export *export, bool baked, Text *why)
+{
+    if (baked && !export->target->baked)
+        text_format(why, "%s has no room for samples of a scene", export->target->name);
+    else if (!baked)
+        refuse_text(export, why);
+    if (why->length > 0)
+        return true;
+    if (export->view.sky.map && export->target->language == EXPORT_IN_SHORT_ESSL)
         text_add(why, "its sky is a picture");
     else if (!export->target->cameras && export->view.camera.projection != KRS_PERSPECTIVE)
         text_add(why, "its camera is no perspective one; --camera chooses another");
@@ -260,6 +301,8 @@ static KrsStatus write_files(const Export *export, ExportId target, ExportFiles 
         add_table_file(export, files, ".rows.bin", true, why->arena);
         add_table_file(export, files, ".cells.bin", false, why->arena);
     }
+    if (export->baked && export->target->baked[0])
+        add_baked_file(add_file(files, export->target->baked, why->arena), export);
     const size_t characters = files->items[0].text.length, longest = export->target->longest;
     if (longest == 0 || characters <= longest)
         return KRS_OK;
@@ -278,8 +321,10 @@ KrsStatus export_scene(KrsState *state, const ExportWish *wish, ExportFiles *fil
     export.block = arena_alloc(why->arena, krs_parameter_slots(export.scene), sizeof *export.block);
     krs_state_parameters(state, export.block);
     KrsStatus status = krs_state_view(state, wish->camera, &export.view);
-    if (status == KRS_OK && refuse(&export, why))
+    if (status == KRS_OK && refuse(&export, wish->bake > 0, why))
         status = KRS_BAD_ARGUMENT;
+    if (status == KRS_OK && wish->bake > 0)
+        status = bake_scene(&export, wish, why->arena, why);
     if (status == KRS_OK)
         status = find_scene_text(&export, why->arena, why);
     return status == KRS_OK ? write_files(&export, wish->target, files, why) : status;

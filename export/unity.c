@@ -35,7 +35,7 @@ static void add_value(Text *to, const Export *export, size_t slot, bool color, b
 
 void add_unity_properties(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         const bool         color     = is_color(&parameter);
         text_add(to, "        ");
@@ -60,7 +60,7 @@ void add_unity_properties(Text *to, const Export *export)
 
 void add_unity_uniforms(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         text_add(to, parameter.components == 1 ? "            float " : "            float4 ");
         add_parameter_name(to, "_", parameter.name, 1 + i);
@@ -73,7 +73,7 @@ static void set_parameters(Text *to, const Export *export, const char *start, co
 {
     static const char *const parts[]   = {"", "", ".xy", ".xyz", ""};
     static const char *const padding[] = {"", ", 0.0, 0.0, 0.0", ", 0.0, 0.0", ", 0.0", ""};
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         text_format(to, "%skrs_parameter[%zu] = float4(", start, 1 + i);
         add_parameter_name(to, prefix, parameter.name, 1 + i);
@@ -88,7 +88,7 @@ void add_unity_parameters(Text *to, const Export *export)
 
 void add_unity_fields(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         const bool         color     = is_color(&parameter);
         text_add(to, "    ");
@@ -118,7 +118,7 @@ void add_unity_fields(Text *to, const Export *export)
 
 void add_unity_sets(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         text_format(to, "        block.Set%s(\"",
                     parameter.components == 1 ? "Float"
@@ -162,7 +162,7 @@ void add_unity_half(Text *to, const Export *export) { add_box_number(to, export,
 
 void add_unreal_inputs(Text *to, const Export *export)
 {
-    for (size_t i = 0; i < krs_parameter_count(export->scene); i++) {
+    for (size_t i = 0; i < exported_parameters(export); i++) {
         const KrsParameter parameter = parameter_of(export, i);
         text_add(to, "//   ");
         add_parameter_name(to, "param_", parameter.name, 1 + i);

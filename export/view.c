@@ -14,15 +14,24 @@ static double distance_between(const double a[3], const double b[3])
 
 double find_farthest(const Export *export)
 {
-    const KrsCamera  *camera  = &export->view.camera;
-    const KrsProgram *program = &export->scene->program;
-    double            far[3];
+    const KrsCamera *camera = &export->view.camera;
+    double           far[3], low[3], high[3];
+    find_extent(export, low, high);
     for (int k = 0; k < 3; k++)
-        far[k] = fmax(fabs(program->low[k] - camera->eye[k]),
-                      fabs(program->high[k] - camera->eye[k]));
+        far[k] = fmax(fabs(low[k] - camera->eye[k]), fabs(high[k] - camera->eye[k]));
     const double corner = distance_between(far, (const double[3]){0, 0, 0});
     const double enough = 1e4 * distance_between(camera->eye, camera->target);
     return corner < enough ? corner : enough;
+}
+
+void find_extent(const Export *export, double low[3], double high[3])
+{
+    if (export->baked)
+        find_baked_box(export, low, high);
+    else {
+        memcpy(low, export->scene->program.low, sizeof export->scene->program.low);
+        memcpy(high, export->scene->program.high, sizeof export->scene->program.high);
+    }
 }
 
 void find_box(const Export *export, double low[3], double high[3])
@@ -31,9 +40,10 @@ void find_box(const Export *export, double low[3], double high[3])
     const double    *eye = camera->eye, way = distance_between(eye, camera->target);
     const double     far = fmin(find_farthest(export),
                                 100 * way); /* rays begin there, in single precision */
+    find_extent(export, low, high);
     for (int k = 0; k < 3; k++) {
-        low[k]  = fmax(export->scene->program.low[k], eye[k] - far);
-        high[k] = fmin(export->scene->program.high[k], eye[k] + far);
+        low[k]  = fmax(low[k], eye[k] - far);
+        high[k] = fmin(high[k], eye[k] + far);
     }
 }
 

@@ -1,57 +1,10 @@
 /* options.c: what `krs mesh` is asked for, and what of it is refused. */
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/mesh/meshing.h"
-
-/* Tells whether this is the first component of its name: that one --component takes, and it tells the name
-   once. */
-static bool is_first_of_name(const Meshing *meshing, size_t index)
-{
-    KrsComponent component, other;
-    krs_component(meshing->scene, index, &component);
-    for (size_t i = 0; i < index; i++) {
-        krs_component(meshing->scene, i, &other);
-        if (strcmp(other.name, component.name) == 0)
-            return false;
-    }
-    return true;
-}
-
-/* Reads a number of `krs info`, with which no name begins. */
-static bool is_number_of_component(const char *text, size_t count, size_t *number)
-{
-    char               *end;
-    const unsigned long value = strtoul(text, &end, 10);
-    if (!isdigit((unsigned char)text[0]) || *end != '\0' || value < 1 || value > count)
-        return false;
-    *number = value;
-    return true;
-}
-
-static KrsStatus find_component(Meshing *meshing)
-{
-    const char *wanted = meshing->options->component;
-    size_t      count  = krs_component_count(meshing->scene);
-    Text        known  = {.arena = meshing->options->arena};
-    for (size_t i = 0; wanted && i < count; i++) {
-        KrsComponent component;
-        krs_component(meshing->scene, i, &component);
-        if (strcmp(component.name, wanted) == 0) {
-            meshing->how.component = i + 1;
-            return KRS_OK;
-        }
-        if (is_first_of_name(meshing, i))
-            text_format(&known, "%s`%s`", i ? ", " : "", component.name);
-    }
-    if (!wanted || is_number_of_component(wanted, count, &meshing->how.component))
-        return KRS_OK;
-    return say_usage(meshing->options, "the scene has no component `%s`; it has %s", wanted,
-                     count ? known.bytes : "none");
-}
 
 /* A component of --frames that is moved has no end for all times, as a rule: the parts that it has must have one. */
 static bool is_moved(const Meshing *meshing, size_t index)
@@ -106,7 +59,7 @@ static KrsStatus refuse_endless(const Meshing *meshing)
         krs_component(meshing->scene, i, &component);
         const double *low = component.low, *high = component.high;
         if (!isfinite((high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2])) ||
-            !is_first_of_name(meshing, i))
+            !scene_is_first_of_name(meshing->scene, i))
             continue;
         if (named++ < MAX_NAMED)
             text_format(&others, "%s`%s`", others.length ? ", " : "", component.name);
@@ -204,7 +157,7 @@ KrsStatus check_common_options(Meshing *meshing)
     const Options *options = meshing->options;
     const char    *path    = options->files.items[0];
     double         longest;
-    KrsStatus      status = find_component(meshing);
+    KrsStatus status = scene_component(meshing->options, meshing->scene, &meshing->how.component);
     if (status != KRS_OK)
         return status;
     if (options->within.given) {

@@ -65,7 +65,7 @@ const Choice language_choices[] = {
 #include "krs/targets.def"
     LAST};
 const Choice export_choices[] = {
-#define EXPORT_TARGET(id, name, words, language, source, tables, cameras, longest, about) \
+#define EXPORT_TARGET(id, name, words, language, source, tables, baked, cameras, longest, about) \
     {name, about},
 #include "export/targets.def"
     LAST};

@@ -18,6 +18,8 @@ enum {
     MANY_FILES     = -1, /* a command that takes one or more files */
     MAYBE_A_WORD   = -2, /* one that takes a word, which is no file, or nothing */
     MAX_LODS       = 8,  /* of --lods */
+    FEWEST_BAKED   = 8,  /* of --bake of an export */
+    MOST_BAKED     = 256,
     MIN_BAKED      = 16, /* pixels of --bake */
     MAX_BAKED      = 4096,
     OPTION_TEXT    = 256, /* bytes of what is said about an option, at most */

@@ -63,6 +63,12 @@ KrsStatus scene_state(const Options *options, const KrsScene *scene, KrsState **
 /* Finds the number of the camera that --camera names, or of the first; KRS_BAD_ARGUMENT and words:
    there is none. */
 KrsStatus scene_camera(const Options *options, const KrsScene *scene, size_t *camera);
+/* Tells whether this is the first component of its name: that one --component takes, and it tells the name
+   once. */
+bool scene_is_first_of_name(const KrsScene *scene, size_t index);
+/* Finds the number, from 1, of the component that --component names, or leaves it; KRS_BAD_ARGUMENT and
+   words: there is none. */
+KrsStatus scene_component(const Options *options, const KrsScene *scene, size_t *number);
 /* Sets the time, and reports if the frame cannot have it. */
 KrsStatus scene_set_time(const Options *options, KrsState *state, double time);
 /* Returns the name of a scene: that of "a/ring.krs" is "ring". */

@@ -1,9 +1,11 @@
 /*
  * scene.c: from the path of a scene and the options to a compiled scene and a frame of it.
  */
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -377,4 +379,48 @@ KrsStatus scene_camera(const Options *options, const KrsScene *scene, size_t *ca
     if (!options->camera)
         return KRS_OK;
     return say_unknown_camera(options, names, named);
+}
+
+bool scene_is_first_of_name(const KrsScene *scene, size_t index)
+{
+    KrsComponent component, other;
+    krs_component(scene, index, &component);
+    for (size_t i = 0; i < index; i++) {
+        krs_component(scene, i, &other);
+        if (strcmp(other.name, component.name) == 0)
+            return false;
+    }
+    return true;
+}
+
+/* Reads a number of `krs info`, with which no name begins. */
+static bool is_number_of_component(const char *text, size_t count, size_t *number)
+{
+    char               *end;
+    const unsigned long value = strtoul(text, &end, 10);
+    if (!isdigit((unsigned char)text[0]) || *end != '\0' || value < 1 || value > count)
+        return false;
+    *number = value;
+    return true;
+}
+
+KrsStatus scene_component(const Options *options, const KrsScene *scene, size_t *number)
+{
+    const char *wanted = options->component;
+    size_t      count  = krs_component_count(scene);
+    Text        known  = {.arena = options->arena};
+    for (size_t i = 0; wanted && i < count; i++) {
+        KrsComponent component;
+        krs_component(scene, i, &component);
+        if (strcmp(component.name, wanted) == 0) {
+            *number = i + 1;
+            return KRS_OK;
+        }
+        if (scene_is_first_of_name(scene, i))
+            text_format(&known, "%s`%s`", i ? ", " : "", component.name);
+    }
+    if (!wanted || is_number_of_component(wanted, count, number))
+        return KRS_OK;
+    return say_usage(options, "the scene has no component `%s`; it has %s", wanted,
+                     count ? known.bytes : "none");
 }

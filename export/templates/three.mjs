@@ -14,7 +14,8 @@ export const low = @low@, high = @high@; // the box around it; null: it has no e
 export const camera = @camera@;
 
 const block = @block@;
-const rows = '@rows@', cells = '@cells@'; // of tables, in base64
+@if_baked@const samples = '@baked_text@', sides = [@baked_count@]; // numbers of 16 bits: colour, distance
+@end@const rows = '@rows@', cells = '@cells@'; // of tables, in base64
 
 const vertexShader = `
 out vec2 krs_at;
@@ -63,7 +64,16 @@ function makeTexture(THREE, text, Type, channels, format, type, internalFormat)
     return texture;
 }
 
-export function makeScene(THREE)
+@if_baked@function makeVolume(THREE)
+{
+    const texture = new THREE.Data3DTexture(new Uint16Array(Uint8Array.from(atob(samples), c => c.charCodeAt(0)).buffer), ...sides);
+    texture.type = THREE.HalfFloatType;
+    texture.minFilter = texture.magFilter = THREE.LinearFilter;
+    texture.needsUpdate = true;
+    return texture;
+}
+
+@end@export function makeScene(THREE)
 {
     const slots = [];
     for (let i = 0; i < block.length; i += 4)
@@ -72,7 +82,8 @@ export function makeScene(THREE)
         krs_parameter: { value: slots }, krs_size: { value: new THREE.Vector2(1, 1) },
         krs_to_world: { value: new THREE.Matrix4() }, krs_to_clip: { value: new THREE.Matrix4() },
     };
-    if (cells) {
+@if_baked@    uniforms.krs_baked = { value: makeVolume(THREE) };
+@end@    if (cells) {
         uniforms.krs_rows = { value: makeTexture(THREE, rows, Float32Array, 4, THREE.RGBAFormat, THREE.FloatType, 'RGBA32F') };
         uniforms.krs_cells = { value: makeTexture(THREE, cells, Uint32Array, 2, THREE.RGIntegerFormat, THREE.UnsignedIntType, 'RG32UI') };
     }

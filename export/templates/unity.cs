@@ -7,7 +7,10 @@ using UnityEngine;
 public class @unity_class@ : MonoBehaviour
 {
 @unity_fields@    public bool moves = true; // by the time
+@if_baked@    public TextAsset samples; // drag @stem@.bytes to here
 
+    Texture3D texture; // of them
+@end@
     MaterialPropertyBlock block;
 
     void OnEnable()
@@ -15,15 +18,27 @@ public class @unity_class@ : MonoBehaviour
         block = new MaterialPropertyBlock();
         GetComponent<MeshFilter>().sharedMesh = MakeBox(new Vector3(@unity_center@), new Vector3(@unity_half@));
         GetComponent<MeshRenderer>().sharedMaterial = new Material(Shader.Find("krs/@stem@"));
-    }
+@if_baked@        texture = null;
+@end@    }
 
     void Update()
     {
-        block.SetFloat("_KrsTime", moves ? Time.time : 0f);
+@if_baked@        if (texture == null && samples != null)
+            GetComponent<MeshRenderer>().sharedMaterial.SetTexture("krs_baked", texture = MakeSamples());
+@end@        block.SetFloat("_KrsTime", moves ? Time.time : 0f);
 @unity_sets@        GetComponent<MeshRenderer>().SetPropertyBlock(block);
     }
 
-    static Mesh MakeBox(Vector3 middle, Vector3 half)
+@if_baked@    // A texture of the file, behind its 148 bytes of a DDS header.
+    Texture3D MakeSamples()
+    {
+        var texture = new Texture3D(@baked_count@, TextureFormat.RGBAHalf, false) { wrapMode = TextureWrapMode.Clamp, filterMode = FilterMode.Bilinear };
+        texture.SetPixelData(samples.bytes, 0, 148);
+        texture.Apply(false, true);
+        return texture;
+    }
+
+@end@    static Mesh MakeBox(Vector3 middle, Vector3 half)
     {
         var corners = new Vector3[8];
         for (int i = 0; i < 8; i++)

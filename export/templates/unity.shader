@@ -7,7 +7,8 @@ Shader "krs/@stem@"
     Properties
     {
 @unity_properties@        [HideInInspector] _KrsTime("time", Float) = 0
-    }
+@if_baked@        [HideInInspector] krs_baked("samples", 3D) = "" {}
+@end@    }
     SubShader
     {
         Tags { "RenderType" = "Opaque" "RenderPipeline" = "UniversalPipeline" "Queue" = "AlphaTest" }

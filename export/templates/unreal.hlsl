@@ -7,12 +7,15 @@
 // Opacity (mask) and Away (pixel depth offset), Float 1.  Inputs:
 //   Place: absolute world position minus the box's, in units;   Eye: camera position minus the box's;   Ahead: camera direction;
 //   Pixel: height of a pixel at distance 1, 2 * tan(half the field of view) / lines;   Seconds: the time
-@unreal_inputs@
+@if_baked@//   Baked: a Texture Object of @stem@.dds as a Volume Texture, without mipmaps, not sRGB, uncompressed (HDR)
+@end@@unreal_inputs@
 @scene@
 // ---- the node ----
 Krs krs;
 krs.krs_parameter[0] = float4(Seconds, 0.0, 0.0, 0.0);
-@unreal_parameters@krs.krs_prepare();
+@if_baked@krs.krs_baked = Baked;
+krs.samplerkrs_baked = BakedSampler;
+@end@@unreal_parameters@krs.krs_prepare();
 float3 krs_middle = @center@;
 float3 krs_end = float3(Place.y, Place.z, -Place.x) / 100.0 + krs_middle, krs_eye = float3(Eye.y, Eye.z, -Eye.x) / 100.0 + krs_middle;
 float3 krs_way = normalize(krs_end - krs_eye), krs_forward = float3(Ahead.y, Ahead.z, -Ahead.x);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # export.sh: `krs export`: files are complete shaders, numbers of the scene are in them, and what cannot be is refused.
 . "$(dirname "$0")/common.sh"
-plan 44
+plan 51
 
 cat >ball.krs <<'END'
 param radius = 0.5 in [0.1, 1];
@@ -130,35 +130,48 @@ result $? "parameters are sliders and colours there"
 
 # ---- Unity and Unreal: HLSL with stand-ins for what the engines have ----
 
+unity_compiles() { # name
+    { cat "$root/tests/cli/export_unity.hlsl"
+      sed -n '/---- functions/,/---- passes/p' "$1.shader" | grep -v '#include'
+      sed -n '/^struct KrsSurface/,$p' "$1.hlsl" | sed '$d'; } >parts
+    # The functions come where they are included.
+    { sed '/CBUFFER_END/q' parts; sed -n '/^struct KrsSurface/,$p' parts; sed '1,/CBUFFER_END/d; /^struct KrsSurface/,$d' parts; } >unity.hlsl
+    for entry in KrsLit KrsDepthOnly KrsShadow; do
+        glslangValidator -D -V -S frag -e $entry -o unity.spv unity.hlsl >out 2>&1 || return 1
+    done
+    glslangValidator -D -V -S vert -e KrsBox -o unity.spv unity.hlsl >out 2>err
+}
+unreal_compiles() { # name
+    { sed '/---- the node/q' "$1.unreal.hlsl"
+      echo 'float3 Place, Eye, Ahead, param_tint; float Pixel, Seconds, param_radius; Texture3D Baked; SamplerState BakedSampler;'
+      echo 'float3 node(out float3 Normal3, out float3 Emission, out float Rough, out float Metal, out float Opacity, out float Away) {'
+      sed '1,/---- the node/d' "$1.unreal.hlsl"
+      echo '} float4 main(float4 at : SV_Position) : SV_Target { float3 n, e; float r, m, o, a; float3 c = node(n, e, r, m, o, a); return float4(c + n + e, r + m + o + a); }'; } >unreal.hlsl
+    glslangValidator -D -V -S frag -e main -o unreal.spv unreal.hlsl >out 2>err
+}
 if command -v spirv-cross >/dev/null && command -v glslangValidator >/dev/null; then
     run export ball.krs --to unity
     [ "$status" -eq 0 ] && head -n 1 ball.shader | grep -q untested && head -n 1 ball.hlsl | grep -q untested && head -n 1 ball.cs | grep -q untested
     result $? "Unity has three files, which say that it has not seen them"
-    { cat "$root/tests/cli/export_unity.hlsl"
-      sed -n '/---- functions/,/---- passes/p' ball.shader | grep -v '#include'
-      sed -n '/^struct KrsSurface/,$p' ball.hlsl | sed '$d'; } >parts
-    # The functions come where they are included.
-    { sed '/CBUFFER_END/q' parts; sed -n '/^struct KrsSurface/,$p' parts; sed '1,/CBUFFER_END/d; /^struct KrsSurface/,$d' parts; } >unity.hlsl
-    for entry in KrsLit KrsDepthOnly KrsShadow; do
-        glslangValidator -D -V -S frag -e $entry -o unity.spv unity.hlsl >>out 2>&1 || break
-    done
-    [ "$entry" = KrsShadow ] && glslangValidator -D -V -S vert -e KrsBox -o unity.spv unity.hlsl >out 2>err
+    unity_compiles ball
     result $? "glslang compiles its passes"
     run export ball.krs --to unreal
-    { sed '/---- the node/q' ball.unreal.hlsl
-      echo 'float3 Place, Eye, Ahead, param_tint; float Pixel, Seconds, param_radius;'
-      echo 'float3 node(out float3 Normal3, out float3 Emission, out float Rough, out float Metal, out float Opacity, out float Away) {'
-      sed '1,/---- the node/d' ball.unreal.hlsl
-      echo '} float4 main(float4 at : SV_Position) : SV_Target { float3 n, e; float r, m, o, a; float3 c = node(n, e, r, m, o, a); return float4(c + n + e, r + m + o + a); }'; } >unreal.hlsl
-    glslangValidator -D -V -S frag -e main -o unreal.spv unreal.hlsl >out 2>err
+    unreal_compiles ball
     result $? "glslang compiles a node for Unreal"
     sed 's/krs_seen(krs_eye/krs_seem(krs_eye/' unreal.hlsl >wrong.hlsl
     ! glslangValidator -D -V -S frag -e main -o unreal.spv wrong.hlsl >/dev/null 2>&1
     result $? "and refuses it with a wrong name"
     grep -q 'param_radius: a number, 0.1 to 1, here 0.5' ball.unreal.hlsl && head -n 1 ball.unreal.hlsl | grep -q untested
     result $? "its inputs have their ranges"
+    run export letters.krs --to unity --bake 16 --studio off
+    [ "$(head -c 4 letters.bytes)" = "DDS " ] && unity_compiles letters && grep -q 'Texture3D(24, ' letters.cs
+    result $? "samples of letters, which are read from tables, are compiled for Unity"
+    run export letters.krs --to unreal --bake 16 --studio off
+    unreal_compiles letters && cmp -s letters.dds letters.bytes
+    result $? "and for Unreal"
 else
-    for what in "Unity has three files" "glslang compiles its passes" "glslang compiles a node for Unreal" "and refuses it" "its inputs have their ranges"; do
+    for what in "Unity has three files" "glslang compiles its passes" "glslang compiles a node for Unreal" "and refuses it" "its inputs have their ranges" \
+        "samples are compiled for Unity" "and for Unreal"; do
         skip "$what" "no spirv-cross or glslangValidator"
     done
 fi
@@ -168,6 +181,24 @@ if command -v mcs >/dev/null && [ -e ball.cs ]; then
 else
     skip "a compiler of C# takes the script for Unity" "no mcs, or no file"
 fi
+
+# ---- samples ----
+
+run export letters.krs --to godot
+said 1 "--bake N samples the scene instead" "where parts cannot be read from tables, samples are told"
+run export letters.krs --to shadertoy --bake 16
+said 1 "shadertoy has no room for samples" "they are refused where there are no such textures"
+echo 'show plane([0, 1, 0], 0); show sphere(1);' >floor.krs
+run export floor.krs --to godot --bake 16 -o floor.gdshader
+said 1 "it has no end, so it cannot be sampled; --component NAME" "what has no end is refused"
+run export floor.krs --to godot --bake 16 --component 2 -o floor.gdshader
+# A ball's samples: the distance in the middle of the texture is less than a cell from the radius, by its half-precision number.
+grep -q 'KRS_HALF = vec3(1.375, 1.375, 1.375)' floor.gdshader && [ "$(wc -c <floor.dds)" -eq $((148 + 23 * 23 * 23 * 8)) ] &&
+    [ "$(od -An -t x2 -j $((148 + (11 * 23 * 23 + 11 * 23 + 11) * 8 + 6)) -N 2 floor.dds)" = " bc00" ]
+result $? "a part is sampled alone, with the radius in the middle of a ball"
+
+run export floor.krs --to godot --component 2
+said 2 "--component and --within are for samples" "parts of texts are not to be chosen"
 
 # ---- Blender: OSL by a compiler of C++, with a stand-in for what that language has ----
 

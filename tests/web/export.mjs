@@ -3,7 +3,7 @@
 // A module for three.js is shown by that, beside a wall of its own; THREE is the folder of its package, and without it this is left out.
 // A file for Shadertoy is drawn as its page would do it; then a main of the test stores how far its rays go.
 // A shader for Godot gets what the engine has built in from the test.  Functions say distances at points; HLSL goes through
-// glslang and spirv-cross to WebGL.  KRS_EXPORT_ENGINES are the scenes for engines.
+// glslang and spirv-cross to WebGL.  KRS_EXPORT_ENGINES are the scenes for engines, KRS_EXPORT_BAKED those that are sampled.
 import { spawnSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -36,7 +36,7 @@ void main()
 }`;
 
 // In the page: draws a fragment shader; an answer of floats, or a picture that stays.
-function draw({ source, width, height, floats, look, block })
+function draw({ source, width, height, floats, look, block, samples })
 {
     document.body.innerHTML = '<canvas></canvas>';
     document.body.style.margin = 0;
@@ -61,6 +61,15 @@ function draw({ source, width, height, floats, look, block })
         gl.uniformBlockBinding(program, 0, 0);
         gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, gl.createBuffer());
         gl.bufferData(gl.UNIFORM_BUFFER, new Float32Array(block), gl.STATIC_DRAW);
+    }
+    if (samples) { // of a file .dds
+        const bytes = Uint8Array.from(atob(samples), c => c.charCodeAt(0)), header = new Uint32Array(bytes.buffer, 0, 37);
+        gl.bindTexture(gl.TEXTURE_3D, gl.createTexture());
+        gl.texStorage3D(gl.TEXTURE_3D, 1, gl.RGBA16F, header[4], header[3], header[6]);
+        gl.texSubImage3D(gl.TEXTURE_3D, 0, 0, 0, 0, header[4], header[3], header[6], gl.RGBA, gl.HALF_FLOAT, new Uint16Array(bytes.buffer, 148));
+        for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R])
+            gl.texParameteri(gl.TEXTURE_3D, wrap, gl.CLAMP_TO_EDGE);
+        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
     }
     if (look)
         gl.uniform3fv(gl.getUniformLocation(program, 'krs_look'), look);
@@ -198,7 +207,7 @@ float4 main(float4 at : SV_Position) : SV_Target
     krs_prepare();
     return float4(krs_distance(p), krs_distance_lod(p, 0.0), krs_surface(p, float3(0.0, 1.0, 0.0), 0.0).roughness, 1.0);
 }`;
-const precise = '#version 300 es\nprecision highp float; precision highp int; precision highp sampler2D; precision highp usampler2D;\n';
+const precise = '#version 300 es\nprecision highp float; precision highp int; precision highp sampler2D; precision highp usampler2D; precision highp sampler3D;\n';
 
 // What Godot has of its own.
 const godot = `
@@ -225,7 +234,7 @@ void main()
     fragment();
     krs_out = vec4(${parallel ? '-LIGHT_VERTEX.z' : 'length(LIGHT_VERTEX)'}, DEPTH - (${parallel ? '-0.001 * LIGHT_VERTEX.z' : '1.0 + 0.1 / LIGHT_VERTEX.z'}), dot(NORMAL, NORMAL), 1.0);
 }`;
-const withoutGodot = text => text.replace(/^(shader_type|render_mode).*$/gm, '')
+const withoutGodot = text => text.replace(/^(shader_type|render_mode).*$/gm, '').replace(/^(uniform sampler3D \w+).*$/gm, '$1;')
     .replace(/^uniform (\w+ \w+)(?: : [^=]*)? = /gm, 'const $1 = ');
 
 // Statements of a text for Godot that stand in no braces, and are none of those that it permits there.
@@ -299,18 +308,25 @@ async function tryEngines(scene, name, camera)
             ok(false, `${name} has the command's distances in ${target}`, error.message.slice(0, 2000));
         }
     }
-    const file = `${folder}/${name}.gdshader`, told = run('export', scene, '--to', 'godot', '--studio', 'off', '-o', file);
+    await tryGodot(scene, name, camera);
+}
+
+// Tells whether a shader for Godot hits where the command says, within a part of the way.
+async function tryGodot(scene, name, camera, tolerance = 0.002, ...options)
+{
+    const look = lookOf(camera), file = `${folder}/${name}.gdshader`, told = run('export', scene, '--to', 'godot', '--studio', 'off', '-o', file, ...options);
     try {
         const text = fs.readFileSync(file, 'utf8'), rays = queried(scene, raysOf(look));
+        const samples = options.length ? fs.readFileSync(`${folder}/${name}.dds`, 'base64') : null;
         ok(globals(text).length === 0 && globals(`${text}\nfloat a;`).length === 1, `${name} has no globals that change for Godot`, globals(text).join('; '));
         // Rays of a camera, and those of a light that comes from there, which are parallel.
         const size = Math.hypot(...minus(camera.eye, camera.target)), [eye, ahead, right, up] = look;
         const parallel = raysOf(look).map((_, i) => [...eye.map((x, k) => x + size * ((2 * (i % width + 0.5) / width - 1) * right[k] +
             (2 * (Math.floor(i / width) + 0.5) / height - 1) * up[k])), ...ahead]);
         for (const [what, isParallel, expected] of [['hits', false, rays], ['casts shadows', true, queried(scene, parallel)]]) {
-            const found = await page.evaluate(draw, { source: precise + godot.replace('SIZE', size.toFixed(9)) + withoutGodot(text) + godotMain(isParallel), width, height, floats: true, look: look.flat() });
+            const found = await page.evaluate(draw, { source: precise + godot.replace('SIZE', size.toFixed(9)) + withoutGodot(text) + godotMain(isParallel), width, height, floats: true, look: look.flat(), samples });
             const wrong = expected.filter((t, i) => t === Infinity ? found[4 * i + 3] > 0
-                : !(Math.abs(found[4 * i] - t) <= 0.002 * t && Math.abs(found[4 * i + 1]) < 1e-4 && Math.abs(found[4 * i + 2] - 1) < 1e-3));
+                : !(Math.abs(found[4 * i] - t) <= tolerance * t && Math.abs(found[4 * i + 1]) < 1e-4 && Math.abs(found[4 * i + 2] - 1) < 1e-3));
             ok(told.status === 0 && wrong.length <= 0.02 * expected.length, `${name} ${what} for Godot where the command says, with depth and normal`, `${wrong.length} of ${expected.length} differ`);
         }
     } catch (error) {
@@ -366,6 +382,18 @@ for (const scene of process.env.KRS_EXPORT_SCENES.split(' ')) {
     } catch (error) {
         ok(false, `${name} draws`, error.message.slice(0, 2000));
     }
+}
+for (const scene of (process.env.KRS_EXPORT_BAKED ?? '').split(' ').filter(Boolean)) {
+    const name = path.basename(scene, '.krs'), file = `${folder}/${name}.three.mjs`, bake = ['--bake', '128'];
+    const told = run('export', scene, '--to', 'three', '--studio', 'off', '-o', file, ...bake);
+    ok(told.status === 0, `${name} is sampled`, told.stderr);
+    const { camera } = await import(path.resolve(file)), module = { camera }, refused = run('export', scene, '--to', 'godot', '-o', `${folder}/refused.gdshader`);
+    ok(refused.status === 1 && /--bake/.test(refused.stderr), `${name} cannot be a text for Godot, which is told samples`, refused.stderr);
+    if (three)
+        await tryThree(name, module, queried(scene, raysOf(lookOf(camera))));
+    else
+        ok(true, `three.js shows ${name} # SKIP npm has no three`);
+    await tryGodot(scene, name, camera, 0.01, ...bake);
 }
 const errors = [...page.errors, ...(three?.errors ?? [])];
 ok(errors.length === 0, 'the pages have no errors', errors.join('\n'));
