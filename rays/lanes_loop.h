@@ -227,7 +227,8 @@ take_of_kind(RayBlock *block, const BlockRule *rule, const bool cones, const boo
         const bool  blocked    = inside & !back;
         const bool  arrives    = at + greater(distance, least) >= end;
         const bool  took_least = !back & (distance < least);
-        const float crossing   = step * distance / greater(before - distance, 1e-30f);
+        const float chord      = step * distance / greater(before - distance, 1e-30f);
+        const float crossing   = old_slope > 0 ? distance : chord;
         const float around     = sqrtf(greater(distance * distance - needed * needed, 0));
         const float relaxed    = greater(
                2 * SAFETY / (1 - lesser(greater(slope, -1), STEEPEST)) * around, distance);

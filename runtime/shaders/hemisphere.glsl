@@ -7,6 +7,8 @@
 // The least cosine between such a ray and the normal: others would creep along the surface.  It is
 // that of 1 in 2,500 of them.
 const float MIN_RISE = 0.02;
+// The pixels above the surface at which such a ray starts at least.
+const float LIFT_OF_OCCLUSION = 1.0;
 
 // Returns the ray of a point of the disc, with a density in proportion to the cosine, as light from
 // there counts.

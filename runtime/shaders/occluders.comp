@@ -27,7 +27,8 @@ void do_item(uint number)
 #ifdef KRS_VIEW
     krs_view = direction;
 #endif
-    vec3 place = hit_point_of_slot(slot).position + t * direction;
+    HitPoint hit = hit_point_of_slot(slot);
+    vec3 place = hit.position + LIFT_OF_OCCLUSION * hit.near * normal + t * direction;
     vec3 albedo = clamp(krs_surface(place, -direction, FOOTPRINT * t).color, 0.0, 1.0);
     store_occluder(LIST_WIDE, pixel, luminance(albedo));
 }

@@ -9,7 +9,7 @@
 
 const uint MAX_STEPS = 1024u;
 // The pixels above the surface at which rays start, where it is even and where it is not.
-const float LIFT_OF_EVEN = 0.125, LIFT = 0.5, LIFT_OF_OCCLUSION = 1.0;
+const float LIFT_OF_EVEN = 0.125, LIFT = 0.5;
 // The evenness below which a surface is uneven, and above which it is even.
 const float UNEVEN = 0.9, EVEN = 0.99;
 // Up to this many pixels from the start, a distance may be as small a part of the true one as it is

@@ -68,6 +68,7 @@ void take_distance(float distance)
     }
 #endif
     float per_gap = 1.0 / max(last_step, 1e-30);
+    bool  recedes = slope > 0.0;
     bool  inside = is_blocked(distance);
     bool  steps_back = has_overstepped(around, per_gap) && !(inside && !is_cone);
     float risen = mix(slope, (around - last_radius) * per_gap, LEARNING);
@@ -76,8 +77,10 @@ void take_distance(float distance)
     bool  arrives = t + max(distance, min_step) >= end;
     step_limit = !steps_back && (inside || arrives) ? 0u : step_limit;
     took_least_step = !steps_back && distance < min_step;
-    // The ray enters the solid between the last position and this one.
-    float crossing = last_step * distance / max(last_distance - distance, 1e-30);
+    // The ray enters the solid between the last position and this one.  If it was receding from another one, whose
+    // distance tells nothing of this one, it has done so as late as it can.
+    float chord = last_step * distance / max(last_distance - distance, 1e-30);
+    float crossing = recedes ? distance : chord;
     float relaxed = relax(around);
 #ifdef STEPS // inside of a polynomial the length may reach to its other side
     crossing = max(crossing, last_distance - last_step);

@@ -193,8 +193,9 @@ static uint32_t *occluder_of(const Slice *slice, const uint32_t pixel[2])
 /* Adds what the ray of a listed pixel has met; its color is found where its surface would be seen. */
 static void add_occluder(const Slice *slice, uint32_t slot, SurfacePoint *to, float *color)
 {
-    static const float  FOOTPRINT = 0.05f; /* as in occluders.comp */
-    const ControlBlock *control   = slice->job->rendering->control.bytes;
+    /* As in occluders.comp and hit_point.glsl. */
+    static const float  FOOTPRINT = 0.05f, LIFT = 1, MAX_WIDTH = 1 / 64.0f;
+    const ControlBlock *control = slice->job->rendering->control.bytes;
     const uint32_t     *end;
     uint32_t            pixel[2], in_picture[2];
     float               square[2], along[3], t, length;
@@ -204,11 +205,13 @@ static void add_occluder(const Slice *slice, uint32_t slot, SurfacePoint *to, fl
     end = end_of(slice, pixel);
     memcpy(&t, &end[0], sizeof t);
     memcpy(&length, occluder_of(slice, pixel), sizeof length);
-    find_hit(slice, pixel, t, to->position, along);
+    const float *normal = facing_of(slice, slot);
+    const float  width  = find_hit(slice, pixel, t, to->position, along);
+    const float  lift   = LIFT * fminf(width, MAX_WIDTH * t);
     sample_hemisphere(in_picture, control->ray, control->seed, square);
-    aim_over_hemisphere(facing_of(slice, slot), square, to->view);
+    aim_over_hemisphere(normal, square, to->view);
     for (int k = 0; k < 3; k++) {
-        to->position[k] += length * to->view[k];
+        to->position[k] += lift * normal[k] + length * to->view[k];
         to->normal[k] = -to->view[k];
     }
     to->footprint = FOOTPRINT * length;

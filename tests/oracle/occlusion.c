@@ -543,6 +543,72 @@ static void light_is_that_of_closed_forms(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* ---- What occluders give back ---- */
+
+/* A white ball on grey ground: all that closes the ground is white, so in a white world as much light comes from there
+   as from the sky.  What grey occluders would give back is missing else. */
+#define GREY 0.3
+#define BRIGHT_BALL(ground, look)                                                       \
+    "sky { zenith: white, horizon: white, ground: white }\n"                            \
+    "light none { direction: [0, 1, 0], intensity: 0, shadow: false }\n"                \
+    "material floor { color: [0.3, 0.3, 0.3], specular: 0 }\n"                          \
+    "material ball { color: white, specular: 0, " look " }\n" FROM_ABOVE "show " ground \
+    ".paint(floor); show sphere(0.8).move([0, 0.802, 0]).paint(ball);\n"
+
+static const struct {
+    const char *name, *text;
+} grounds[] = {
+    {"a plane", BRIGHT_BALL("plane()", "roughness: 1")},
+    {"a plane below a mirror", BRIGHT_BALL("plane()", "metallic: 1, roughness: 0")},
+    {"a slab", BRIGHT_BALL("box([60, 1, 60]).move([0, -0.5, 0])", "roughness: 1")},
+    {"a slab below a mirror",
+     BRIGHT_BALL("box([60, 1, 60]).move([0, -0.5, 0])", "metallic: 1, roughness: 0")},
+};
+
+/* What is wrong of the light on ground around the ball, which grey occluders would darken by a tenth at least. */
+static Wrong judge_bright_ball(const KrsPicture *picture, int *count)
+{
+    double sum = 0, squares = 0;
+    *count = 0;
+    for (int k = 0; k < (int)(picture->width * picture->height); k++) {
+        const double open = picture->component[k] == 1
+                                ? openness_below_ball(position_of(picture, k), 0.8, 0.002, 0)
+                                : 1;
+        const double grey = open / (1 - GREY * (1 - open));
+        if (open < MIN_OPEN || grey > 0.9)
+            continue;
+        const double off = (double)picture->color[4 * k] / GREY - 1;
+        sum += off;
+        squares += off * off;
+        ++*count;
+    }
+    return (Wrong){sum / *count, sqrt(squares / *count)};
+}
+
+static void bright_occluders_give_light_back(void **state)
+{
+    static const KrsExecutor executors[] = {KRS_EXECUTOR_KERNELS, KRS_EXECUTOR_LANES};
+    size_t                   all_wrong   = 0;
+    (void)state;
+    for (size_t i = 0; i < sizeof grounds / sizeof *grounds; i++)
+        for (size_t e = 0; e < 2; e++) {
+            const KrsRenderOptions options = {.width             = 160,
+                                              .height            = 90,
+                                              .methods.no_filter = true,
+                                              .methods.executor  = executors[e]};
+            KrsPicture            *picture = picture_of(grounds[i].text, &options);
+            int                    count;
+            const Wrong            wrong = judge_bright_ball(picture, &count);
+            print_message("# a white ball on %s, %s: off by %.4f, spread %.4f, %d pixels\n",
+                          grounds[i].name, e ? "lanes" : "kernels", wrong.bias, wrong.spread,
+                          count);
+            assert_true(count > 500);
+            all_wrong += !(fabs(wrong.bias) < MAX_BIAS && wrong.spread < MAX_SPREAD);
+            krs_picture_free(picture);
+        }
+    assert_int_equal(all_wrong, 0);
+}
+
 /* ---- Random rooms ---- */
 
 enum { ACROSS = 64, DOWN = 48, PIXELS = ACROSS * DOWN, MEAN = 5, RAYS = 64 };
@@ -656,6 +722,7 @@ int main(void)
         cmocka_unit_test(bounds_close_as_much_as_distances),
         cmocka_unit_test(convex_solids_are_open),
         cmocka_unit_test(light_is_that_of_closed_forms),
+        cmocka_unit_test(bright_occluders_give_light_back),
         cmocka_unit_test(rooms_are_as_open_as_rays_say),
         cmocka_unit_test(wrong_openness_is_found),
     };

@@ -113,7 +113,8 @@ void main()
 #ifdef KRS_VIEW
         krs_view = closes ? over : hit.direction;
 #endif
-        surface = krs_surface(closes ? hit.position + occluder * over : hit.position,
+        vec3 raised = hit.position + LIFT_OF_OCCLUSION * hit.near * facing.xyz;
+        surface = krs_surface(closes ? raised + occluder * over : hit.position,
                               closes ? -over : hit.side * facing.xyz, closes ? FOOTPRINT * occluder : 0.5 * hit.width);
         if (closes)
             albedo = luminance(clamp(surface.color, 0.0, 1.0));
