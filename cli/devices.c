@@ -101,7 +101,7 @@ const char *cache_folder(const Options *options)
 static void keep_alive(void *user)
 {
     (void)user;
-    stage_goes_on();
+    stage_note_progress();
 }
 
 KrsRendererOptions renderer_options(const Options *options)

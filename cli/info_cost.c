@@ -21,16 +21,16 @@ typedef struct Costing {
 static bool report_progress(void *user, double fraction)
 {
     Costing *costing = user;
-    stage_goes_on();
+    stage_note_progress();
     progress_show(&costing->progress, fraction);
     return !*interrupted();
 }
 
-static bool goes_on(void *user, double fraction)
+static bool note_progress(void *user, double fraction)
 {
     (void)user;
     (void)fraction;
-    stage_goes_on();
+    stage_note_progress();
     return !*interrupted();
 }
 
@@ -43,7 +43,7 @@ static KrsStatus compile_without(void *user, const KrsLocation *without, KrsScen
     KrsOptions     with    = scene_options(&sink, path);
     with.diagnostic        = NULL;
     with.without           = without;
-    stage_goes_on();
+    stage_note_progress();
     return scene_compile(costing->options, path, &with, scene);
 }
 
@@ -200,7 +200,7 @@ static KrsStatus profile(Costing *costing, KrsRenderer *renderer)
     const double   height  = image.height > 0 ? image.height : KRS_DEFAULT_HEIGHT;
     how.aspect             = width / height;
     how.how.integrator     = KRS_INTEGRATOR_PREVIEW;
-    how.how.progress       = goes_on;
+    how.how.progress       = note_progress;
     how.purpose            = options->how.methods.executor == KRS_EXECUTOR_LANES ? KRS_FOR_LANES
                                                                                  : KRS_FOR_PICTURES;
     if (status != KRS_OK)

@@ -27,7 +27,7 @@ static bool report_progress(void *user, double fraction)
     double   done    = meshing->begun + fraction * (meshing->goal - meshing->begun);
     meshing->done    = fmax(meshing->done, done);
     progress_show(&meshing->progress, meshing->done);
-    return mesh_goes_on(meshing);
+    return mesh_is_wanted(meshing);
 }
 
 static KrsStatus make_merged(Meshing *meshing, Body *body)

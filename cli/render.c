@@ -23,7 +23,7 @@
 static bool show_progress(void *user, double done)
 {
     Render *render = user;
-    stage_goes_on();
+    stage_note_progress();
     progress_show(&render->progress, render->checkpoint.done + render->checkpoint.share * done);
     return !*interrupted() && !(render->outdated && render->outdated(render->user));
 }

@@ -40,13 +40,13 @@ static void make_room(History *history)
 
 void history_note(History *history, const View *view, double now)
 {
-    const bool goes_on = history->count > 1 && history->at + 1 == history->count &&
-                         now - history->noted < PAUSE;
+    const bool joins = history->count > 1 && history->at + 1 == history->count &&
+                       now - history->noted < PAUSE;
     View step;
     history->noted = now;
     if (!view_copy(view, &step))
         return;
-    if (goes_on) {
+    if (joins) {
         view_free(&history->steps[history->at]);
         history->steps[history->at] = step;
         return;

@@ -180,8 +180,8 @@ static TapSet end_nearer(Hit *hit, const RayRule *rule)
     return is_one_side(hit, bend) ? ONE_SIDE : next;
 }
 
-/* Ends a set of taps; true: another one has begun. */
-static bool goes_on(Hit *hit, const RayRule *rule)
+/* Ends a set of taps, and begins the next; false: it was the last. */
+static bool begin_next_set(Hit *hit, const RayRule *rule)
 {
     const TapSet next = hit->set == WIDE     ? end_wide(hit, rule)
                         : hit->set == BESIDE ? end_beside(hit)
@@ -264,7 +264,7 @@ static uint64_t find_normals(const RayCell *cell, const RayRule *rule, const Ray
         evaluations += (uint64_t)(taking * taps);
         more = 0;
         for (int i = 0; i < taking; i++)
-            if (goes_on(takes[i], rule))
+            if (begin_next_set(takes[i], rule))
                 takes[more++] = takes[i];
     }
     for (int i = 0; i < count; i++)

@@ -160,7 +160,7 @@ static void bake_rows(void *task, size_t part, size_t parts)
     (void)parts;
     while (!atomic_load(&b->failed) && !atomic_load(&b->ended)) {
         if (part == 0)
-            atomic_store(&b->ended, !mesh_goes_on(b->meshing));
+            atomic_store(&b->ended, !mesh_is_wanted(b->meshing));
         size_t row = atomic_fetch_add(&b->next, 1);
         if (row >= b->atlas.side)
             return;
@@ -393,7 +393,7 @@ static KrsStatus bake(Baking *b, bool all)
         b->texels = arena_new_array(options->arena, Texel, side * side);
     atomic_store(&b->next, 0);
     run_in_parallel(bake_rows, b);
-    if (!mesh_goes_on(b->meshing))
+    if (!mesh_is_wanted(b->meshing))
         return KRS_INTERRUPTED;
     if (atomic_load(&b->failed))
         return say_status(KRS_OUT_OF_MEMORY, options->files.items[0]);

@@ -122,8 +122,8 @@ void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *part
 /* steps.c: the next step of the work, which is done to `goal` behind it; and the goal of the first of so many until one. */
 void   enter_step(Meshing *meshing, double goal);
 double step_of(const Meshing *meshing, double goal, double steps);
-/* Tells whether the work goes on; false: it ends with KRS_INTERRUPTED. */
-bool mesh_goes_on(const Meshing *meshing);
+/* Tells whether the mesh is wanted still; false: the work ends with KRS_INTERRUPTED. */
+bool mesh_is_wanted(const Meshing *meshing);
 
 /* beams.c: with --beams, whether files have them; a body of beams, if a component is made of them (from 1; 0: the only
    one); and what files have of it. */

@@ -189,7 +189,7 @@ static KrsStatus sample_all(Motion *motion)
         for (size_t i = 0; i < motion->copies && status == KRS_OK; i++)
             push_key(motion, i, frame + 1.0, (const double(*)[4])ends[1][i]);
         memcpy(ends[0], ends[1], motion->copies * sizeof(Matrix));
-        if (!mesh_goes_on(motion->meshing))
+        if (!mesh_is_wanted(motion->meshing))
             status = KRS_INTERRUPTED;
     }
     return status;

@@ -14,7 +14,7 @@ double step_of(const Meshing *meshing, double goal, double steps)
     return meshing->goal + (goal - meshing->goal) / steps;
 }
 
-bool mesh_goes_on(const Meshing *meshing)
+bool mesh_is_wanted(const Meshing *meshing)
 {
     return !*interrupted() && !(meshing->outdated && meshing->outdated(meshing->user));
 }

@@ -89,12 +89,12 @@ static void crash_for_test(RunStage stage)
         raise(atoi(setting + length + 1));
 }
 
-void stage_goes_on(void) { atomic_fetch_add(&shared->progress, 1); }
+void stage_note_progress(void) { atomic_fetch_add(&shared->progress, 1); }
 
 /* Enters a stage; whoever sees the new stage sees the step, too. */
 void stage_enter(RunStage stage)
 {
-    stage_goes_on();
+    stage_note_progress();
     atomic_store(&shared->stage, (int)stage);
     crash_for_test(stage);
 }
@@ -481,7 +481,7 @@ static int run(Options *options, Work *work, const sigset_t *signals, const sigs
 }
 
 /* Tells whether what took too long is one text of many: the next one may be better. */
-static bool goes_on_watching(const Options *options, const Watch *watch)
+static bool runs_again(const Options *options, const Watch *watch)
 {
     const RunStage stage = (RunStage)atomic_load(&shared->stage);
     shared->again        = options->command == COMMAND_WATCH && !watch->interrupted &&
@@ -505,7 +505,7 @@ int supervise(Options *options, Work *work)
     int   status;
     do
         status = run(options, work, &signals, &before, &watch);
-    while (goes_on_watching(options, &watch));
+    while (runs_again(options, &watch));
     const bool resumable = atomic_load(&shared->resumable) != 0;
     if (status == KRS_INTERRUPTED)
         say("%s", resumable ? "interrupted; the same command goes on from here" : "interrupted");

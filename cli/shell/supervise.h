@@ -50,7 +50,7 @@ int supervise(Options *options, Work *work);
 void stage_enter(RunStage stage);
 
 /* Tells the parent that the work of this stage goes on: the deadline begins anew. */
-void stage_goes_on(void);
+void stage_note_progress(void);
 /* Tells whether a checkpoint is there from which the same command goes on: then an interrupt ends it with
    status 75. */
 void stage_resumable(bool resumable);

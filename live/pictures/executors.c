@@ -58,8 +58,8 @@ static bool choose_canvas(Painter *painter, const View *next)
     return !painter->orders;
 }
 
-/* Tells whether lanes go on while they make the first shaders. */
-static bool goes_on(void *user, double done)
+/* Tells whether a picture by lanes is wanted still. */
+static bool is_wanted(void *user, double done)
 {
     Painter *painter = user;
     (void)done;
@@ -73,7 +73,7 @@ static bool goes_on(void *user, double done)
 static bool begin_lanes(Painter *painter, const View *next)
 {
     bool fresh;
-    if (!lanes_take(&painter->lanes, next, painter->options.budget, goes_on, painter, &fresh))
+    if (!lanes_take(&painter->lanes, next, painter->options.budget, is_wanted, painter, &fresh))
         return false;
     if (fresh)
         painter->resolutions[1] = (Resolution){.pixel_ms = painter->lanes.estimate.lanes_ms /

@@ -55,8 +55,8 @@ static bool report_progress(void *user, double done)
     return !atomic_load(&profiler->given_up);
 }
 
-/* Tells whether shaders are compiled and frames rendered on. */
-static bool goes_on(void *user, double done)
+/* Tells whether the profile is wanted still. */
+static bool is_wanted(void *user, double done)
 {
     Profiler *profiler = user;
     (void)done;
@@ -156,7 +156,7 @@ static KrsStatus profile_scene(Profiler *profiler, KrsRenderer *renderer, Costs 
     const ProfileOptions how = {
         .renderer = renderer,
         .purpose  = KRS_FOR_PICTURES,
-        .how      = {.integrator = KRS_INTEGRATOR_PREVIEW, .progress = goes_on, .user = profiler},
+        .how      = {.integrator = KRS_INTEGRATOR_PREVIEW, .progress = is_wanted, .user = profiler},
         .aspect   = (double)view->width / view->height,
         .camera   = &view->camera,
         .seconds  = SECONDS,
@@ -193,7 +193,7 @@ static KrsStatus carry_out(Profiler *profiler, char message[300], Costs *costs)
 {
     KrsRendererOptions with     = profiler->renderer;
     KrsRenderer       *renderer = NULL;
-    with.progress               = goes_on;
+    with.progress               = is_wanted;
     with.progress_user          = profiler;
     KrsStatus status            = krs_renderer_new(&with, &renderer);
     if (status == KRS_OK)

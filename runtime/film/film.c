@@ -215,16 +215,16 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
     const bool spares = spares_first(job);
     if (spares && film->samples == 0 && !find_aovs(job, plan, &work))
         return false;
-    const bool noise   = film->kept != NULL;
-    bool       goes_on = true;
-    if (noise && !noise_resume(job, plan, &work, film->samples, &goes_on))
+    const bool noise      = film->kept != NULL;
+    bool       unfinished = true;
+    if (noise && !noise_resume(job, plan, &work, film->samples, &unfinished))
         return false;
-    for (uint32_t i = 0; i < samples && goes_on; i++) {
+    for (uint32_t i = 0; i < samples && unfinished; i++) {
         const uint32_t before = film->samples + i;
         job->progress_share   = share / samples;
         job->progress_done    = done + job->progress_share * i;
         if (!add_ray(job, plan, &work, before + spares) ||
-            (noise && !noise_take(job, plan, &work, before + 1, &goes_on)))
+            (noise && !noise_take(job, plan, &work, before + 1, &unfinished)))
             return false;
     }
     return !noise || noise_restore(job, &work, film->samples + samples);

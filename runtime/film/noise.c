@@ -39,7 +39,7 @@ static bool run_phase(Job *job, const WorkBlock *work, uint32_t phase, uint32_t 
 
 /* Lists the pixels that go on, by `phase`, and those whose rays they need. */
 static bool list_pixels(Job *job, const Plan *plan, const WorkBlock *work, uint32_t phase,
-                        uint32_t samples, bool *goes_on)
+                        uint32_t samples, bool *unfinished)
 {
     KrsRendering *r       = job->rendering;
     ControlBlock *control = r->control.bytes;
@@ -47,7 +47,7 @@ static bool list_pixels(Job *job, const Plan *plan, const WorkBlock *work, uint3
     if (!run_phase(job, work, phase, samples) ||
         (plan->halo > 0 && !run_phase(job, work, NOISE_SPREADS, samples)))
         return false;
-    *goes_on            = control->sampled > 0;
+    *unfinished         = control->sampled > 0;
     control->sampled_at = r->band.sampled_at;
     if (plan->halo > 0)
         control->sampled_at += tiles_of_band(work) * QUARTERS_OF_TILE;
@@ -63,22 +63,23 @@ static void set_bound(Job *job)
 }
 
 bool noise_resume(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples,
-                  bool *goes_on)
+                  bool *unfinished)
 {
     set_bound(job);
     return samples < MIN_NOISE_SAMPLES || job->options.noise == 0 ||
-           list_pixels(job, plan, work, NOISE_LISTS, samples, goes_on);
+           list_pixels(job, plan, work, NOISE_LISTS, samples, unfinished);
 }
 
 static bool is_power_of_two(uint32_t number) { return (number & (number - 1)) == 0; }
 
-bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples, bool *goes_on)
+bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples,
+                bool *unfinished)
 {
     if (samples < FIRST_NOISE_SAMPLES || !is_power_of_two(samples))
         return true;
     if (samples == FIRST_NOISE_SAMPLES)
         return run_phase(job, work, NOISE_BEGINS, samples);
-    return list_pixels(job, plan, work, NOISE_ENDS_SAMPLES, samples, goes_on);
+    return list_pixels(job, plan, work, NOISE_ENDS_SAMPLES, samples, unfinished);
 }
 
 bool noise_restore(Job *job, const WorkBlock *work, uint32_t samples)

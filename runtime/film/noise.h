@@ -10,11 +10,12 @@
 /* Tells whether the error of pixels is estimated, for these options. */
 bool noise_is_wanted(const KrsRenderOptions *options);
 /* Lists the pixels that go on, before samples are added to the band in the buffers, whose pixels
-   have `samples` so far.  Clears *goes_on if all of them have ended. */
+   have `samples` so far.  Clears *unfinished if all of them have ended. */
 bool noise_resume(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples,
-                  bool *goes_on);
+                  bool *unfinished);
 /* Estimates errors after a sample of each pixel: there are `samples` now. */
-bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples, bool *goes_on);
+bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples,
+                bool *unfinished);
 /* Gives pixels that have ended their colours back, after all samples. */
 bool noise_restore(Job *job, const WorkBlock *work, uint32_t samples);
 
