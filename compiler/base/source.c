@@ -204,6 +204,11 @@ void sources_note_file(Sources *sources, const char *path, const void *bytes, si
     sources->noted        = hash_named(before, scene_name(sources), path, bytes, length);
 }
 
+void sources_note(Sources *sources, const char *word, const void *bytes, size_t length)
+{
+    sources->noted = hash_file(sources->noted ? sources->noted : FNV_START, word, bytes, length);
+}
+
 void sources_hash(const Sources *sources, char hash[17])
 {
     uint64_t h = FNV_START;

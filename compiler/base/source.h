@@ -53,8 +53,9 @@ extern const char source_no_memory[];
 /* Adds a copy of a text of at most MAX_SOURCE_BYTES and returns its number. */
 uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length,
                     bool library);
-/* Notes a file that is no text, such as a picture or a font, for the hash. */
+/* Notes a file that is no text, such as a picture, for the hash; and what has no path, under a word. */
 void sources_note_file(Sources *sources, const char *path, const void *bytes, size_t length);
+void sources_note(Sources *sources, const char *word, const void *bytes, size_t length);
 /* Finds a hash of 64 bits, as hexadecimal digits, of all files that were read but the library's: of
    the path of each from the scene's folder, its length and its content. */
 void          sources_hash(const Sources *sources, char hash[17]);

@@ -19,7 +19,7 @@
 #include "compiler/family/family.h"
 #include "compiler/front/files.h"
 #include "compiler/front/synonyms.h"
-#include "compiler/outline/fonts.h"
+#include "compiler/base/fonts.h"
 #include "compiler/shape/scene.h"
 #include "compiler/shape/slope.h"
 

@@ -88,8 +88,8 @@ bool read_beside(Elaboration *e, const Argument *argument, const char *name, Fil
    same letters. */
 static void note_font(Elaboration *e, const FileBytes *bytes)
 {
-    sources_note_file(e->sources, "font", bytes->bytes, bytes->length);
-    sources_note_file(e->sources, "face", &bytes->face, sizeof bytes->face);
+    sources_note(e->sources, "font", bytes->bytes, bytes->length);
+    sources_note(e->sources, "face", &bytes->face, sizeof bytes->face);
 }
 
 static bool keep_font(Elaboration *e, const char *path, Loaded loaded, int face, FileBytes *bytes)

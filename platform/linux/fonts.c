@@ -1,7 +1,7 @@
 /*
  * fonts.c: finds fonts of the system, by fontconfig.
  */
-#include "compiler/outline/fonts.h"
+#include "compiler/base/fonts.h"
 
 #include <errno.h>
 #include <fontconfig/fontconfig.h>

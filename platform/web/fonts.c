@@ -1,7 +1,7 @@
 /*
  * fonts.c: a page has no fonts but those that it supplies.
  */
-#include "compiler/outline/fonts.h"
+#include "compiler/base/fonts.h"
 
 FontSearch font_find(const char *name, FoundFont *found)
 {

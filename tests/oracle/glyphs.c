@@ -6,7 +6,7 @@
  */
 #include <stdlib.h>
 
-#include "compiler/outline/fonts.h"
+#include "compiler/base/fonts.h"
 #include "compiler/outline/letters.h"
 #include "tests/oracle/product.h"
 #include "tests/oracle/truetype.h"

@@ -14,7 +14,7 @@
 
 #include "compiler/graph/evaluate.h"
 #include "compiler/lower/outline.h"
-#include "compiler/outline/fonts.h"
+#include "compiler/base/fonts.h"
 #include "compiler/outline/letters.h"
 #include "compiler/scene/program.h"
 #include "compiler/scene/tables.h"
