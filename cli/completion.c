@@ -25,8 +25,9 @@ static const char *find_endings(CommandId command)
 {
     if (command == COMMAND_IMPORT)
         return import_endings();
-    int files = command_table[command].files;
-    return files == 0 || files == MAYBE_A_WORD ? "" : ".krs";
+    if (command == COMMAND_MERGE)
+        return ".exr";
+    return takes_scenes(command) ? ".krs .krsz" : "";
 }
 
 /* Prints a text as it stands between single quotes, where characters of `special` get a backslash. */

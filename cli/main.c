@@ -95,7 +95,8 @@ static KrsStatus work_with_memory(Options *options)
         return KRS_OUT_OF_MEMORY;
     }
     options->arena->memory->exhausted = &exhausted;
-    return works[options->command](options);
+    KrsStatus status                  = packs_open(options);
+    return status == KRS_OK ? works[options->command](options) : status;
 }
 
 static int run(Options *options, int argc, char **argv)

@@ -223,7 +223,7 @@ static KrsStatus check_combinations(Options *options)
     } else if (info->files == MANY_FILES ? files == 0 : files != (size_t)info->files) {
         if (files == 0)
             return say_usage(options, "%s needs a %s: krs %s %s", info->name,
-                             options->command == COMMAND_IMPORT ? "file" : "scene", info->name,
+                             takes_scenes(options->command) ? "scene" : "file", info->name,
                              info->arguments);
         const char *wanted = options->command == COMMAND_IMPORT ? "one file"
                              : info->files                      ? "one scene"

@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zip.h>
 
 #include "cli/mesh/bridge.h"
+#include "cli/pack/archive.h"
 #include "compiler/base/vec.h"
 
 #define XML "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -455,63 +455,14 @@ static char *model_text(const MeshParts *parts, size_t *length)
     return text;
 }
 
-/* ---- the archive ---- */
-
-/* Adds a file to the archive, with the earliest time that there is. */
-static bool add_file(zip_t *archive, const char *name, const char *text, size_t length)
-{
-    enum { FIRST_DAY = 1 << 5 | 1 };
-    zip_source_t *source = zip_source_buffer(archive, text, length, 0);
-    zip_int64_t   number = source ? zip_file_add(archive, name, source, ZIP_FL_ENC_UTF_8) : -1;
-    if (source && number < 0)
-        zip_source_free(source);
-    return number >= 0 && zip_file_set_dostime(archive, (zip_uint64_t)number, 0, FIRST_DAY, 0) == 0;
-}
-
-/* Consumes the archive, whose bytes are then in its source. */
-static bool fill_archive(zip_t *archive, const char *model, size_t length)
-{
-    if (add_file(archive, "[Content_Types].xml", types, strlen(types)) &&
-        add_file(archive, "_rels/.rels", relationships, strlen(relationships)) &&
-        add_file(archive, "3D/3dmodel.model", model, length) && zip_close(archive) == 0)
-        return true;
-    zip_discard(archive);
-    return false;
-}
-
-static bool pass_on(zip_source_t *source, MeshSink *sink, void *user)
-{
-    char        piece[1 << 14];
-    zip_int64_t got;
-    if (zip_source_open(source) != 0)
-        return false;
-    while ((got = zip_source_read(source, piece, sizeof piece)) > 0)
-        if (!sink(user, piece, (size_t)got))
-            break;
-    zip_source_close(source);
-    return got == 0;
-}
-
-static bool write_archive(const char *model, size_t length, MeshSink *sink, void *user)
-{
-    zip_source_t *source = zip_source_buffer_create(NULL, 0, 0, NULL);
-    if (!source)
-        return false;
-    zip_source_keep(source); /* archives free their source */
-    zip_t     *archive = zip_open_from_source(source, ZIP_TRUNCATE, NULL);
-    const bool good    = archive && fill_archive(archive, model, length) &&
-                      pass_on(source, sink, user);
-    zip_source_free(source);
-    if (!archive)
-        zip_source_free(source);
-    return good;
-}
-
 bool mesh_bridge_3mf(const MeshParts *parts, MeshSink *sink, void *user)
 {
-    size_t length;
-    char  *model = model_text(parts, &length);
-    bool   good  = model && write_archive(model, length, sink, user);
+    size_t            length;
+    char             *model   = model_text(parts, &length);
+    const ArchiveFile files[] = {{"[Content_Types].xml", types, strlen(types)},
+                                 {"_rels/.rels", relationships, strlen(relationships)},
+                                 {"3D/3dmodel.model", model, length}};
+    const bool        good    = model && archive_write(files, 3, sink, user);
     free(model);
     return good;
 }

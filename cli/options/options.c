@@ -16,7 +16,7 @@
 #define ON_SCENE        (ON_SHOWN | ON(VALIDATE) | ON(QUERY))
 #define ON_SOLID        (ON(MESH) | ON(SLICE) | ON(GRID) | ON(INFO))
 #define ON_READING      (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(HELP)))
-#define ON_COMPILING    (ON_READING & ~ON(IMPORT))
+#define ON_COMPILING    (ON_READING & ~(ON(IMPORT) | ON(MERGE)))
 #define TEXT_OF(macro)  TEXT_OF_(macro)
 #define TEXT_OF_(words) #words
 
@@ -33,6 +33,13 @@ CommandId find_command(const char *name)
     while (command < COMMAND_COUNT && strcmp(name, command_table[command].name) != 0)
         command++;
     return command;
+}
+
+bool takes_scenes(CommandId command)
+{
+    const int files = command_table[command].files;
+    return files != 0 && files != MAYBE_A_WORD && command != COMMAND_IMPORT &&
+           command != COMMAND_MERGE;
 }
 
 const char *nearest_command(const char *name)

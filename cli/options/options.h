@@ -43,6 +43,8 @@ extern const CommandInfo command_table[COMMAND_COUNT];
 
 /* Returns the command of this name, or COMMAND_COUNT. */
 CommandId find_command(const char *name);
+/* Tells whether the files of a command are scenes. */
+bool takes_scenes(CommandId command);
 /* Returns the one whose name is most like this, or NULL. */
 const char *nearest_command(const char *name);
 
@@ -165,8 +167,9 @@ typedef struct Options {
 #define OPTION(id, letter, name, argument, commands, group, member, value, help) member
 #include "cli/options/options.def"
 
-    const char *input; /* the scene that standard input has, or NULL */
-    size_t      input_length;
+    const char  *input; /* the scene that standard input has, or NULL */
+    size_t       input_length;
+    struct Pack *packs; /* that are open */
 
     Arena *arena; /* for whatever a command needs until the process ends */
 } Options;

@@ -108,18 +108,36 @@ static Parts list_parts(const KrsPicture *picture, KrsMatteKind kind)
     return parts;
 }
 
-/* Returns the manifest, {"tree": "1a2b3c4d", ...}; sets the identifiers. */
+/* A name of the manifest. */
+typedef struct NamedPart {
+    const char *name;
+    uint32_t    identifier;
+} NamedPart;
+
+static int compare_names(const void *a, const void *b)
+{
+    const NamedPart *x = a, *y = b;
+    return strcmp(x->name, y->name);
+}
+
+/* Returns the manifest, {"tree": "1a2b3c4d", ...}, by the names, so that those of parts of a picture can be put
+   together; sets the identifiers. */
 static const char *manifest_of(Arena *arena, const KrsScene *scene, Parts *parts, KrsMatteKind kind)
 {
-    Json manifest = {.text = {.arena = arena}, .spaced = true};
-    json_open(&manifest, NULL, "{");
+    Json       manifest = {.text = {.arena = arena}, .spaced = true};
+    NamedPart *named    = arena_new_array(arena, NamedPart, parts->count + 1);
     for (size_t i = 0; i < parts->count; i++) {
-        char identifier[9];
         Text name = {.arena = arena};
         name_of(scene, &parts->items[i].part, kind, &name);
         parts->items[i].identifier = matte_identifier(murmur_hash(name.bytes));
-        snprintf(identifier, sizeof identifier, "%08x", parts->items[i].identifier);
-        json_string(&manifest, name.bytes, identifier);
+        named[i]                   = (NamedPart){name.bytes, parts->items[i].identifier};
+    }
+    qsort(named, parts->count, sizeof *named, compare_names);
+    json_open(&manifest, NULL, "{");
+    for (size_t i = 0; i < parts->count; i++) {
+        char identifier[9];
+        snprintf(identifier, sizeof identifier, "%08x", named[i].identifier);
+        json_string(&manifest, named[i].name, identifier);
     }
     json_close(&manifest, "}");
     return manifest.text.bytes;

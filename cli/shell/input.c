@@ -1,5 +1,5 @@
 /*
- * input.c: a scene on standard input, which is called `-`.
+ * input.c: scenes that are no files of their own: standard input, which is called `-`, and packs.
  */
 #include "cli/shell/input.h"
 
@@ -39,8 +39,7 @@ KrsStatus input_open(Options *options)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < options->files.count && status == KRS_OK; i++) {
-        if (strcmp(options->files.items[i], "-") != 0 || options->command == COMMAND_IMPORT ||
-            command_table[options->command].files == MAYBE_A_WORD)
+        if (strcmp(options->files.items[i], "-") != 0 || !takes_scenes(options->command))
             continue;
         if (options->command == COMMAND_QUERY)
             return say_usage(options, "standard input has the questions, so the scene is a file");
@@ -55,4 +54,49 @@ KrsStatus input_open(Options *options)
 bool is_input(const Options *options, const char *path)
 {
     return options->input && strcmp(path, input_name) == 0;
+}
+
+Pack *pack_of(const Options *options, const char *path)
+{
+    Pack *pack = options->packs;
+    while (pack && strcmp(pack->path, path) != 0)
+        pack = pack->next;
+    return pack;
+}
+
+/* Reports a command that needs a file which can be saved; KRS_OK: packs will do. */
+static KrsStatus check_use(const Options *options, const char *path)
+{
+    switch (options->command) {
+    case COMMAND_WATCH: return say_usage(options, "a pack does not change; render `%s`", path);
+    case COMMAND_VIEW: return say_usage(options, "a pack cannot be edited; render `%s`", path);
+    case COMMAND_FORMAT: return say_usage(options, "`%s` is a pack, not a text", path);
+    case COMMAND_PACK: return say_usage(options, "`%s` is a pack already", path);
+    default: return KRS_OK;
+    }
+}
+
+KrsStatus packs_open(Options *options)
+{
+    const uint64_t limit  = options->limits.memory ? options->limits.memory : KRS_USUAL_MEMORY;
+    KrsStatus      status = KRS_OK;
+    if (!takes_scenes(options->command))
+        return KRS_OK;
+    for (size_t i = 0; i < options->files.count && status == KRS_OK; i++) {
+        const char *path = options->files.items[i];
+        if (!pack_is_named(path))
+            continue;
+        status = check_use(options, path);
+        if (status != KRS_OK)
+            break;
+        Text  why  = {.arena = options->arena};
+        Pack *pack = pack_read(options->arena, path, (size_t)limit, &why);
+        if (!pack) {
+            say("cannot read `%s`: %s", path, why.bytes);
+            return KRS_IO_ERROR;
+        }
+        pack->next     = options->packs;
+        options->packs = pack;
+    }
+    return status;
 }

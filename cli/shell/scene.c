@@ -80,6 +80,7 @@ static bool takes_figures(const Options *options)
 KrsOptions scene_options(DiagnosticSink *sink, const char *path)
 {
     const Options *options = sink->options;
+    Pack          *pack    = pack_of(options, path);
     return (KrsOptions){.diagnostic   = print_diagnostic,
                         .user         = sink,
                         .specialize   = find_specialize(options),
@@ -93,7 +94,11 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .beams        = options->command == COMMAND_MESH && options->mesh_beams,
                         .figures      = takes_figures(options),
                         .outlines     = options->command == COMMAND_MESH,
-                        .root         = scene_root(options, path)};
+                        .root         = scene_root(options, path),
+                        .load         = pack ? pack_load : NULL,
+                        .load_user    = pack,
+                        .font         = pack ? pack_font : NULL,
+                        .font_user    = pack};
 }
 
 void scene_print_counts(const DiagnosticSink *sink)
@@ -194,6 +199,11 @@ KrsStatus scene_compile(const Options *options, const char *path, const KrsOptio
                         KrsScene **scene)
 {
     const char *input = scene_input(options, path);
+    Pack       *pack  = pack_of(options, path);
+    if (pack) {
+        const PackEntry *text = pack_find(&pack->files, pack->scene);
+        return krs_compile_text(text->bytes, text->length, pack->scene, with, scene);
+    }
     return input ? krs_compile_text(input, options->input_length, path, with, scene)
                  : krs_compile_file(path, with, scene);
 }
@@ -244,7 +254,9 @@ const char *scene_name(Arena *arena, const char *path)
     size_t      length = strlen(name);
     if (strcmp(path, "<stdin>") == 0)
         return "stdin";
-    if (length > 4 && strcmp(name + length - 4, ".krs") == 0)
+    if (pack_is_named(name))
+        length -= strlen(PACK_ENDING);
+    else if (length > 4 && strcmp(name + length - 4, ".krs") == 0)
         length -= 4;
     return arena_copy_text(arena, name, length);
 }
