@@ -38,12 +38,19 @@ function sourcePlace(file) {
     return sources.get(file);
 }
 
+const fileOf = (target, document) => path.join(path.dirname(document), decodeURIComponent(target)).replace(/\/$/, '');
+
 function link(href, { place, document }) {
     if (/^[a-z]+:/.test(href) || href.startsWith('#') || !document)
         return href;
-    const [target, fragment] = href.split('#'), file = path.join(path.dirname(document), decodeURIComponent(target)).replace(/\/$/, '');
+    const [target, fragment] = href.split('#'), file = fileOf(target, document);
     return way(place, (placeOf.get(file) ?? sourcePlace(file)) + (fragment ? `#${fragment}` : ''));
 }
+
+const titleOf = (href, { document }) => {
+    const [target, fragment] = href.split('#');
+    return fragment || !document ? null : pages.find(page => page.document === fileOf(target, document))?.title;
+};
 
 // ---- pictures and scenes ----
 
@@ -68,24 +75,25 @@ let numberOfScenes = 0;
 // Texts of such lines have the picture beside them.
 const SHORT_LINE = 52;
 
-// A scene: its text, beside what another program wrote for it, its picture, and the way to the playground.
-function scene(text, env, { other, picture: given, name, small: little, alt } = {}) {
+// A scene: its text, beside what another program wrote for it, its picture, and the way to the playground.  What is `told` of a
+// word stands beside a small picture.
+function scene(text, env, { other, picture: given, name, told, alt } = {}) {
     const code = other ? `<div class="both">${block(other.text, other.language)}${block(text, 'krs')}</div>` : block(text, 'krs');
     if (!shows(text))
         return code;
     const stem = name ?? path.basename(env.document ?? env.place).replace(/\.\w+$/, '');
     const shown = given ? pictures.ofFile(path.join(root, path.dirname(env.document), given.src), { width: 640 })
-        : pictures.scene(stem, text, little ? { width: 288, height: 192, density: 1.5 } : {});
+        : pictures.scene(stem, text, told ? { width: 288, height: 192, density: 1.5 } : {});
     const title = given?.alt ?? alt ?? 'A picture of this scene', lines = text.split('\n');
-    const form = little ? ' little' : !other && Math.max(...lines.map(line => line.length)) <= SHORT_LINE ? ' short' : '';
+    const form = told ? ' little' : !other && Math.max(...lines.map(line => line.length)) <= SHORT_LINE ? ' short' : '';
     return `<figure class="scene${form}" data-scene="${++numberOfScenes}">
-${code}
+${told ? `<div class="told">${told}${code}</div>` : code}
 <div class="shown"><div class="view">${image(shown, title, env.place)}<button type="button" class="turn">Turn it</button></div>
 <div class="beside"><a class="open" href="${playgroundLink(text, env.place)}">Open in the playground</a><div class="sliders"></div></div></div>
 </figure>`;
 }
 
-const markdown = new Markdown({ link, picture, scene });
+const markdown = new Markdown({ link, titleOf, picture, scene });
 
 // ---- pages ----
 

@@ -20,11 +20,12 @@ function contents(place) {
         `<li><a href="${way(place, page.place)}"${page.place === place ? ' aria-current="page"' : ''}>${escaped(page.title)}</a></li>`).join('')}</ul>`).join('\n');
 }
 
-// Headings of a page, to go to.
+// Headings of a page, to go to; where there are more, only the upper ones.
+const MANY_HEADINGS = 90;
 function outline(sections) {
-    const shown = sections.filter(({ level }) => level === 2);
-    return shown.length < 2 ? '' : `<nav class="outline" aria-label="On this page"><h2>On this page</h2>\n<ul>${shown.map(({ id, html }) =>
-        `<li><a href="#${id}">${html.replace(/<\/?a[^>]*>/g, '')}</a></li>`).join('')}</ul></nav>`;
+    const upper = sections.filter(({ level }) => level === 2), shown = sections.length <= MANY_HEADINGS ? sections : upper;
+    return shown.length < 2 ? '' : `<nav class="outline" aria-label="On this page"><h2>On this page</h2>\n<ul>${shown.map(({ id, html, level }) =>
+        `<li><a href="#${id}"${level > 2 ? ' class="lower"' : ''}>${html.replace(/<\/?a[^>]*>/g, '')}</a></li>`).join('')}</ul></nav>`;
 }
 
 // The pages before and behind.

@@ -39,9 +39,9 @@ ${lead.map(sentence => `<p>${sentence}</p>`).join('\n')}
 </figure>
 </section>
 <section class="install">
-<h2>Install</h2>
-<div><p>On Debian 12 or 13, or Ubuntu 24.04, with git, make and gcc. It needs no graphics card.</p>
-${block('make demo             # installs what is missing, builds, renders a dozen scenes\nsudo make install     # the command, library and manual\n\nkrs view fish.krs                # a window: turn it, pull sliders, edit and save the text\nkrs render fish.krs -o fish.png\nkrs mesh fish.krs -o fish.stl', 'sh')}</div>
+<div><h2>Install</h2>
+<p>On Debian 12 or 13, or Ubuntu 24.04, with git, make and gcc. It needs no graphics card. <a href="${to('docs/contributing.html')}#other-systems">Other systems</a> need some packages by hand.</p></div>
+<div>${block('make demo           # installs what is missing, builds, renders examples\nsudo make install   # the command, library and manual\n\nkrs view fish.krs   # a window: turn it, edit and save the text\nkrs render fish.krs -o fish.png\nkrs mesh fish.krs -o fish.stl', 'sh')}</div>
 </section>
 <section><h2>What it makes</h2>
 <ul class="cards">${cards.join('\n')}</ul>

@@ -12,11 +12,13 @@ const language = token => token.info.trim();
 
 // Where a table's words are many, its rows are stacked on a narrow page; else it is scrolled.
 const LONG_CELL = 26;
+// Shorter cells are not broken.
+const BRIEF_CELL = 14;
 
 export class Markdown {
-    // `link` and `picture` are given what a document names, and the place of the document; `scene` shows a scene.
-    constructor({ link, picture, scene }) {
-        Object.assign(this, { link, picture, scene });
+    // `link`, `titleOf` and `picture` are given what a document names, and the place of the document; `scene` shows a scene.
+    constructor({ link, titleOf, picture, scene }) {
+        Object.assign(this, { link, titleOf, picture, scene });
         this.parser = new MarkdownIt();
         const { rules } = this.parser.renderer, usual = (tokens, i, options, _, renderer) => renderer.renderToken(tokens, i, options);
         rules.heading_open = (tokens, i, options, env, renderer) => {
@@ -55,6 +57,7 @@ export class Markdown {
         const tokens = this.parser.parse(text, env);
         const title = tokens[0]?.type === 'heading_open' && tokens[0].tag === 'h1' ? textOf(tokens[1]) : null;
         formTables(tokens);
+        this.#nameLinks(tokens, env);
         let html = '', from = 0;
         const plain = to => { html += this.parser.renderer.render(tokens.slice(from, to), this.parser.options, env); };
         for (let i = 0; i < tokens.length; i++) {
@@ -70,6 +73,14 @@ export class Markdown {
         }
         plain(tokens.length);
         return { html, title, sections: env.sections };
+    }
+
+    // A link that shows the name of a document shows its title.
+    #nameLinks(tokens, env) {
+        for (const { children } of tokens.filter(token => token.type === 'inline'))
+            for (const [i, token] of children.entries())
+                if (token.type === 'link_open' && children[i + 1].type === 'text' && /^[\w/.-]+\.md$/.test(children[i + 1].content))
+                    children[i + 1].content = this.titleOf(token.attrGet('href'), env) ?? children[i + 1].content;
     }
 
     inline(text, env = { place: '' }) { return this.parser.renderInline(text, env); }
@@ -102,6 +113,8 @@ function formTables(tokens) {
                 column = 0;
             if (tokens[at].type === 'td_open' && heads[column++])
                 tokens[at].attrSet('data-head', heads[column - 1]);
+            if (tokens[at].type === 'td_open' && tokens[at + 1].content.length <= BRIEF_CELL)
+                tokens[at].attrSet('class', 'brief');
         }
         if (heads.every(title => title.trim() === ''))
             tokens.splice(i + 1, head - i);

@@ -71,23 +71,24 @@ export class Reference {
             ...(declared ? [['core', 'keeps its size when rounded'], ['hull', 'can be in a hull'], ['uv', 'has u and v'], ['figure', 'a plane figure'], ['ball', 'can be a mirror'], ['plane', 'can be a mirror']]
                 .filter(([property]) => declared.properties.has(property)).map(([, says]) => says) : []),
         ];
-        return `<ul class="facts">${facts.map(fact => `<li>${escaped(fact)}</li>`).join('')}</ul>`;
+        return `<ul class="facts">${facts.map(fact => `<li${fact === 'exact distance' ? ' class="good"' : ''}>${escaped(fact)}</li>`).join('')}</ul>`;
     }
 
     #entry(word) {
         this.shown.add(word);
         const text = this.sceneOf(word), name = `${word.kind === 'method' ? '.' : ''}${word.name}`, id = word.kind === 'method' ? `method-${word.name}` : word.name;
         const use = word.file ? `<p class="use">in <code>${escaped(word.file)}</code></p>` : '';
-        const told = `<pre class="signature" tabindex="0"><code>${highlight(this.#signature(word))}</code></pre>\n${word.about ? this.markdown.blocks(word.about.replace(/\n/g, ' ')) : ''}${use}${this.#facts(word, text)}`;
-        return lines(heading(3, name, id, `<code>${name}</code>`), `<div class="word">${told}</div>`,
-                     text ? this.scene(text, { place: this.place }, { name: `word-${word.name}`, small: true, alt: `A picture of ${name}` }) : '');
+        const told = lines(`<pre class="signature" tabindex="0"><code>${highlight(this.#signature(word))}</code></pre>`,
+                           word.about ? this.markdown.blocks(sentence(word.about)) : '', use, this.#facts(word, text));
+        return lines(heading(3, name, id, `<code>${name}</code>`),
+                     text ? this.scene(text, { place: this.place }, { name: `word-${word.name}`, told, alt: `A picture of ${name}` }) : `<div class="told">${told}</div>`);
     }
 
     #group(title, words, about = '') { return words.length === 0 ? '' : lines(heading(2, title), about, words.map(word => this.#entry(word))); }
 
     #listed(title, words, about = '') {
         return lines(heading(2, title), about, '<dl class="listed">', words.map(word =>
-            `<dt id="${word.name}"><code>${highlight(word.kind === 'value' ? word.name : this.#signature(word))}</code></dt><dd>${this.markdown.inline(word.about ?? '')}</dd>`), '</dl>');
+            `<dt id="${word.name}"><code>${highlight(word.kind === 'value' ? word.name : this.#signature(word))}</code></dt><dd>${this.markdown.inline(sentence(word.about ?? ''))}</dd>`), '</dl>');
     }
 
     #page(title, about, ...parts) { return { title, html: lines(heading(1, title), `<p class="lead">${about}</p>`, parts) }; }
@@ -143,8 +144,8 @@ export class Reference {
         const examples = fs.readdirSync(path.join(this.root, 'tests/errors'));
         const entry = ([code, title]) => {
             const explained = this.run('explain', code).split('\n').slice(2).join('\n').trim(), example = examples.find(file => file.startsWith(`${code}-`) && file.endsWith('.krs'));
-            const said = example ? this.read(`tests/errors/${example.replace('.krs', '.err')}`).split(/\n\n(?=\w+\[|\d+ )/)[0].replaceAll(`tests/errors/${example}`, 'scene.krs') : '';
-            return lines(heading(3, `${code}: ${title}`, code, `<code>${code}</code> ${escaped(title)}`), this.markdown.blocks(explained), said ? `<pre tabindex="0" class="said"><code>${escaped(said)}</code></pre>` : '');
+            const said = example ? this.read(`tests/errors/${example.replace('.krs', '.err')}`).split(/\n\n(?=\w+\[|\d+ )/)[0].replaceAll(`tests/errors/${example}`, 'scene.krs').replace(/ *\/\/~ \w+/g, '') : '';
+            return lines(heading(3, `${code}: ${title}`, code, `<code>${code}</code> ${escaped(title)}`), this.markdown.blocks(explained), said ? `<pre tabindex="0" class="said"><code>${marked(said)}</code></pre>` : '');
         };
         const severities = { E: 'Errors', W: 'Warnings', N: 'Notes' };
         return this.#page('Diagnostics', 'What the compiler says of a scene. <code>krs explain CODE</code> prints the same. Codes keep their meaning for ever.',
@@ -191,8 +192,7 @@ export class Reference {
         const nameOf = code => (/^typedef (?:struct|enum) (\w+) \{/m.exec(code) ?? /\b(krs_\w+)\(/.exec(code) ?? /^typedef .*?\b(Krs\w+)[;(]/m.exec(code) ?? [])[1];
         return this.#page('C reference', 'The public headers with their comments. <a href="../docs/library.html">krs from C</a> shows how they are used.', headers.map(header => {
             const text = this.read(`include/krs/${header}.h`), [, about] = /^\/\*\n \* \w+\.h: (.*?)\*\//s.exec(text);
-            const body = text.slice(text.indexOf('*/') + 2).replace(/^#if(n?def)?(?:.*\n)*?#endif.*$/gm, guard => (/pragma|extern|KRS_\w+_H\b/.test(guard) ? '' : guard))
-                .replace(/^#(include|ifndef|ifdef|endif|pragma|define KRS_\w+_H\b|if\b|else|undef).*$/gm, '').replace(/^(extern "C" \{|\})$/gm, '');
+            const body = text.slice(text.indexOf('*/') + 2).replace(OF_ALL_HEADERS, '');
             return lines(heading(2, `krs/${header}.h`), this.markdown.blocks(about.replace(/^ \* ?/gm, '')),
                 this.#declarations(body, 'c', { comment: /^\/\*\s(.*?)\*\/\n?/s, nameOf }));
         }));
@@ -208,13 +208,19 @@ export class Reference {
     python() {
         const modules = JSON.parse(execFileSync('python3', [path.join(this.root, 'site/python.py'), path.join(this.root, 'python/krs')], { encoding: 'utf8' }));
         const doc = text => (text ? this.markdown.blocks(text.replace(/((?:^|\n\n))((?:>>> .*\n?|(?:.+\n)*?(?=>>> ))+(?:.*\n?)*)/g, '$1```python\n$2\n```\n')) : '');
-        const entry = ({ name, signature, doc: text, fields, members }) => lines(heading(3, name, name, `<code>${name}</code>`), block(members ? signature : `def ${signature}`, 'python'), doc(text),
+        const entry = ({ name, signature, doc: text, fields, members }) => lines(heading(3, name, name, `<code>${name}</code>`), `<pre class="signature" tabindex="0"><code>${highlighted(members ? signature : `def ${signature}`, 'python')}</code></pre>`, doc(text),
             fields?.length ? block(fields.join('\n'), 'python') : '',
             members?.length ? `<dl class="listed">${members.map(member => `<dt><code>${highlighted(member.signature, 'python')}</code></dt><dd>${doc(member.doc)}</dd>`).join('\n')}</dl>` : '');
         return this.#page('Python reference', 'What <code>from krs import *</code> has, with its comments. Shapes and functions of <a href="functions.html">the language</a> are functions here as well.',
             modules.filter(({ has }) => has.length).map(({ name, doc: text, has }) => lines(heading(2, `krs.${name}`), doc(text), has.map(entry))));
     }
 }
+
+// What tables say in few words, as a sentence; a formula stays what it is.
+const sentence = about => about.replace(/\n/g, ' ').replace(/^[a-z](?=[a-z]* )/, letter => letter.toUpperCase()).replace(/[^.]$/, '$&.');
+
+// What is for the preprocessor and for C++ alone.
+const OF_ALL_HEADERS = /^#ifn?def (?:__cplusplus|__GNUC__|KRS_\w+_H)\n(?:#define KRS_\w+_H\n|extern "C" \{\n#endif\n|\}\n#endif\n|#pragma .*\n#endif\n)|^#include .*\n|^#endif\n*$(?![^])/gm;
 
 // Whether the parenthesis that a text opens first is closed by its last sign, so that a method can follow.
 function closes(text) {
@@ -226,6 +232,10 @@ function closes(text) {
     }
     return true;
 }
+
+// A message of the compiler with its marks, as a terminal shows them.
+const marked = said => escaped(said).replace(/^(?:error|warning|note)(?=\[)/gm, word => `<span class="t-string">${word}</span>`)
+    .replace(/^( *\|[ -]*)(\^+.*)/gm, '$1<span class="t-string">$2</span>').replace(/^( *= )(\w+:)/gm, '$1<span class="t-call">$2</span>');
 
 // Options with their texts, of which a line of help is a part.
 function joined(help) {

@@ -41,6 +41,9 @@
             const at = heads.findLast(head => head.getBoundingClientRect().top < 140) ?? heads[0];
             for (const [id, link] of outline)
                 id === at.id ? link.setAttribute('aria-current', 'true') : link.removeAttribute('aria-current');
+            const link = outline.get(at.id), around = link.closest('.outline'), { top, bottom } = link.getBoundingClientRect(), box = around.getBoundingClientRect();
+            if (top < box.top + 60 || bottom > box.bottom - 60)
+                around.scrollTop += top - (box.top + box.bottom) / 2;
         };
         addEventListener('scroll', mark, { passive: true });
         mark();
@@ -174,7 +177,8 @@
         view.setAttribute('aria-label', 'The scene. Drag to turn it.');
         view.addEventListener('krs-error', () => { box.dataset.state = 'failed'; });
         view.addEventListener('krs-frame', ({ detail }) => {
-            if (detail.samples >= 1)
+            // While the time runs, a slow machine shows coarse pictures alone.
+            if (detail.samples >= 1 || (view.playing && detail.samples > 0))
                 box.dataset.state = 'there';
         });
         box.append(view);
@@ -183,7 +187,7 @@
             box.dataset.state = 'failed';
             throw new Error(diagnostics[0]?.message);
         }
-        if (view.scene.animated)
+        if (view.scene.animated && !matchMedia('(prefers-reduced-motion: reduce)').matches)
             view.playing = true;
         figure.querySelector('.sliders').replaceChildren(...view.scene.parameters.flatMap(parameter => control(view.scene, parameter)));
     }

@@ -157,12 +157,12 @@ await page.evaluate('document.getElementById("finder").close(); document.getElem
 await page.go(`${server.url}/docs/tutorial.html`);
 report(await page.evaluate('document.documentElement.dataset.theme') === 'dark', 'who has chosen dark colours has them on the next page');
 
-// The first scene by itself, and one that is clicked, with a slider.
+// A scene that is clicked, and the first page's, which comes by itself, with a slider.
 await page.evaluate('document.querySelectorAll(".turn")[0].click()');
-await page.until('document.querySelector(".view").dataset.state === "there"');
+await page.until('document.querySelector(".view").dataset.state === "there"', { seconds: 120 });
 report(await page.evaluate('document.querySelector(".view krs-view").scene.ok'), 'a click on the picture of the first scene makes it live');
 await page.go(`${server.url}/index.html`);
-await page.until('document.querySelector(".first .view").dataset.state === "there"');
+await page.until('document.querySelector(".first input[type=range]")', { seconds: 120 });
 await page.evaluate(() => {
     const slider = document.querySelector('.first input[type=range]');
     slider.value = 0.7;
