@@ -9,10 +9,19 @@
 #include "cli/shell/console.h"
 #include "compiler/base/diag.h"
 
+/* What this command alone says of each code. */
+static const struct {
+    const char *title, *explanation;
+} pages[DIAG_CODE_COUNT] = {
+#define DIAG(code, severity, name, title, explanation) [DIAG_##name] = {title, explanation},
+#include "compiler/base/diag.def"
+#undef DIAG
+};
+
 static void print_list(void)
 {
     for (size_t i = 0; i < DIAG_CODE_COUNT; i++)
-        printf("%s  %s\n", diag_info[i].code, diag_info[i].title);
+        printf("%s  %s\n", diag_info[i].code, pages[i].title);
 }
 
 KrsStatus command_explain(Options *options)
@@ -28,7 +37,8 @@ KrsStatus command_explain(Options *options)
     if (!info)
         return say_usage(options, "there is no diagnostic `%s`; `krs explain` lists them",
                          options->files.items[0]);
-    printf("%s[%s]: %s\n\n%s", diag_severity((DiagCode)(info - diag_info)), info->code, info->title,
-           info->explanation);
+    const DiagCode found = (DiagCode)(info - diag_info);
+    printf("%s[%s]: %s\n\n%s", diag_severity(found), info->code, pages[found].title,
+           pages[found].explanation);
     return KRS_OK;
 }

@@ -12,8 +12,7 @@
 #define SEVERITY_NOTE    DIAG_NOTE
 
 const DiagInfo diag_info[DIAG_CODE_COUNT] = {
-#define DIAG(code, severity, name, title, explanation) \
-    [DIAG_##name] = {#code, SEVERITY_##severity, title, explanation},
+#define DIAG(code, severity, name, title, explanation) [DIAG_##name] = {#code, SEVERITY_##severity},
 #include "compiler/base/diag.def"
 #undef DIAG
 };

@@ -25,8 +25,6 @@ typedef enum DiagCode {
 typedef struct DiagInfo {
     const char  *code; /* "E0203" */
     DiagSeverity severity;
-    const char  *title;       /* one line */
-    const char  *explanation; /* what `krs explain E0203` prints */
 } DiagInfo;
 
 extern const DiagInfo diag_info[DIAG_CODE_COUNT];

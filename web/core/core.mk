@@ -69,8 +69,17 @@ $(W)/%.o: %.c web/core/core.mk | $(W)/libraries $(SOURCES_OF)/libpng1.6/pnglibco
 	@mkdir -p $(@D)
 	@echo "compile $< for pages"
 	@$(WASM_CC) -std=c17 -D_GNU_SOURCE $(WARNINGS) -I. -Iinclude -DKRS_LIBRARY $(WASM_HEADERS) -MMD -MP $(WASM_FLAGS) -c -o $@ $<
+EMBEDDED = $(WASM_CC) -std=c17 -I. -O1 -c -o $@ $<
 $(W)/%_files.o: $(B)/%_files.c | $(W)/libraries
-	@$(WASM_CC) -std=c17 -I. -O1 -c -o $@ $<
+	@$(EMBEDDED)
+# A page waits for the library, too.
+WASM_LIBRARY := $(LIBRARY:%=$(W)/%)
+$(WASM_LIBRARY): $(W)/%: % web/core/without_comments.awk
+	@mkdir -p $(@D) && awk -f web/core/without_comments.awk $< >$@
+$(W)/library_files.c: $(B)/embed $(WASM_LIBRARY)
+	@$(B)/embed library_files $(W)/compiler/library/ -- $(WASM_LIBRARY) >$@
+$(W)/library_files.o: $(W)/library_files.c | $(W)/libraries
+	@$(EMBEDDED)
 # There are no vectors, and nothing traces rays by cells.
 $(LANES:%.c=$(W)/%.o) $(W)/compiler/graph/lanes/sets_plain.o: WASM_FLAGS += -Os -fno-unroll-loops -Wno-pass-failed -DWITHOUT_CELLS
 # Each call in a function that has setjmp takes much space.
