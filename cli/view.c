@@ -59,6 +59,14 @@ static KrsStatus check_use(const Options *options)
     return status;
 }
 
+/* Returns the text of a scene that is in a pack. */
+static SuppliedText supplied_text(const Options *options, const char *path)
+{
+    const Pack      *pack = pack_of(options, path);
+    const PackEntry *text = pack ? pack_find(&pack->files, pack->scene) : NULL;
+    return text ? (SuppliedText){pack->scene, text->bytes, text->length} : (SuppliedText){0};
+}
+
 KrsStatus command_view(Options *options)
 {
     char           message[256];
@@ -74,6 +82,7 @@ KrsStatus command_view(Options *options)
                                       options->settings.items[i].values,
                                       options->settings.items[i].count};
     ViewerOptions with = {.path          = path,
+                          .supplied      = supplied_text(options, path),
                           .scene         = scene_options(&sink, path),
                           .renderer      = renderer_options(options),
                           .width         = options->how.width,

@@ -207,6 +207,14 @@ static void act_copy_camera(Viewing *viewing)
     free(text);
 }
 
+/* Tells whether the text is in a file, or says that it is not. */
+static bool is_writable(Viewing *viewing)
+{
+    if (viewing->options->supplied.text)
+        viewing_notice(viewing, "the scene is in a pack, which nothing is written into");
+    return !viewing->options->supplied.text;
+}
+
 /* Says what came of writing into the text.  False: nothing was written. */
 static bool is_written(Viewing *viewing, KrsStatus status)
 {
@@ -223,6 +231,8 @@ static void act_write_camera(Viewing *viewing)
     const KrsScene *scene  = version_scene(viewing->view.version);
     KrsStatus       status = KRS_BAD_ARGUMENT;
     KrsCamera       before;
+    if (!is_writable(viewing))
+        return;
     if (viewing->diagnostics.errors == 0 &&
         krs_state_camera(viewing->state, viewing->camera, &before) == KRS_OK)
         status = camera_text_write(scene, viewing->camera, &before, &viewing->view.camera,
@@ -238,6 +248,8 @@ static void act_write_values(Viewing *viewing)
     size_t          written;
     const KrsScene *scene  = version_scene(viewing->view.version);
     KrsStatus       status = KRS_BAD_ARGUMENT;
+    if (!is_writable(viewing))
+        return;
     if (viewing->diagnostics.errors == 0)
         status = write_defaults(scene, (const double(*)[4])viewing->view.values, &written);
     if (is_written(viewing, status))
@@ -249,6 +261,8 @@ static void act_edit(Viewing *viewing)
 {
     char        place[300];
     const Found found = viewing_find(viewing);
+    if (!is_writable(viewing))
+        return;
     for (size_t i = 0; i < viewing->diagnostics.count; i++)
         if (viewing->diagnostics.items[i].error) {
             diagnostic_location(&viewing->diagnostics.items[i], place);

@@ -358,6 +358,7 @@ static KrsStatus begin(Viewing *viewing, char message[256])
     viewing->document = document_new(options->path, &options->scene);
     if (!viewing->document)
         return fail(message, KRS_IO_ERROR, "the system does not let files be watched", "");
+    document_supply(viewing->document, options->supplied);
     tell_reading(viewing, true);
     KrsStatus status = document_read(viewing->document);
     tell_reading(viewing, false);
@@ -376,7 +377,7 @@ static KrsStatus run(Viewing *viewing, char message[256])
         return status;
     viewing->saver    = saver_new(&options->renderer, wake_viewer, viewing);
     viewing->profiler = profiler_new(&options->renderer, &options->scene, options->path,
-                                     wake_viewer, viewing);
+                                     options->supplied, wake_viewer, viewing);
     if (!viewing->painter || !viewing->saver || !viewing->profiler ||
         pthread_create(&viewing->reader, NULL, read_scene, viewing) != 0)
         return fail(message, KRS_OUT_OF_MEMORY, "out of memory", "");

@@ -5,6 +5,7 @@
 #define KRS_VIEWER_OPTIONS_H
 
 #include "krs/vulkan.h"
+#include "live/text/document.h"
 
 /* A value of a parameter to begin with. */
 typedef struct ViewerSetting {
@@ -14,8 +15,9 @@ typedef struct ViewerSetting {
 } ViewerSetting;
 
 typedef struct ViewerOptions {
-    const char          *path;
-    KrsOptions           scene;
+    const char  *path;
+    SuppliedText supplied; /* the scene, where `path` is a pack: nothing can be written into it */
+    KrsOptions   scene;
     KrsRendererOptions   renderer;
     uint32_t             width, height; /* of the window; 0: the scene's, or the default */
     uint32_t             samples;       /* of a complete picture; 0: the scene's, or the default */

@@ -69,7 +69,6 @@ static KrsStatus check_use(const Options *options, const char *path)
 {
     switch (options->command) {
     case COMMAND_WATCH: return say_usage(options, "a pack does not change; render `%s`", path);
-    case COMMAND_VIEW: return say_usage(options, "a pack cannot be edited; render `%s`", path);
     case COMMAND_FORMAT: return say_usage(options, "`%s` is a pack, not a text", path);
     case COMMAND_PACK: return say_usage(options, "`%s` is a pack already", path);
     default: return KRS_OK;

@@ -22,6 +22,7 @@ struct Profiler {
     KrsRendererOptions renderer;
     KrsOptions         scene;
     const char        *path;
+    SuppliedText       supplied; /* in its place */
     void (*told)(void *user);
     void           *user;
     pthread_t       thread;
@@ -65,13 +66,15 @@ static bool is_wanted(void *user, double done)
 
 static KrsStatus compile(void *user, const KrsLocation *without, KrsScene **scene)
 {
-    const Profiler *profiler = user;
-    KrsOptions      options  = profiler->scene;
-    options.diagnostic       = NULL;
-    options.opened           = NULL;
-    options.specialize       = KRS_SPECIALIZE_NUMBERS;
-    options.without          = without;
-    return krs_compile_file(profiler->path, &options, scene);
+    const Profiler     *profiler = user;
+    const SuppliedText *text     = &profiler->supplied;
+    KrsOptions          options  = profiler->scene;
+    options.diagnostic           = NULL;
+    options.opened               = NULL;
+    options.specialize           = KRS_SPECIALIZE_NUMBERS;
+    options.without              = without;
+    return text->text ? krs_compile_text(text->text, text->length, text->name, &options, scene)
+                      : krs_compile_file(profiler->path, &options, scene);
 }
 
 /* Makes a state.  Parameters that the file no longer has, or no longer so, have its defaults. */
@@ -247,7 +250,8 @@ static void *work(void *user)
 }
 
 Profiler *profiler_new(const KrsRendererOptions *renderer, const KrsOptions *scene,
-                       const char *path, void (*told)(void *user), void *user)
+                       const char *path, SuppliedText supplied, void (*told)(void *user),
+                       void *user)
 {
     Profiler *profiler = calloc(1, sizeof *profiler);
     if (!profiler)
@@ -255,6 +259,7 @@ Profiler *profiler_new(const KrsRendererOptions *renderer, const KrsOptions *sce
     profiler->renderer = *renderer;
     profiler->scene    = *scene;
     profiler->path     = path;
+    profiler->supplied = supplied;
     profiler->told     = told;
     profiler->user     = user;
     atomic_init(&profiler->given_up, false);

@@ -40,7 +40,8 @@ typedef struct Profiler Profiler;
 /* Scenes are compiled from the file, with these options; all must outlive the profiler.  `told` is called in its
    thread, when the state has changed.  NULL: without memory. */
 Profiler *profiler_new(const KrsRendererOptions *renderer, const KrsOptions *scene,
-                       const char *path, void (*told)(void *user), void *user);
+                       const char *path, SuppliedText supplied, void (*told)(void *user),
+                       void *user);
 void      profiler_free(Profiler *profiler);
 
 /* Times what this view shows; false: it is busy, or there is no memory. */

@@ -29,6 +29,7 @@ struct Version {
 struct Document {
     const char     *path;
     KrsOptions      options; /* the caller's */
+    SuppliedText    supplied;
     Watcher        *watcher;
     bool            refused; /* the system does not let us watch a file */
     int             woken;   /* an eventfd */
@@ -153,6 +154,8 @@ Document *document_new(const char *path, const KrsOptions *options)
     return NULL;
 }
 
+void document_supply(Document *document, SuppliedText text) { document->supplied = text; }
+
 void document_free(Document *document)
 {
     if (!document)
@@ -196,18 +199,26 @@ static bool is_no_file(Document *document)
     return true;
 }
 
+static const KrsChanges all_is_new = {
+    KRS_CHANGE_STRUCTURE, true, true, true, true, true, true, true};
+
 static KrsStatus compile(Document *document, KrsScene **scene, KrsChanges *changes)
 {
-    KrsOptions with = document->options;
+    const SuppliedText *supplied = &document->supplied;
+    KrsOptions          with     = document->options;
+    with.diagnostic              = hear;
+    with.user                    = document;
+    if (supplied->text) {
+        *changes = all_is_new;
+        return krs_compile_text(supplied->text, supplied->length, supplied->name, &with, scene);
+    }
     if (is_no_file(document))
         return KRS_IO_ERROR;
-    with.diagnostic  = hear;
-    with.user        = document;
     with.opened      = watch_file;
     with.opened_user = document;
     if (document->version)
         return krs_scene_reload(version_before(document)->scene, scene, changes);
-    *changes = (KrsChanges){KRS_CHANGE_STRUCTURE, true, true, true, true, true, true, true};
+    *changes = all_is_new;
     return krs_compile_file(document->path, &with, scene);
 }
 
@@ -283,7 +294,7 @@ void document_prepare(Document *document)
     KrsScene  *scene;
     KrsChanges changes;
     if (!document->version || document->version->number > 1 || document->spare ||
-        document->options.specialize != KRS_SPECIALIZE_AUTO)
+        document->supplied.text || document->options.specialize != KRS_SPECIALIZE_AUTO)
         return;
     document->quiet        = true;
     const KrsStatus status = compile(document, &scene, &changes);

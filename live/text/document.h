@@ -36,6 +36,15 @@ typedef struct Document Document;
 Document *document_new(const char *path, const KrsOptions *options);
 void      document_free(Document *document);
 
+/* A scene that is no file of its own, as one in a pack: its text, and its name. */
+typedef struct SuppliedText {
+    const char *name, *text; /* `text` NULL: the scene is a file */
+    size_t      length;
+} SuppliedText;
+
+/* The document is this text, which must outlive it, and never changes: no file is watched. */
+void document_supply(Document *document, SuppliedText text);
+
 /* Reads and compiles the file.  On KRS_OK there is a new version; otherwise the last good one stays,
    and the diagnostics say why.  A mistake counts if nothing else is saved for SETTLED_SECONDS (watcher.h): an
    editor may not be done.  KRS_CANNOT_CREATE: the system does not let a file be watched. */

@@ -2,7 +2,7 @@
 # pack.sh: `krs pack` makes one file of a scene, and other commands do with it what they do with the scene, elsewhere.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 23
+plan 22
 
 # A scene that reads a text above its folder, one by its whole path, a picture, data and a font.
 mkdir -p home/scenes home/pictures home/far elsewhere
@@ -57,7 +57,7 @@ ended 74 "a folder is no pack"
 run check none.krsz
 ended 74 "nor is a file that is missing"
 
-for command in "watch scene.krsz" "view scene.krsz" "format scene.krsz" "pack scene.krsz -o other.krsz"; do
+for command in "watch scene.krsz" "format scene.krsz" "pack scene.krsz -o other.krsz"; do
     # shellcheck disable=SC2086
     run $command
     ended 2 "krs ${command%% *} refuses a pack"

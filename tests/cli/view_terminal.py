@@ -19,13 +19,13 @@ def scene(radius, color):
     os.rename("scene.new", "scene.krs")
 
 
-def start(term, cell_width=0, cell_height=0):
+def start(term, cell_width=0, cell_height=0, shown="scene.krs"):
     child, terminal = pty.fork()
     if child == 0:
         os.environ.update(TERM=term, COLORTERM="truecolor")
         fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, COLUMNS * cell_width,
                                                        ROWS * cell_height))
-        os.execv(krs, [krs, "view", "scene.krs", "--terminal", "--samples", "1"])
+        os.execv(krs, [krs, "view", shown, "--terminal", "--samples", "1"])
     return child, terminal
 
 
@@ -162,3 +162,19 @@ for term, picture in ("xterm-kitty", kitty_picture), ("foot", sixel_picture):
     os.write(terminal, b"\033")
     wait_for(lambda said: "\033[?1049l" in said, 10)
     os.waitpid(child, 0)
+
+# ---- a scene in a pack ----
+
+meant = rendered()
+subprocess.run([krs, "pack", "scene.krs", "-o", "ball.krsz", "--quiet"], check=True)
+with open("scene.krs", "w") as file:
+    file.write("show box([1, 1, 1]);")
+child, terminal = start("xterm-256color", shown="ball.krsz")
+result(wait_for(lambda said: "160x96   1/1" in said and near(said, meant)), "a pack is shown, and no file beside it")
+os.write(terminal, b"\x05")
+result(wait_for(lambda said: "in a pack" in said), "the camera is not written into it")
+os.write(terminal, b"\033")
+wait_for(lambda said: "\033[?1049l" in said, 10)
+ended, status = os.waitpid(child, 0)
+with open("scene.krs") as file:
+    result(status == 0 and file.read() == "show box([1, 1, 1]);", "nor into the file")

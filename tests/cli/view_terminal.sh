@@ -3,7 +3,7 @@
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 export XDG_CACHE_HOME="$work/caches"
-plan 10
+plan 13
 run view ball.krs --terminal
 said 69 "no terminal" "no terminal, no viewer"
 "${PYTHON:-/usr/bin/python3}" "$root/tests/cli/view_terminal.py" "$krs" | awk '
