@@ -87,8 +87,7 @@ MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) \
 MODULES  += $(MODULES:%.spv=%-FRAME_TEXELS.spv)
 # Lanes draw first pictures there, of scenes with a lens as well.
 MODULES  += $(patsubst %,$(B)/modules/%-PANORAMIC-LENS-FRAME_TEXELS.spv, \
-                       background.comp unproven.comp penumbrae.comp shadow.comp occlusion.comp aim.comp arrive.comp \
-                       aim.comp-MIXED_RAYS arrive.comp-MIXED_RAYS \
+                       background.comp unproven.comp penumbrae.comp shadow.comp occlusion.comp aim.comp aim.comp-MIXED_RAYS \
                        shade.comp-SURFACES shade.comp-SURFACES-MIRRORS-MIXED_RAYS)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
 

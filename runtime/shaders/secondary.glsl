@@ -7,11 +7,10 @@
  * visible, from the pixels around as well.
  */
 #include "hit_lists.glsl"
-#include "shared.glsl"
-#include "occluders.glsl"
 #ifdef PATH_RAYS
 #include "results.glsl"
 #endif
+#include "secondary_ends.glsl"
 #include "secondary_rays.glsl"
 
 uint  unresolved;  // rays of this lane that ran out of steps
@@ -105,23 +104,8 @@ void begin_item(uint number, bool saved)
     begin_steps();
 }
 
-// Returns the width of the blocker's penumbra at the hit, in pixels.
-float find_penumbra()
-{
-    float width = 2.0 * radius * t;
-    if (positional)
-        width /= max(length(light.vector - start) - t, 1e-30);
-    return width / hit.width;
-}
-
-#ifndef PATH_RAYS
-// Lists the hit as one whose ray has met an occluder.
-void list_occluder()
-{
-    store_occluder(LIST_WIDE, ivec2(pixel_of(hit.slot)), t);
-    pixel_lists[LIST_REMAINING * band_pixels() + atomicAdd(counts.remaining, 1u)] = hit.slot;
-}
-#endif
+// Tells how far from the start the centre of the light is; 0: it has no place.
+float find_light_distance() { return positional ? max(length(light.vector - start), 1e-30) : 0.0; }
 
 void end_ray()
 {
@@ -136,17 +120,8 @@ void end_ray()
     if (!blocked && !below_horizon)
         add_light_to(row, index_of(pixel_of(hit.slot)), clamped(added));
 #else
-    float visible = blocked || below_horizon ? 0.0 : 1.0;
-    uint  code = below_horizon ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;
-    if (control.phase == RAYS_OVER_HEMISPHERE) {
-        code = blocked ? code_of_width(t / hit.width) : LIT;
-        if (blocked)
-            list_occluder();
-    }
-    if (control.filters != 0u)
-        store_shared(RAYS_SHARED, hit.slot, find_depth(hit), code);
-    else
-        store_lighting(control.value, hit.slot, visible);
+    store_end(hit.slot, find_depth(hit),
+              RayOfHit(blocked, below_horizon, t, hit.width, radius, find_light_distance()));
 #endif
 }
 

@@ -354,14 +354,20 @@ CONSTANT(PATH_ROWS, 6);
    have paths (frame.glsl).  LANE_START: where
    it begins, and where it ends.  LANE_AHEAD: its direction, and the cosine to the normal.  LANE_SCALE: how high it begins,
    the width of a pixel there, the error of coordinates, and the side of the hit.  LANE_CONE: the radius of a cone at
-   distance 1, its margin, the least step, and 1: it is marched.  LANE_FOUND: where it has ended; 1: it is blocked;
-   1: it ran out of steps. */
+   distance 1, its margin, the least step, and how it begins.  LANE_LIGHT: the depth of the hit (shared.glsl), the radius of
+   the light, and how far that is.  LANE_FOUND: where it has ended; 1: it is blocked; 1: it ran out of steps. */
 CONSTANT(LANE_START, 0);
 CONSTANT(LANE_AHEAD, 1);
 CONSTANT(LANE_SCALE, 2);
 CONSTANT(LANE_CONE, 3);
-CONSTANT(LANE_FOUND, 4);
-CONSTANT(LANE_ROWS, 5);
+CONSTANT(LANE_LIGHT, 4);
+CONSTANT(LANE_FOUND, 5);
+CONSTANT(LANE_ROWS, 6);
+/* How a ray begins: it is marched, or it is known without a march that it is free, blocked, or behind its surface. */
+CONSTANT(LANE_MARCHES, 0);
+CONSTANT(LANE_IS_FREE, 1);
+CONSTANT(LANE_IS_BLOCKED, 2);
+CONSTANT(LANE_BELOW_HORIZON, 3);
 
 /* Lists of pixels (hit_lists.glsl), each with room for all pixels of the band.  LIST_OF_MARCH_GROUP
    is the first of GROUP_LISTS lists. */

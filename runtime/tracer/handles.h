@@ -62,8 +62,8 @@ struct KrsRenderer {
     Handle         layout;       /* shared by all shaders */
     /* Each is made when it is needed, with the shaders of the first scene that needs it. */
     Shader pixels[RAY_KINDS][PIXEL_SHADERS];
-    /* aim.comp and arrive.comp, for rays of cameras; [1]: paths have such rays, too. */
-    Shader   aims[RAYS_OF_LISTS][2], arrivals[RAYS_OF_LISTS][2];
+    /* aim.comp and arrive.comp; [1]: paths have such rays, too. */
+    Shader   aims[RAYS_OF_LISTS][2], arrivals[2];
     Shader   limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Shader   escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
     Shader   escapes_to_plate;      /* the same for paths that may meet a plate */

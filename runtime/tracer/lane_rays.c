@@ -286,7 +286,9 @@ static void begin_secondary(const Slice *slice, const float (*rows)[4], uint32_t
 {
     const float(*ray)[4] = rows + (size_t)LANE_ROWS * item;
     const bool there     = item < slice->items;
-    block->state[i] = !there ? RAY_IS_ABSENT : ray[LANE_CONE][3] > 0 ? RAY_MARCHES : RAY_MISSES;
+    block->state[i]      = !there                              ? RAY_IS_ABSENT
+                           : ray[LANE_CONE][3] == LANE_MARCHES ? RAY_MARCHES
+                                                               : RAY_MISSES;
     if (!there)
         return;
     for (int k = 0; k < 3; k++) {
@@ -306,7 +308,7 @@ static void begin_secondary(const Slice *slice, const float (*rows)[4], uint32_t
 
 static BlockRule block_rule_of(const Job *job)
 {
-    /* These numbers are those of secondary.glsl. */
+    /* These numbers are those of secondary_rays.glsl. */
     const float         growth = 1.008f, growth_of_sky = 1.08f, far_reaches = 60;
     const ControlBlock *control    = job->rendering->control.bytes;
     const bool          hemisphere = control->phase == RAYS_OVER_HEMISPHERE;

@@ -179,10 +179,10 @@ void krs_renderer_free(KrsRenderer *renderer)
             shader_destroy(gpu, &renderer->limits[kind]);
             shader_destroy(gpu, &renderer->escapes[kind]);
         }
-        for (int i = 0; i < 2 * RAYS_OF_LISTS; i++) {
+        for (int i = 0; i < 2 * RAYS_OF_LISTS; i++)
             shader_destroy(gpu, &renderer->aims[i / 2][i % 2]);
-            shader_destroy(gpu, &renderer->arrivals[i / 2][i % 2]);
-        }
+        for (int i = 0; i < 2; i++)
+            shader_destroy(gpu, &renderer->arrivals[i]);
         shader_destroy(gpu, &renderer->escapes_to_plate);
         shader_destroy(gpu, &renderer->noise);
         shader_destroy(gpu, &renderer->plate);
@@ -248,36 +248,56 @@ static const Shader *make_ready(KrsRenderer *renderer, Shader *shader, const cha
     return make_request(renderer, &request, spirv_ms, pipeline_ms);
 }
 
-/* Returns the same for one that begins or ends rays of hits: of a camera's rays, or of those of
-   paths as well. */
-static const Shader *make_for_lanes(KrsRendering *rendering, Shader *shader, const char *file,
-                                    bool paths)
-{
-    KrsRenderer  *renderer = rendering->renderer;
-    ShaderRequest request  = request_shader(renderer, shader, file, rendering->rays);
-    if (paths)
-        request.source.defines = mixed_defines[rendering->rays][variants_reads(&renderer->gpu)];
-    return make_request(renderer, &request, &rendering->spirv_ms, &rendering->pipeline_ms);
-}
-
 const Shader *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms)
 {
     return make_ready(renderer, &renderer->limits[kind], "limit.comp", kind, spirv_ms, pipeline_ms);
 }
 
+/* Return what begins, or ends, rays of hits: of a camera's rays, or of those of paths as well. */
+static ShaderRequest request_aim(KrsRendering *rendering)
+{
+    const bool    paths   = rendering->program->mirrors;
+    KrsRenderer  *r       = rendering->renderer;
+    ShaderRequest request = request_shader(r, &r->aims[rendering->rays][paths], "aim.comp",
+                                           rendering->rays);
+    if (paths)
+        request.source.defines = mixed_defines[rendering->rays][variants_reads(&r->gpu)];
+    return request;
+}
+
+static ShaderRequest request_arrive(KrsRendering *rendering)
+{
+    const bool    paths   = rendering->program->mirrors;
+    KrsRenderer  *r       = rendering->renderer;
+    ShaderRequest request = request_shader(r, &r->arrivals[paths], "arrive.comp", RAYS_OF_CAMERAS);
+    if (paths)
+        request.source.defines = mixed_defines[RAYS_OF_CAMERAS][variants_reads(&r->gpu)];
+    return request;
+}
+
+size_t renderer_request_lane_rays(KrsRendering *rendering, ShaderRequest *requests)
+{
+    const ShaderRequest all[2] = {request_aim(rendering), request_arrive(rendering)};
+    size_t              count  = 0;
+    for (int i = 0; i < 2; i++)
+        if (!all[i].shader->pipeline)
+            requests[count++] = all[i];
+    return count;
+}
+
 const Shader *renderer_aim(KrsRendering *rendering)
 {
-    const bool paths = rendering->program->mirrors;
-    return make_for_lanes(rendering, &rendering->renderer->aims[rendering->rays][paths], "aim.comp",
-                          paths);
+    ShaderRequest request = request_aim(rendering);
+    return make_request(rendering->renderer, &request, &rendering->spirv_ms,
+                        &rendering->pipeline_ms);
 }
 
 const Shader *renderer_arrive(KrsRendering *rendering)
 {
-    const bool paths = rendering->program->mirrors;
-    return make_for_lanes(rendering, &rendering->renderer->arrivals[rendering->rays][paths],
-                          "arrive.comp", paths);
+    ShaderRequest request = request_arrive(rendering);
+    return make_request(rendering->renderer, &request, &rendering->spirv_ms,
+                        &rendering->pipeline_ms);
 }
 
 const Shader *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)

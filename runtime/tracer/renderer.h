@@ -26,6 +26,8 @@ bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_
 const Shader *renderer_escape_of_paths(KrsRendering *rendering);
 /* Returns the shader for pixels without a hit. */
 PixelShader renderer_background(const KrsRendering *rendering);
+/* Lists likewise the shaders before and behind rays of hits that lanes of the host march; 2 at most. */
+size_t renderer_request_lane_rays(KrsRendering *rendering, ShaderRequest *requests);
 /* These return the shaders before and behind rays of hits that lanes of the host march. */
 const Shader *renderer_aim(KrsRendering *rendering);
 const Shader *renderer_arrive(KrsRendering *rendering);

@@ -319,6 +319,7 @@ static void request_all(Requests *requests, KrsPurpose purpose)
     if (purpose == KRS_FOR_LANES ||
         (is_for_pictures(purpose) && krs_scene_too_large(rendering->scene))) {
         const bool found = rendering_lanes_find_surfaces(rendering);
+        requests->count += renderer_request_lane_rays(rendering, requests->items + requests->count);
         request(requests, "shade.comp",
                 found ? variant_of_shade_found(rendering) : variant_of_shade(rendering));
         if (!found)
