@@ -240,6 +240,7 @@ include tests/tests.mk
 include bench/bench.mk
 include tools/install.mk
 include tools/packages.mk
+include tools/faces.mk
 
 # ---- what a newcomer types ----
 demo: deps

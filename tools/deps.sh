@@ -1,7 +1,7 @@
 #!/bin/sh
-# deps.sh [test|wasm]: installs the Debian packages that are missing, of those that building and rendering need,
+# deps.sh [test|wasm|faces]: installs the Debian packages that are missing, of those that building and rendering need,
 # and with `test` also of those that only tests need, and libopenvdb-dev, which is large and writes .vdb alone; with
-# `wasm` what `make wasm` needs.
+# `wasm` what `make wasm` needs; with `faces` what `test` installs, and editors.
 # It knows Debian 12 and 13, and Ubuntu 24.04: what only tests need and the system does not offer is left out.
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
 building="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev libopenexr-dev libdeflate-dev libpng-dev libxxhash-dev
@@ -14,10 +14,12 @@ testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang clang-
          python3-cffi python3-build python3-setuptools python3-wheel python3-venv mypy spirv-cross mono-mcs desktop-file-utils appstream shared-mime-info"
 web="emscripten nodejs dpkg-dev"
 browsing="chromium esbuild"
+editing="vim emacs-nox elpa-eglot"
 
 case ${1:-} in
 wasm) packages="$building $web" ;;
 test) packages="$building $rendering $testing $web $browsing" ;;
+faces) packages="$building $rendering $testing $web $browsing $editing" ;;
 *) packages="$building $rendering" ;;
 esac
 missing=""
@@ -41,7 +43,7 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 $root apt-get update -qq >/dev/null || exit 1
 is_for_tests() { # package
-    for other in $testing $web $browsing; do
+    for other in $testing $web $browsing $editing; do
         [ "$other" = "$1" ] && return 0
     done
     return 1

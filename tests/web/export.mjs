@@ -121,7 +121,7 @@ function queried(scene, rays, studio)
 
 // In the page: what three.js shows of a module, as rows of bytes from the bottom: alone, with a wall across the picture at each of some distances,
 // and with its first number at the other end of its range.
-async function showThree({ module, width, height, look, fov, walls })
+async function showThree({ module, width, height, look, fov, walls, large })
 {
     const THREE = await import('/three/three.module.js'), scene = await import(module);
     const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true, antialias: false }), gl = renderer.getContext(), world = new THREE.Scene();
@@ -156,6 +156,11 @@ async function showThree({ module, width, height, look, fov, walls })
         made.material.uniforms.krs_parameter.value[number.slot].x = number.value[0] === number.high[0] ? number.low[0] : number.high[0];
         shots.changed = shot();
     }
+    if (large) {
+        renderer.setSize(5 * width, 5 * height, false);
+        shot();
+        shots.picture = renderer.domElement.toDataURL();
+    }
     renderer.dispose();
     return shots;
 }
@@ -167,15 +172,17 @@ async function tryThree(name, module, truth)
     const sorted = depths.filter(Number.isFinite).sort((a, b) => a - b), middle = sorted[sorted.length >> 1];
     const walls = [0.5 * sorted[0], middle, 2 * sorted[Math.floor(0.9 * sorted.length)]];
     try {
-        const shots = await three.evaluate(showThree, { module: `/scenes/${name}.three.mjs`, width, height, look, fov: module.camera.fov, walls });
+        const shown = await three.evaluate(showThree, { module: `/scenes/${name}.three.mjs`, width, height, look, fov: module.camera.fov, walls, large: !!shots });
+        if (shots)
+            fs.writeFileSync(`${shots}/${name}.three.png`, Buffer.from(shown.picture.split(',')[1], 'base64'));
         const has = (shot, i, color) => color.every((byte, k) => shot[4 * i + k] === byte), green = [0, 255, 0], violet = [255, 0, 255];
-        const wrong = depths.filter((depth, i) => has(shots.alone, i, green) === Number.isFinite(depth));
-        ok(new Set(shots.alone).size > 20 && wrong.length <= 0.02 * truth.length, `three.js shows ${name} where it is`, `${wrong.length} of ${truth.length} differ`);
-        const hidden = walls.map((distance, k) => depths.filter((depth, i) => Math.abs(depth - distance) > 0.005 * distance && has(shots.walls[k], i, violet) !== depth > distance));
+        const wrong = depths.filter((depth, i) => has(shown.alone, i, green) === Number.isFinite(depth));
+        ok(new Set(shown.alone).size > 20 && wrong.length <= 0.02 * truth.length, `three.js shows ${name} where it is`, `${wrong.length} of ${truth.length} differ`);
+        const hidden = walls.map((distance, k) => depths.filter((depth, i) => Math.abs(depth - distance) > 0.005 * distance && has(shown.walls[k], i, violet) !== depth > distance));
         ok(hidden.every(list => list.length <= 0.02 * truth.length), `${name} hides in three.js what is behind it, and is hidden by what is before it`,
             `${hidden.map(list => list.length)} of ${truth.length} differ`);
         if (name === '01-hello') // numbers of others may be those of lights, which stay
-            ok(shots.changed?.some((byte, i) => byte !== shots.alone[i]), `${name} changes with a uniform in three.js`);
+            ok(shown.changed?.some((byte, i) => byte !== shown.alone[i]), `${name} changes with a uniform in three.js`);
     } catch (error) {
         ok(false, `three.js shows ${name}`, error.message.slice(0, 2000));
     }
@@ -377,7 +384,7 @@ for (const scene of process.env.KRS_EXPORT_SCENES.split(' ')) {
         if (shots) {
             run('export', scene, '--to', 'shadertoy', '-o', toyFile);
             await page.evaluate(draw, { source: header + fs.readFileSync(toyFile, 'utf8') + toy, width: 480, height: 270 });
-            await page.screenshot(`${shots}/${name}.png`, { x: 0, y: 0, width: 480, height: 270 });
+            await page.screenshot(`${shots}/${name}.shadertoy.png`, { x: 0, y: 0, width: 480, height: 270 });
         }
     } catch (error) {
         ok(false, `${name} draws`, error.message.slice(0, 2000));

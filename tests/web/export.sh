@@ -1,7 +1,7 @@
 #!/bin/sh
 # export.sh: what `krs export` writes draws in Chromium, and hits where `krs query` does.
 #
-# KRS_EXPORT_SCENES are the scenes: a few, and all examples by exports.sh.
+# KRS_EXPORT_SCENES are the scenes: a few, and all examples by exports.sh.  Pictures are left in KRS_EXPORT_SHOTS, if that is given.
 . "$(dirname "$0")/../support/pages.sh"
 # What shows modules for three.js: a package of npm, where that offers it.
 THREE=$build/export-npm/node_modules/three
@@ -22,4 +22,4 @@ light { direction: [1, 2, 3], intensity: 3 }
 END
 KRS_EXPORT_BAKED=$work/letters.krs
 export KRS_EXPORT_SCENES KRS_EXPORT_ENGINES KRS_EXPORT_BAKED
-node tests/web/export.mjs "${KRS:-$build/krs}" "$work"
+node tests/web/export.mjs "${KRS:-$build/krs}" "$work" ${KRS_EXPORT_SHOTS:+"$KRS_EXPORT_SHOTS"}
