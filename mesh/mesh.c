@@ -56,6 +56,7 @@ static KrsStatus open_fields(Mesher *m, KrsState *state)
         if (status == KRS_OK) {
             state_refresh_points(field->state);
             field_open(field, &m->arena);
+            field->ranges.unroll = true;
         }
     }
     return status;
@@ -150,10 +151,9 @@ static KrsStatus run(Mesher *m, KrsState *state, KrsMesh **mesh)
     m->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
-    bool      draft  = false;
     KrsStatus status = is_nothing(m) ? KRS_OK : open_fields(m, state);
     if (status == KRS_OK && !is_nothing(m) && !find_flat(m)) {
-        draft = m->options->draft;
+        m->drafted = m->options->draft;
         m->error -= m->reserved;
         status = find_proven_mesh(m) ? KRS_OK : KRS_INTERRUPTED;
         if (status == KRS_OK) {
@@ -165,7 +165,7 @@ static KrsStatus run(Mesher *m, KrsState *state, KrsMesh **mesh)
     if (status == KRS_OK)
         status = copy_mesh(m, &state->scene->options.allocator, mesh);
     if (status == KRS_OK)
-        (*mesh)->estimate = m->solid->estimate || draft;
+        (*mesh)->estimate = m->solid->estimate || m->drafted;
     m->memory.exhausted = NULL;
     return status;
 }

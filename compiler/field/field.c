@@ -304,6 +304,13 @@ static void enter(MeshField *field, const LaneTape *outer, Box box)
    same size. */
 enum { SHORT = 40 };
 
+/* Tells whether the tape that was entered last is short, and has no call that may become steps. */
+static bool is_short(const MeshField *field)
+{
+    const LaneTape *tape = &field->regions[field->region_count - 1].tape;
+    return tape->count <= SHORT && !(field->ranges.unroll && tape->call_count > 0);
+}
+
 static bool is_worth_entering(const MeshField *field, Box box)
 {
     static const double MUCH_SMALLER = 0.05;
@@ -314,7 +321,7 @@ static bool is_worth_entering(const MeshField *field, Box box)
     for (int k = 0; k < 3; k++)
         part *= (box.axis[k].high - box.axis[k].low) /
                 (outer->box.axis[k].high - outer->box.axis[k].low);
-    return outer->tape.count > SHORT && part < MUCH_SMALLER;
+    return !is_short(field) && part < MUCH_SMALLER;
 }
 
 static void stay(MeshField *field)
@@ -347,7 +354,7 @@ void field_focus(MeshField *field, Box box)
 
 void field_narrow(MeshField *field, Box box)
 {
-    if (field->region_count > 0 && field_tape(field)->count <= SHORT)
+    if (field->region_count > 0 && is_short(field))
         stay(field);
     else
         field_focus(field, box);

@@ -21,9 +21,8 @@ enum {
 };
 /* Boxes after which a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
-/* The attempts, at each of which planes are moved otherwise; from SEPARATE_FROM on short edges
-   stay, so that solids that touch stay separate. */
-enum { ATTEMPTS = 4, SEPARATE_FROM = 2 };
+/* The attempts, at each of which planes are moved otherwise. */
+enum { ATTEMPTS = 4 };
 static const double MIN_KNOWN = 0.02;
 /* Parts of the size: how far the surface may be from a face, the length of the shortest edges that
    stay, and how deep triangles that touch may cross. */
@@ -102,8 +101,8 @@ static bool find_few_pieces(Halving *h, Box box, int halvings)
 static bool halve(Halving *h, Box box, int halvings)
 {
     Range  range = field_range(h->field, box);
-    double whole = ldexp(1, -halvings);
-    if (range.low > 0 || range.high < 0) {
+    double whole = ldexp(1, -halvings), moved = FLAT_MOVED * h->m->side;
+    if (range.low > moved || range.high < -moved) {
         h->halved += whole;
         return true;
     }
@@ -112,11 +111,12 @@ static bool halve(Halving *h, Box box, int halvings)
     bool done;
     if (entered)
         field_focus(h->field, box);
-    if (find_few_pieces(h, box, halvings)) {
+    if (find_few_pieces(h, box, halvings) &&
+        (is_first_pass(h) || flat_faces_add(&h->faces, box, &h->pieces))) {
         h->known++;
         h->halved += whole;
         count_box(h);
-        done = is_first_pass(h) || flat_faces_add(&h->faces, box, &h->pieces);
+        done = true;
         if (h->pieces.round)
             array_push_large(&h->m->arena, &h->round_boxes, box);
     } else
@@ -158,11 +158,7 @@ static bool halve_all(Halving *h)
         double half = 0.5 * (m->high[k] - m->low[k]) + m->error + 0.013 * m->side * (1 + 0.17 * k);
         box.axis[k] = (Range){middle - half, middle + half};
     }
-    h->faces       = (FlatFaces){.arena    = &m->arena,
-                                 .size     = m->side,
-                                 .shortest = h->attempt < SEPARATE_FROM ? reserve_of(m)
-                                                                        : MIN_SHORT * m->side,
-                                 .attempt  = h->attempt};
+    h->faces       = (FlatFaces){.arena = &m->arena, .size = m->side, .attempt = h->attempt};
     h->round_boxes = (FlatBoxes){NULL, 0, 0};
     h->boxes       = 0;
     h->known       = 0;
@@ -184,15 +180,20 @@ static FlatVerdict check(Halving *h, double error, double part)
     return verdict;
 }
 
-/* Adds sides until they are enough in the boxes that are left, or else as few as leave the fewest
-   boxes; returns false if there were none to add. */
-static bool refine(Halving *h, double error, FlatVerdict *verdict)
+/* Adds sides until no more than `enough` boxes are left, or else as few as leave the fewest;
+   returns false if there were none to add.  Only instances in these boxes get more, or all that are
+   kin. */
+static bool refine(Halving *h, double error, bool kin, size_t enough, FlatVerdict *verdict)
 {
     size_t fewest = h->round_boxes.count;
     bool   any    = false;
     *verdict      = FLAT_REFUTED;
     flat_rounds_save(&h->rounds);
-    while (*verdict == FLAT_REFUTED && flat_rounds_refine(&h->rounds)) {
+    while (*verdict == FLAT_REFUTED && h->round_boxes.count > enough) {
+        if (kin)
+            flat_rounds_blame_kin(&h->rounds);
+        if (!flat_rounds_refine(&h->rounds))
+            break;
         *verdict = check(h, error, CHECKING_SOME);
         if (*verdict != FLAT_STOPPED && h->round_boxes.count < fewest) {
             fewest = h->round_boxes.count;
@@ -205,10 +206,11 @@ static bool refine(Halving *h, double error, FlatVerdict *verdict)
 }
 
 /* Refines by some of the boxes of the first pass, if these are many: they mostly need as many sides
-   as all do. */
+   as all do.  What only some of them need is left to the instances there.  That is all that a draft
+   of many boxes needs. */
 static FlatVerdict refine_by_some(Halving *h, double error)
 {
-    enum { SOME = 100 };
+    enum { SOME = 100, FEW = 40 };
     FlatBoxes  *boxes = &h->round_boxes;
     size_t      step  = boxes->count / SOME;
     FlatVerdict verdict;
@@ -219,7 +221,8 @@ static FlatVerdict refine_by_some(Halving *h, double error)
     boxes->count = SOME;
     verdict      = check(h, error, CHECKING_SOME);
     if (verdict == FLAT_REFUTED)
-        refine(h, error, &verdict);
+        refine(h, error, true, FEW, &verdict);
+    h->m->drafted = h->m->options->draft;
     return verdict;
 }
 
@@ -232,12 +235,16 @@ static bool make_round(Halving *h)
     flat_rounds_count(&h->rounds);
     if (refine_by_some(h, error) == FLAT_STOPPED)
         return false;
+    if (h->m->drafted) {
+        h->m->unresolved = 0;
+        return halve_all(h);
+    }
     do {
         if (!halve_all(h))
             return false;
         verdict = check(h, error, CHECKING_ALL);
     } while (verdict != FLAT_STOPPED && h->round_boxes.count > 0 && refined == FLAT_PROVEN &&
-             refine(h, error, &refined));
+             refine(h, error, false, 0, &refined));
     return verdict != FLAT_STOPPED && refined != FLAT_STOPPED;
 }
 
@@ -268,16 +275,24 @@ static bool is_sound(const Halving *h, const FlatVertices *vertices, const Trian
     return !open && !crosses;
 }
 
-/* Makes triangles of the faces; where that fails planes are moved otherwise, which mostly helps. */
+/* Makes triangles of the faces, without edges that are shorter than `shortest`. */
+static bool finish_once(Halving *h, double shortest, FlatVertices *vertices, Triangles *triangles)
+{
+    *vertices         = (FlatVertices){NULL, 0, 0};
+    *triangles        = (Triangles){NULL, 0, 0};
+    h->faces.shortest = shortest;
+    h->faces.joined   = 0;
+    return flat_faces_finish(&h->faces, vertices, triangles) && is_sound(h, vertices, triangles);
+}
+
+/* Makes triangles of the faces; where that fails short edges stay, so that solids that touch stay
+   separate, or planes are moved otherwise, which mostly helps. */
 static bool finish(Halving *h, FlatVertices *vertices, Triangles *triangles)
 {
-    while (!flat_faces_finish(&h->faces, vertices, triangles) ||
-           !is_sound(h, vertices, triangles)) {
-        *vertices  = (FlatVertices){NULL, 0, 0};
-        *triangles = (Triangles){NULL, 0, 0};
+    while (!finish_once(h, reserve_of(h->m), vertices, triangles) &&
+           !finish_once(h, MIN_SHORT * h->m->side, vertices, triangles))
         if (++h->attempt == ATTEMPTS || !halve_all(h))
             return false;
-    }
     return true;
 }
 

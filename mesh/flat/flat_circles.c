@@ -16,7 +16,7 @@ typedef struct Sides {
 
 static void find_sides(Range a, Range b, uint32_t count, double wide, Sides *sides)
 {
-    static const double SLACK  = 1e-9;
+    static const double SLACK = 1e-2; /* in sides: moved ones meet a little beside where they did */
     const double        around = 2 * M_PI;
     sides->count               = count;
     sides->angle               = around / count;
@@ -142,7 +142,7 @@ static void note_round(Finding *f, const Form *rest, double factor, const LaneSt
     for (uint32_t i = 0; i < rounded->count; i++)
         shared |= form_has_round(f, &rounded->forms[i]);
     if (radius > 0 && slope > 0)
-        flat_rounds_note(f->rounds, step->kin, radius / slope, shared);
+        flat_rounds_note(f->rounds, step, radius / slope, shared);
 }
 
 /* Returns the solid of one side of a polygon, or of a band with these factors. */
@@ -316,7 +316,7 @@ static int solid_of_pair(Finding *f, const Form *rest, double factor, const Roun
 int flat_solid_of_length(Finding *f, const Form *rest, double factor, const LaneStep *step)
 {
     Rounded  rounded = rounded_of(f, step);
-    uint32_t count   = flat_rounds_sides(f->rounds, step->kin);
+    uint32_t count   = flat_rounds_sides(f->rounds, step);
     double   slope   = 0;
     double   reach   = f->field->ranges.ranges[LANE_INPUTS + (size_t)(step - f->tape->steps)].high;
     if (rounded.count < 2 || count == 0 || step->kin == 0) {

@@ -6,9 +6,8 @@
 
 #include "compiler/base/vec.h"
 
-/* Parts of the size: the most that planes are moved, and the least distance of a corner to a
-   plane. */
-static const double MOVE = 1e-7, NARROW = 1e-14;
+/* The least distance of a corner to a plane, as a part of the size. */
+static const double NARROW = 1e-14;
 
 /* ---- planes ---- */
 
@@ -53,7 +52,8 @@ static uint32_t find_plane(FlatFaces *faces, const HalfSpace *plane, int *sign)
                 return at;
     uint32_t  number = (uint32_t)faces->planes.count;
     uint32_t  first  = numbering_take(&faces->marks, (NumberKey){(uint64_t)slot, 0}, number);
-    FlatPlane fresh  = {*plane, plane->offset + MOVE * faces->size * jitter(number, faces->attempt),
+    FlatPlane fresh  = {*plane,
+                        plane->offset + FLAT_MOVED * faces->size * jitter(number, faces->attempt),
                         NO_NUMBER};
     array_push_large(faces->arena, &faces->planes, fresh);
     if (first != number) {
@@ -283,7 +283,8 @@ static void cut_part(Cell *cell, const Polygon *polygon, int within, int beyond)
 
 bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces)
 {
-    Cell cell;
+    Cell   cell;
+    size_t before = faces->segments.count;
     if (pieces->root < 0)
         return true;
     cell.faces  = faces;
@@ -304,5 +305,7 @@ bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces)
         if (polygon.count >= 3)
             cut_part(&cell, &polygon, within, beyond);
     }
+    if (cell.failed)
+        faces->segments.count = before;
     return !cell.failed;
 }

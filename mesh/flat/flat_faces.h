@@ -50,8 +50,8 @@ typedef struct FlatFaces {
     } segments;
 } FlatFaces;
 
-/* Adds the segments in a box; returns false if rounding makes them ambiguous, or there are too
-   many. */
+/* Adds the segments in a box; returns false, and adds none, if rounding makes them ambiguous, or
+   there are too many. */
 bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces);
 
 /* Finds the direction of the line of two planes, whatever their order. */

@@ -113,13 +113,16 @@ static void add_slack(Finding *f, int number, double below, double above, double
     slack->above     = max2(slack->above, above / length);
 }
 
+double flat_moved(const Finding *f) { return f->use == FLAT_MAKING ? FLAT_MOVED * f->size : 0; }
+
 int flat_half_space(Finding *f, const Form *form)
 {
     Range     range  = form_range(f, form);
     double    length = length3(form->by);
     HalfSpace plane;
     int       sign;
-    if (range.low > 0 || range.high < 0)
+    double    moved = length * flat_moved(f);
+    if (range.low > moved || range.high < -moved)
         return range.low > 0 ? FLAT_NONE : FLAT_ALL;
     if (!(length > 0)) {
         f->failed = true;

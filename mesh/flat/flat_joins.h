@@ -11,6 +11,8 @@
 int flat_both(Finding *f, int a, int b);
 int flat_either(Finding *f, int a, int b);
 int flat_complement(Finding *f, int solid);
+/* Returns how far planes may be moved: one that is no farther from the box may have a part in it. */
+double flat_moved(const Finding *f);
 /* Returns the half-space where a form without kinks is below 0. */
 int flat_half_space(Finding *f, const Form *form);
 /* Returns the solid where any form is below 0 (flat_pieces.c). */

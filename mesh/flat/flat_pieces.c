@@ -248,8 +248,9 @@ int flat_solid(Finding *f, const Form *form)
         f->failed = true;
         return FLAT_NONE;
     }
-    if (range.low >= 0 || range.high <= 0)
-        return range.low >= 0 ? FLAT_NONE : FLAT_ALL;
+    double moved = form_is_constant(form) ? 0 : form_slope(f, form) * flat_moved(f);
+    if (range.low >= moved || range.high <= -moved)
+        return range.low >= moved ? FLAT_NONE : FLAT_ALL;
     return form->kink_count == 0 ? flat_half_space(f, form) : solid_of_kink(f, form);
 }
 

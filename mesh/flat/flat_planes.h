@@ -12,6 +12,9 @@ typedef struct HalfSpace {
     double normal[3], offset;
 } HalfSpace;
 
+/* The part of the size by which planes are moved at most where they are cut (flat_faces.h). */
+#define FLAT_MOVED 1e-7
+
 /* The bounds by which the number may be less, or more, that a half-space approximates. */
 typedef struct FlatSlack {
     double below, above;

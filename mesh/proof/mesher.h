@@ -39,6 +39,7 @@ typedef struct Mesher {
     int           tidied;     /* how often sides of points were changed (sides.h) */
     size_t        handles;    /* in a mesh where nothing else is unresolved (handles.h) */
     double        unresolved_at[3];
+    bool          drafted;     /* the mesh was tested in places only */
     double        flat;        /* of the work, what was done before flat faces were given up */
     double        fraction;    /* of the rest */
     double        begun, goal; /* where the present step began, and will end */

@@ -356,6 +356,75 @@ static void random_solids_are_within_the_error(void **state)
     assert_true(hits > 100 * wanted && farthest > 0.3);
 }
 
+/* ---- many balls ---- */
+
+enum { MAX_BALLS = 400 };
+
+typedef struct Balls {
+    Vec    centers[MAX_BALLS];
+    double radii[MAX_BALLS];
+    size_t count;
+} Balls;
+
+static double value_of_balls(const void *user, Vec point)
+{
+    const Balls *balls = user;
+    double       value = HUGE_VAL;
+    for (size_t i = 0; i < balls->count; i++)
+        value = fmin(value, vec_length(vec_sub(point, balls->centers[i])) - balls->radii[i]);
+    return value;
+}
+
+/* Balls that overlap at random are one part with many instances: some are nearly tangent, and need
+   many more sides than others.  A draft of hundreds is made of faces, too, of which few points are
+   farther than the error. */
+static void many_balls_are_within_the_error(void **state)
+{
+    static const struct {
+        size_t count, most; /* balls, and triangles */
+        double side, error;
+        bool   draft;
+    } rows[] = {{40, 40000, 9, 0.1, false}, {400, 90000, 10, 0.05, true}};
+    static SceneText text;
+    static Balls     balls;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        Random random = {8111};
+        double side   = rows[i].side;
+        balls.count   = rows[i].count;
+        text.length   = 0;
+        scene_write(&text, "show union([sphere(b[3]).move([b[0], b[1], b[2]]) for b in [");
+        for (size_t k = 0; k < balls.count; k++) {
+            balls.radii[k]   = random_between(&random, 0.8, 1.4);
+            balls.centers[k] = vec(random_between(&random, 0, side),
+                                   random_between(&random, 0, side),
+                                   random_between(&random, 0, side));
+            scene_write(&text, "[%.17g, %.17g, %.17g, %.17g],", balls.centers[k].x,
+                        balls.centers[k].y, balls.centers[k].z, balls.radii[k]);
+        }
+        scene_write(&text, "]]);");
+        Product        product = product_compile(text.bytes);
+        KrsMeshOptions options = {.error = rows[i].error, .draft = rows[i].draft};
+        KrsMesh       *mesh;
+        assert_int_equal(krs_mesh(product.state, &options, &mesh), KRS_OK);
+        product_free(&product);
+        check_closed(mesh);
+        Surface surface = {value_of_balls, &balls, vec(-2, -2, -2),
+                           vec(side + 2, side + 2, side + 2)};
+        Apart   apart   = mesh_apart(mesh, &surface, rows[i].error, 300, 3000, &random);
+        print_message(
+            "# %zu balls: %zu triangles, %zu unresolved, %zu of %zu hits lost, %zu of %zu points "
+            "astray, at most %.3f errors\n",
+            balls.count, mesh->triangle_count, mesh->unresolved, apart.lost, apart.hits,
+            apart.off_surface, apart.points, apart.farthest_hit);
+        assert_true(apart.hits > 300 && mesh->triangle_count < rows[i].most);
+        assert_true(mesh->estimate == rows[i].draft);
+        assert_int_equal(apart.thick, 0);
+        assert_true(apart.off_surface <= (rows[i].draft ? apart.points / 200 : 0));
+        krs_mesh_free(mesh);
+    }
+}
+
 /* ---- random outlines ---- */
 
 /* A star of curves, of which each goes from a knot towards a handle and to the next; and its points, dense ones. */
@@ -478,6 +547,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(solids_that_touch_stay_apart),
         cmocka_unit_test(nothing_is_reported_at_seams),
         cmocka_unit_test(random_solids_are_within_the_error),
+        cmocka_unit_test(many_balls_are_within_the_error),
         cmocka_unit_test_setup_teardown(random_outlines_are_within_the_error, enter_folder,
                                         leave_folder),
     };

@@ -258,11 +258,36 @@ static uint32_t kin_of_instance_step(uint32_t function, size_t step)
     return BODIES | (function * STEPS + (uint32_t)step % STEPS) % BODIES;
 }
 
+/* Returns the step of a body whose value the least distance of all takes, if it takes the lesser of
+   two numbers; else one behind the last. */
+static size_t distance_step(const LaneTape *body)
+{
+    const LaneStep *last = lane_step_of(body, body->outputs[0]);
+    for (uint32_t k = 0; last && (last->op == OP_min || last->op == LANE_LESSER) && k < 2; k++) {
+        const LaneStep *own = lane_step_of(body, last->operands[k]);
+        if (own && own->op != LANE_STATE)
+            return (size_t)(own - body->steps);
+    }
+    return body->count;
+}
+
+/* Origins of distances of instances are above those of all tapes; 0: there are too many calls or
+   instances to number them. */
+static uint32_t origin_of_instance(uint32_t call, uint32_t instance)
+{
+    static const uint32_t INSTANCES = 1u << 31, ROWS = 1u << 18;
+    return call > 0 && call < INSTANCES / ROWS && instance < ROWS
+               ? INSTANCES | (call * ROWS + instance)
+               : 0;
+}
+
 /* Adds the steps of a body for one instance; returns the operand of its state. */
-static uint32_t add_instance(Pruning *p, const LaneCall *call, const InstanceTable *table,
+static uint32_t add_instance(Pruning *p, const LaneStep *of, const InstanceTable *table,
                              uint32_t instance, uint32_t state, uint32_t *values)
 {
-    const LaneBody *body = call->body;
+    const LaneCall *call  = &p->from->calls[of->operands[0]];
+    const LaneBody *body  = call->body;
+    const size_t    least = distance_step(&body->tape);
     for (int k = 0; k < 3; k++)
         values[LANE_POINT + k] = stand_in(p, call->operands[1][k]);
     for (size_t i = 0; i < body->tape.count; i++) {
@@ -272,8 +297,9 @@ static uint32_t add_instance(Pruning *p, const LaneCall *call, const InstanceTab
         else if (step.op == LANE_ROW || step.op == LANE_INSTANCE)
             values[LANE_INPUTS + i] = instance_number(p, table, &step, instance);
         else {
-            step.origin = 0;
-            step.kin    = kin_of_instance_step(body->function, i);
+            step.origin   = i == least ? origin_of_instance(of->origin, instance) : 0;
+            step.kin      = kin_of_instance_step(body->function, i);
+            step.instance = instance + 1;
             for (uint32_t k = 0; k < step.operand_count; k++)
                 step.operands[k] = step.operands[k] & LANE_SCALAR
                                        ? body_scalar(p, body, step.operands[k] & ~LANE_SCALAR)
@@ -307,7 +333,7 @@ static bool prune_group(Pruning *p, size_t i)
     uint32_t  state  = lane_steps_number(&p->to, function->states[0].first[0]);
     uint32_t *values = arena_new_array(p->to.arena, uint32_t, LANE_INPUTS + call->body->tape.count);
     for (uint32_t k = 0; k < count; k++)
-        state = add_instance(p, call, table, instances[k], state, values);
+        state = add_instance(p, step, table, instances[k], state, values);
     p->same[LANE_INPUTS + i] = state;
     return true;
 }

@@ -55,10 +55,11 @@ typedef struct LaneStep {
     float
         steepest; /* it changes no faster than that with the point, and jumps nowhere; 0: not known */
     uint32_t
-        origin; /* 1 and the step of the tape before all pruning that has the same value; 0: not known */
+        origin; /* the same for steps that have the same value in all tapes of a scene; 0: not known */
     bool component; /* of `least`: no surface of the component is nearer than its value */
     uint32_t
         kin; /* the same for steps that are one step of the tape, or of a body, at different instances */
+    uint32_t instance; /* 1 and the instance; 0: it is of no body */
 } LaneStep;
 
 /* The operation of a step on rows and, where the bit of the operand is set, scalars. */
