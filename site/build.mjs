@@ -147,7 +147,7 @@ function sourcePage(file, place) {
 
 const entities = { amp: '&', lt: '<', gt: '>', quot: '"' };
 const plain = html => html.replace(/<a class="anchor".*?<\/a>/gs, '').replace(/<figure class="scene.*?<\/figure>/gs, figure => figure.replace(/<div class="shown">.*/s, ''))
-    .replace(/<[^>]+>/g, ' ').replace(/&(\w+);/g, (whole, name) => entities[name] ?? whole).replace(/\s+/g, ' ').trim();
+    .replace(/<\/?(?:span|code|b|em|strong|a)\b[^>]*>/g, '').replace(/<[^>]+>/g, ' ').replace(/&(\w+);/g, (whole, name) => entities[name] ?? whole).replace(/\s+/g, ' ').trim();
 
 // A row for each heading of a page: its title, the page's, its place, and the text below it.
 function found({ place, title, html }) {

@@ -9,6 +9,9 @@ const lines = (...given) => given.flat(Infinity).filter(line => line !== '' && l
 const heading = (level, title, id = slugOf(title), html = escaped(title)) =>
     `<h${level} id="${id}">${html} <a class="anchor" href="#${id}" aria-label="Link to ${escaped(title)}">#</a></h${level}>`;
 
+// Of these the words are shapes; of others their pictures show shapes that are known already.
+const FILES_OF_SHAPES = ['std/trees.krs', 'std/nature.krs', 'std/terrain.krs', 'std/surfaces.krs'];
+
 export class Reference {
     // `words` is the program that lists the words of the language, `scene` shows a scene, `markdown` reads texts.
     constructor({ root, krs, words, scene, markdown, pictures }) {
@@ -58,7 +61,7 @@ export class Reference {
     // What is known of a shape: of its example, and what its declaration has.
     #facts(word, text) {
         const declared = this.declared.get(word.name);
-        if (!text || word.kind === 'method')
+        if (!text || !(word.kind === 'shape' || this.place === 'reference/shapes.html' || FILES_OF_SHAPES.includes(word.file)))
             return '';
         const { components } = JSON.parse(execFileSync(this.krs, ['info', '--json', '--quiet', '-'], { input: text, encoding: 'utf8', maxBuffer: 1 << 26 }));
         const [{ exact, estimate, slope, low, high }] = components;
@@ -77,9 +80,8 @@ export class Reference {
     #entry(word) {
         this.shown.add(word);
         const text = this.sceneOf(word), name = `${word.kind === 'method' ? '.' : ''}${word.name}`, id = word.kind === 'method' ? `method-${word.name}` : word.name;
-        const use = word.file ? `<p class="use">in <code>${escaped(word.file)}</code></p>` : '';
         const told = lines(`<pre class="signature" tabindex="0"><code>${highlight(this.#signature(word))}</code></pre>`,
-                           word.about ? this.markdown.blocks(sentence(word.about)) : '', use, this.#facts(word, text));
+                           word.about ? this.markdown.blocks(sentence(word.about)) : '', this.#facts(word, text));
         return lines(heading(3, name, id, `<code>${name}</code>`),
                      text ? this.scene(text, { place: this.place }, { name: `word-${word.name}`, told, alt: `A picture of ${name}` }) : `<div class="told">${told}</div>`);
     }

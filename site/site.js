@@ -177,9 +177,12 @@
         view.setAttribute('aria-label', 'The scene. Drag to turn it.');
         view.addEventListener('krs-error', () => { box.dataset.state = 'failed'; });
         view.addEventListener('krs-frame', ({ detail }) => {
-            // While the time runs, a slow machine shows coarse pictures alone.
-            if (detail.samples >= 1 || (view.playing && detail.samples > 0))
-                box.dataset.state = 'there';
+            if (detail.samples < 1)
+                return;
+            // The time runs where pictures come fast enough to be followed.
+            if (box.dataset.state === 'coming' && view.scene?.animated && detail.elapsed < 3000 && !matchMedia('(prefers-reduced-motion: reduce)').matches)
+                view.playing = true;
+            box.dataset.state = 'there';
         });
         box.append(view);
         const { ok, diagnostics } = await view.update(figure.querySelector('pre[data-language="krs"]').textContent, { name: 'scene.krs' });
@@ -187,8 +190,6 @@
             box.dataset.state = 'failed';
             throw new Error(diagnostics[0]?.message);
         }
-        if (view.scene.animated && !matchMedia('(prefers-reduced-motion: reduce)').matches)
-            view.playing = true;
         figure.querySelector('.sliders').replaceChildren(...view.scene.parameters.flatMap(parameter => control(view.scene, parameter)));
     }
     for (const figure of document.querySelectorAll('figure.scene'))

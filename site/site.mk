@@ -12,7 +12,7 @@ $(NPM)/site.mjs: $(SITE) $(addprefix $(PLAY)/,language.mjs share.mjs smaller.mjs
 	@esbuild site/build.mjs --bundle --platform=node --format=esm --packages=external --alias:krs-words=$(abspath $(NPM)/words.json) \
 	    --log-level=warning --outfile=$@
 $(B)/site-words: site/words.c $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBS)
+	@$(CC) $(STYLE) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS) -o $@ $< $(B)/libkrs.a $(LIBS)
 serve-site: site
 	@node $(PLAY)/serve.mjs $(S) $(PORT)
 .PHONY: site serve-site
