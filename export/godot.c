@@ -167,23 +167,47 @@ static void add_camera_node(Text *to, const Export *export)
     text_format(to, "far = %.6g\n", fmax(2 * find_farthest(export), 1));
 }
 
-/* Adds a light, whose energy is that of a white surface in Godot. */
+static void add_color(Text *to, const char *name, const double light[3], double most)
+{
+    text_format(to, "%s = Color(", name);
+    for (int k = 0; k < 3; k++)
+        text_format(to, "%.6g, ", most > 0 ? encode_light(light[k] / most) : 0);
+    text_add(to, "1)\n");
+}
+
+void add_godot_sky(Text *to, const Export *export)
+{
+    const KrsSky *sky = &export->view.sky;
+    add_color(to, "sky_top_color", sky->zenith, 1);
+    add_color(to, "sky_horizon_color", sky->horizon, 1);
+    add_color(to, "ground_horizon_color", sky->horizon, 1);
+    add_color(to, "ground_bottom_color", sky->ground, 1);
+    text_add(to, "sun_angle_max = 0.0\n"); /* the lights of the scene are no discs in it */
+}
+
+/* Adds a light, whose energy is that of a white surface in Godot, and whose cone is told by half its angle. */
 static void add_light_node(Text *to, const KrsLight *light, size_t number)
 {
     static const double nowhere[3] = {0};
+    const double        degree     = 57.29577951308232;
     const double        most       = fmax(fmax(light->color[0], light->color[1]), light->color[2]);
-    const double up[3] = {0, fabs(light->vector[1]) < 0.999, fabs(light->vector[1]) >= 0.999};
-    const char  *type  = light->positional ? "OmniLight3D" : "DirectionalLight3D";
-    text_format(to, "\n[node name=\"Light%zu\" type=\"%s\" parent=\".\"]\n", number, type);
-    if (light->positional)
-        add_transform(to, (const double[3]){0, 0, 1}, (const double[3]){0, 1, 0}, light->vector);
+    const char         *type = !light->positional ? "Directional" : light->spot ? "Spot" : "Omni";
+    const double        back[3]  = {-light->axis[0], -light->axis[1], -light->axis[2]};
+    const double        ahead[3] = {0, 0, 1};
+    const double       *behind   = !light->positional ? light->vector : light->spot ? back : ahead;
+    const double        up[3]    = {0, fabs(behind[1]) < 0.999, fabs(behind[1]) >= 0.999};
+    text_format(to, "\n[node name=\"Light%zu\" type=\"%sLight3D\" parent=\".\"]\n", number, type);
+    add_transform(to, behind, up, light->positional ? light->vector : nowhere);
+    add_color(to, "light_color", light->color, most);
+    text_format(to, "light_energy = %.6g\nshadow_enabled = true\n", most / 3.141592653589793);
+    if (!light->positional)
+        text_format(to, "light_angular_distance = %.6g\n", degree * light->softness);
     else
-        add_transform(to, light->vector, up, nowhere);
-    text_add(to, "light_color = Color(");
-    for (int k = 0; k < 3; k++)
-        text_format(to, "%.6g, ", most > 0 ? encode_light(light->color[k] / most) : 0);
-    text_format(to, "1)\nlight_energy = %.6g\nshadow_enabled = true\n", most / 3.141592653589793);
-    if (light->positional)
+        text_format(to, "light_size = %.6g\n", light->softness);
+    if (light->spot)
+        text_format(to, "spot_range = 1000.0\nspot_attenuation = 2.0\nspot_angle = %.6g\n",
+                    fmin(0.5 * degree * light->angle, 89.9));
+    else if (light->positional)
         text_add(to, "omni_range = 1000.0\nomni_attenuation = 2.0\n");
 }
 

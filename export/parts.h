@@ -100,6 +100,8 @@ void add_without_globals(Text *to, const char *text, size_t slots, const char *g
 void add_godot_uniforms(Text *to, const Export *export);
 void set_godot_parameters(Text *to, const Export *export);
 void add_godot_nodes(Text *to, const Export *export);
+/* Adds the colours of the sky. */
+void add_godot_sky(Text *to, const Export *export);
 /* These add the box: its middle, half of its sides; the same as plain numbers, and as a size. */
 void add_center(Text *to, const Export *export);
 void add_half(Text *to, const Export *export);

@@ -154,6 +154,7 @@ static const struct Piece {
               {"unreal_parameters", add_unreal_parameters},
               {"godot_uniforms", add_godot_uniforms},
               {"godot_nodes", add_godot_nodes},
+              {"godot_sky", add_godot_sky},
               {"prelude", add_prelude},
               {"osl_given", add_osl_given},
               {"osl_passed", add_osl_passed},

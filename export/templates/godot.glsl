@@ -22,7 +22,7 @@ void fragment()
         inside = vec2(0.0, inside.y - inside.x);
     }
     // The height of a pixel at distance 1; of parallel rays, where they leave the box.
-    float pixel = 2.0 / (PROJECTION_MATRIX[1][1] * VIEWPORT_SIZE.y), t;
+    float pixel = 2.0 / (abs(PROJECTION_MATRIX[1][1]) * VIEWPORT_SIZE.y), t;
     pixel *= parallel ? length(to_box[0].xyz) / max(inside.y, 1e-6) : 1.0;
     if (!krs_trace(origin, direction, max(inside.x, 0.0), inside.y, pixel, t))
         discard;

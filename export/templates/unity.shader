@@ -42,7 +42,8 @@ Shader "krs/@stem@"
         // Unity's z goes the other way.
         float3 KrsTurned(float3 v) { return float3(v.x, v.y, -v.z); }
 
-        // What a ray meets that ends at a place of the box; parallel rays begin before it.
+        // What a ray meets that ends at a place of the box; parallel rays begin before it.  A pixel is so wide at distance 1, or anywhere
+        // for those.
         KrsMet KrsMeet(float3 place, float3 eye, float3 along, bool parallel, float pixel)
         {
             float3 end = KrsTurned(TransformWorldToObject(place)), t_end = KrsTurned(TransformWorldToObjectDir(along, false));
@@ -54,6 +55,7 @@ Shader "krs/@stem@"
             if (parallel) {
                 origin += inside.x * direction;
                 inside = float2(0.0, inside.y - inside.x);
+                pixel /= max(inside.y, 1e-6);
             }
             float t = 0.0;
             if (!krs_trace(origin, direction, max(inside.x, 0.0), inside.y, pixel, t))
@@ -69,7 +71,7 @@ Shader "krs/@stem@"
         {
             bool  parallel = unity_OrthoParams.w > 0.0;
             float pixel = 2.0 / (abs(UNITY_MATRIX_P[1][1]) * _ScreenParams.y);
-            return KrsMeet(place, GetCameraPositionWS(), -UNITY_MATRIX_V[2].xyz, parallel, parallel ? 0.0 : pixel);
+            return KrsMeet(place, GetCameraPositionWS(), -UNITY_MATRIX_V[2].xyz, parallel, pixel);
         }
 
         float KrsDepth(float4 clip)
@@ -109,13 +111,21 @@ Shader "krs/@stem@"
             return depth;
         }
 
+        // For occlusion in the space of the screen.
+        float4 KrsNormals(KrsCorner corner, out float depth : SV_Depth) : SV_Target
+        {
+            KrsMet met = KrsSeenByCamera(corner.place);
+            depth = KrsDepth(TransformWorldToHClip(met.place));
+            return float4(met.normal, 0.0);
+        }
+
         float4 KrsShadow(KrsCorner corner, out float depth : SV_Depth) : SV_Target
         {
         #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
-            KrsMet met = KrsMeet(corner.place, _LightPosition, -_LightDirection, false, 0.0);
+            KrsMet met = KrsMeet(corner.place, _LightPosition, -_LightDirection, false, 0.001);
             float3 toward = normalize(_LightPosition - met.place);
         #else
-            KrsMet met = KrsMeet(corner.place, _LightPosition, -_LightDirection, true, 0.0);
+            KrsMet met = KrsMeet(corner.place, _LightPosition, -_LightDirection, true, 0.001 * length(@half@));
             float3 toward = _LightDirection;
         #endif
             depth = KrsDepth(TransformWorldToHClip(ApplyShadowBias(met.place, met.normal, toward)));
@@ -126,12 +136,13 @@ Shader "krs/@stem@"
 
         Pass
         {
-            Tags { "LightMode" = "UniversalForward" }
+            Tags { "LightMode" = "UniversalForwardOnly" } // in forward and deferred rendering
             HLSLPROGRAM
             #pragma vertex KrsBox
             #pragma fragment KrsLit
             #pragma multi_compile _ _MAIN_LIGHT_SHADOWS _MAIN_LIGHT_SHADOWS_CASCADE
             #pragma multi_compile _ _ADDITIONAL_LIGHTS
+            #pragma multi_compile _ _FORWARD_PLUS
             #pragma multi_compile_fragment _ _SHADOWS_SOFT
             ENDHLSL
         }
@@ -152,6 +163,14 @@ Shader "krs/@stem@"
             HLSLPROGRAM
             #pragma vertex KrsBox
             #pragma fragment KrsDepthOnly
+            ENDHLSL
+        }
+        Pass
+        {
+            Tags { "LightMode" = "DepthNormalsOnly" }
+            HLSLPROGRAM
+            #pragma vertex KrsBox
+            #pragma fragment KrsNormals
             ENDHLSL
         }
     }

@@ -1,6 +1,6 @@
 // untested in Unreal: glslang has compiled it as HLSL.  Code of a Custom node, for a material of a box around the scene.
 //
-// @name@, made by krs @version@ of a scene of implicit surfaces, and spirv-cross.  The material: Masked, Two Sided.  The box: its
+// @name@, made by krs @version@ of a scene of implicit surfaces, and spirv-cross.  The material: Masked, Two Sided; seen from inside of the box it has no depth of its own.  The box: its
 // middle is at the scene's @center_numbers@, its sides are @size_numbers@.  A length of 1 is a metre, 100 units; the scene's y is up.
 //
 // Output: CMOT Float 3, base colour.  Additional outputs: Normal3 and Emission (Float 3; tangent space normals off), Rough, Metal,

@@ -1,7 +1,7 @@
 #!/bin/sh
 # export.sh: `krs export`: files are complete shaders, numbers of the scene are in them, and what cannot be is refused.
 . "$(dirname "$0")/common.sh"
-plan 51
+plan 52
 
 cat >ball.krs <<'END'
 param radius = 0.5 in [0.1, 1];
@@ -125,6 +125,8 @@ said 2 "-o must end with .gdshader" "files that name each other have their endin
 run export ball.krs --to godot -o moon.gdshader
 head -n 1 moon.gdshader | grep -q untested && grep -q 'path="res://moon.gdshader"' moon.tscn && grep -q 'size = Vector3(2, 2, 2)' moon.tscn
 result $? "a scene for Godot names its shader and has its box"
+grep -q 'type="SpotLight3D"' moon.tscn && grep -q '^spot_angle = 20$' moon.tscn && ! grep -q Omni moon.tscn && grep -q '^sky_top_color = Color(' moon.tscn
+result $? "a light with a cone has it in Godot, and there is the sky"
 grep -q 'uniform float param_radius : hint_range(0.1, 1.0) = 0.5;' moon.gdshader && grep -q 'uniform vec3 param_tint : source_color = vec3(1.0, 0.50' moon.gdshader
 result $? "parameters are sliders and colours there"
 
@@ -136,7 +138,7 @@ unity_compiles() { # name
       sed -n '/^struct KrsSurface/,$p' "$1.hlsl" | sed '$d'; } >parts
     # The functions come where they are included.
     { sed '/CBUFFER_END/q' parts; sed -n '/^struct KrsSurface/,$p' parts; sed '1,/CBUFFER_END/d; /^struct KrsSurface/,$d' parts; } >unity.hlsl
-    for entry in KrsLit KrsDepthOnly KrsShadow; do
+    for entry in KrsLit KrsDepthOnly KrsNormals KrsShadow; do
         glslangValidator -D -V -S frag -e $entry -o unity.spv unity.hlsl >out 2>&1 || return 1
     done
     glslangValidator -D -V -S vert -e KrsBox -o unity.spv unity.hlsl >out 2>err
