@@ -130,6 +130,25 @@ report(await page.evaluate(async () => {
 }), 'cameras are chosen by name, dragging turns about the target, and a place of the picture is a point of the scene');
 
 report(await page.evaluate(async () => {
+    const text = 'show sphere(0.4).move([-2.6, 0, 0]); show sphere(0.4).move([0, 3, 0]);\ncamera { eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg }\nlight { direction: [0, 0, 1], intensity: 3 }\n' +
+        'sky { zenith: black, horizon: black, ground: black }\n', scene = view.scene;
+    const wide = await view.update(text, { name: 'wide.krs' }).then(() => view.ready).then(() => view.pick(80, 3));
+    view.style.width = '90px';
+    view.samples = 1;
+    await settled();
+    const [side, above] = [await view.pick(9, 45), await view.pick(45, 3)];
+    // The ball at the left is seen where it is picked.
+    const bitmap = await createImageBitmap(await view.snapshot(90, 90)), canvas = new OffscreenCanvas(90, 90), context = canvas.getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const [seen] = context.getImageData(9, 45, 1, 1).data, [beside] = context.getImageData(45, 45, 1, 1).data;
+    view.style.width = '160px';
+    view.samples = 2;
+    view.scene = scene;
+    await settled();
+    return wide === null && side !== null && above !== null && seen > 60 && beside < 20;
+}), 'a narrow view shows as much to the sides as the image of the scene');
+
+report(await page.evaluate(async () => {
     const parent = view.parentNode;
     view.remove();
     parent.prepend(view);

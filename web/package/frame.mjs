@@ -1,5 +1,5 @@
 // frame.mjs: what shaders know of a camera: the block `Frame` of runtime/shared/blocks.h, as runtime/tracer/view.c fills it in.
-const unbounded = 1e18, horizon = 1e4, error = 0.25, maxSteps = 4096;
+const unbounded = 1e18, horizon = 1e4, error = 0.25, maxSteps = 4096, usualShape = 1280 / 720;
 export const projections = ['perspective', 'orthographic', 'panorama'];
 
 const sub = (a, b) => a.map((x, i) => x - b[i]), scale = (a, s) => a.map(x => x * s), length = a => Math.hypot(...a);
@@ -17,6 +17,12 @@ export function basisOf(camera) {
     }
     right = unit(right);
     return { right, up: cross(right, forward), forward, distance };
+}
+
+// The camera of a picture of this size: where it is narrower than the scene's image, as much is seen to the sides.
+export function fitted(camera, image, width, height) {
+    const shape = image.width > 0 ? image.width / image.height : usualShape, rise = shape * height / width;
+    return rise > 1 ? { ...camera, fov: 2 * Math.atan(rise * Math.tan(camera.fov / 2)), height: rise * camera.height } : camera;
 }
 
 // Half the extent of the picture: at distance 1 in perspective.

@@ -79,7 +79,7 @@ export interface Camera {
     eye: Vector;
     target: Vector;
     up: Vector;
-    /** The vertical angle. */
+    /** The vertical angle.  A view that is narrower than the image of the scene is higher instead: it shows as much to the sides. */
     fov: number;
     /** Of an orthographic picture. */
     height: number;

@@ -3,7 +3,7 @@
 // It runs in a worker (painter.mjs), and nothing in it waits but for its own tiles.  A picture begins with levels of few,
 // large pixels, the first of which is over within a frame; then its pixels get samples.
 import { balanceOf, placeRay } from './display.mjs';
-import { frameOf, lightRowsOf, projections } from './frame.mjs';
+import { fitted, frameOf, lightRowsOf, projections } from './frame.mjs';
 import { compilePasses, compileResolve, passes } from './programs.mjs';
 import { Costs, Tiles } from './tiles.mjs';
 
@@ -280,9 +280,9 @@ export class Picture {
     }
 
     #beginSums(job, width, height) {
-        const { state, sums, wanted } = job;
+        const { state, sums, wanted } = job, camera = fitted(state.camera, state.about.image, job.width, job.height);
         sums.sums.clear();
-        job.frame = frameOf(state.camera, state.view, state.about.shaders, width, height, wanted);
+        job.frame = frameOf(camera, state.view, state.about.shaders, width, height, wanted);
         this.costs ??= this.#measureDraws(job);
         this.#beginSample(job);
     }

@@ -1,6 +1,6 @@
 // view.mjs: <krs-view> (krs.d.ts): a canvas, a camera that a user moves, and a worker that draws (painter.mjs).
 import { Scene, compile, located, startWorker } from './compiler.mjs';
-import { basisOf, rayOf } from './frame.mjs';
+import { basisOf, fitted, rayOf } from './frame.mjs';
 
 const style = `
 :host { display: block; position: relative; width: 640px; height: 360px; overflow: hidden; background: #202226; }
@@ -306,7 +306,7 @@ export class KrsViewElement extends HTMLElement {
         const box = this.#canvas.getBoundingClientRect(), camera = this.camera;
         if (!this.#scene?.ok || !camera || camera.projection === 'panorama')
             return null;
-        const { origin, direction } = rayOf(camera, box.width, box.height, 2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height);
+        const { origin, direction } = rayOf(this.#fitted(camera), box.width, box.height, 2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height);
         const [hit] = await this.#scene.raycast([origin], [direction], { time: this.#scene.animated ? this.time : 0 });
         return hit.hit ? hit : null;
     }
@@ -335,7 +335,11 @@ export class KrsViewElement extends HTMLElement {
         this.#move({ ...camera, eye: along(camera.eye, 1, by), target: along(camera.target, 1, by) });
     }
 
-    #sizeAtTarget(camera, basis) {
+    // The camera by which the picture is drawn.
+    #fitted(camera) { return fitted(camera, this.#scene.image, this.#canvas.clientWidth, this.#canvas.clientHeight); }
+
+    #sizeAtTarget(given, basis) {
+        const camera = this.#fitted(given);
         return camera.projection === 'orthographic' ? camera.height : 2 * Math.tan(camera.fov / 2) * basis.distance;
     }
 

@@ -23,10 +23,12 @@
 // Of rays to lights, and over the hemisphere (secondary.frag).
 uniform highp usampler2D secondaries;
 
+// Weights are as much as the hit sends of an open sky: of roofs in the light and walls in the shade, which a pixel may both
+// have, the brighter ones decide.
 layout(location = 0) out vec4 direct;   // light of lamps, and of the sky where nothing is hit; 1
-layout(location = 1) out vec4 scattered; // light of an open sky, by the body; 1 where the ray finds it open
-layout(location = 2) out vec4 mirrored;  // the same by mirrors; the albedo of what closes it
-layout(location = 3) out vec4 own;       // the body's colour; 1 where something is hit
+layout(location = 1) out vec4 scattered; // light of an open sky, by the body; the weight where the ray finds it open
+layout(location = 2) out vec4 mirrored;  // the same by mirrors; the weight times the albedo of what closes it
+layout(location = 3) out vec4 own;       // the weight times the body's colour; the weight
 
 #ifdef MIRRORS // the ray that goes on: as in a path of the runtime, the weight with the code of where it begins
 layout(location = 4) out vec4 next_origin;
@@ -144,7 +146,10 @@ void main()
     direct = vec4(weight * finite_or_black(through_fog(glassy * light, left, true)), counted);
     if (are_of_paths())
         return;
-    scattered = vec4(finite_or_black(left * glassy * ambient_of(coat, vec3(1.0), 0.0)), occluder > 0.0 ? 0.0 : 1.0);
-    mirrored = vec4(finite_or_black(left * glassy * ambient_of(coat, vec3(0.0), 1.0)), albedo);
-    own = vec4(coat.color, 1.0);
+    scattered.rgb = finite_or_black(left * glassy * ambient_of(coat, vec3(1.0), 0.0));
+    mirrored.rgb = finite_or_black(left * glassy * ambient_of(coat, vec3(0.0), 1.0));
+    float sent = luminance(scattered.rgb + mirrored.rgb);
+    scattered.a = occluder > 0.0 ? 0.0 : sent;
+    mirrored.a = sent * albedo;
+    own = sent * vec4(coat.color, 1.0);
 }
