@@ -62,7 +62,7 @@ API      := $(call sources,api)
 IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
 LIVE     := $(foreach room,profile live/text live/pictures live/window live,$(call sources,$(room)))
 LIVE_BRIDGE := live/window/gui.cpp
-CLI      := $(foreach room,cli/options cli/pack cli/shell cli/farm cli/picture cli/mesh cli/grid cli/slice cli/lsp cli,$(call sources,$(room)))
+CLI      := $(foreach room,cli/options cli/pack cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/lsp cli,$(call sources,$(room)))
 CLI_BRIDGE := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cpp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
 VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)

@@ -109,15 +109,20 @@ static bool fill(const void *user, OutputFile *file, OutputError *error)
     return false;
 }
 
-static KrsStatus pack(const Options *options, const char *path, const char *output)
+KrsStatus pack_scene(const Options *options, const char *path, const char *output)
 {
     Packing packing = {.arena = options->arena};
     if (!loader_open(&packing.disk, scene_root(options, path), path))
         return say_status(KRS_OUT_OF_MEMORY, path);
-    KrsStatus status = collect(options, path, &packing);
+    const Pack *own    = pack_of(options, path);
+    KrsStatus   status = KRS_OK;
+    if (own)
+        packing.pack = *own;
+    else
+        status = collect(options, path, &packing);
     if (status == KRS_OK)
         status = write_output(output, fill, &packing);
-    if (status == KRS_OK && !options->quiet)
+    if (status == KRS_OK && !options->quiet && options->command == COMMAND_PACK)
         say("`%s`: %zu file%s and %zu font%s", output, packing.pack.files.count,
             packing.pack.files.count == 1 ? "" : "s", packing.pack.fonts.count,
             packing.pack.fonts.count == 1 ? "" : "s");
@@ -142,5 +147,5 @@ KrsStatus command_pack(Options *options)
     if (status != KRS_OK)
         return status;
     krs_scene_free(scene);
-    return pack(options, path, output);
+    return pack_scene(options, path, output);
 }

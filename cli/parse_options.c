@@ -220,6 +220,9 @@ static KrsStatus check_combinations(Options *options)
         if (files > 1)
             return say_usage(options, "%s takes one word, not %zu: krs %s %s", info->name, files,
                              info->name, info->arguments);
+    } else if (options->command == COMMAND_FARM && files < 2) {
+        return say_usage(options, "farm needs to know what to do, and with what: krs farm %s",
+                         info->arguments);
     } else if (info->files == MANY_FILES ? files == 0 : files != (size_t)info->files) {
         if (files == 0)
             return say_usage(options, "%s needs a %s: krs %s %s", info->name,

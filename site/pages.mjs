@@ -29,6 +29,7 @@ export const chapters = [
         { place: 'docs/exports.html', title: 'Other programs', document: 'docs/exports.md' },
         { place: 'docs/printing.html', title: 'Figures of a part', document: 'docs/printing.md' },
         { place: 'docs/cost.html', title: 'What parts cost', document: 'docs/cost.md' },
+        { place: 'docs/farm.html', title: 'Many machines', document: 'docs/farm.md' },
     ] },
     { title: 'Libraries', pages: [
         { place: 'docs/library.html', title: 'krs from C', document: 'docs/library.md' },

@@ -10,7 +10,7 @@
 
 #define ON(command)     (1u << COMMAND_##command)
 #define ON_ALL          ((1u << COMMAND_COUNT) - 1)
-#define ON_PICTURES     (ON(RENDER) | ON(WATCH))
+#define ON_PICTURES     (ON(RENDER) | ON(WATCH) | ON(FARM))
 #define ON_SHOWN        (ON_PICTURES | ON(VIEW))
 #define ON_LIT          (ON_SHOWN | ON(EXPORT))
 #define ON_SCENE        (ON_SHOWN | ON(VALIDATE) | ON(QUERY))

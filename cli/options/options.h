@@ -157,6 +157,8 @@ typedef struct Options {
     double zones[KRS_MAX_ZONES][4];
     size_t zone_count;
 
+    uint32_t farm_tiles[2]; /* --tiles; 0: one */
+
     bool     animated; /* --frames */
     uint32_t first_frame, last_frame;
 

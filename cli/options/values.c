@@ -320,6 +320,11 @@ bool read_size(const char *word, KrsRenderOptions *how)
     return true;
 }
 
+bool read_tiles(const char *word, uint32_t tiles[2])
+{
+    return read_wholes(word, 'x', 1, KRS_MAX_SIDE, tiles, 2);
+}
+
 bool read_crop(const char *word, KrsWindow *crop)
 {
     uint32_t numbers[4];

@@ -81,6 +81,9 @@ KrsStatus say_status(KrsStatus status, const char *path);
    literals are. */
 KrsScene *specialize_edited(const Options *options, const KrsScene *literals, double samples);
 
+/* pack.c: writes a scene and all that it reads, or the pack that it is in already, as a pack. */
+KrsStatus pack_scene(const Options *options, const char *path, const char *output);
+
 /* devices.c */
 
 /* Returns the folder in which compiled shaders are kept; NULL: there is none. */

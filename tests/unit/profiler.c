@@ -59,7 +59,8 @@ static int set_up(void **context)
         krs_state_camera(state, 0, &stage.view.camera) != KRS_OK)
         return -1;
     krs_state_free(state);
-    stage.profiler = profiler_new(&with, &options, "scene.krs", (SuppliedText){0}, nothing_is_told, NULL);
+    stage.profiler = profiler_new(&with, &options, "scene.krs", (SuppliedText){0}, nothing_is_told,
+                                  NULL);
     return stage.profiler ? 0 : -1;
 }
 

@@ -1,0 +1,263 @@
+/*
+ * farm.c: `krs farm`: a render that several processes or machines share.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/farm/job.h"
+#include "cli/farm/pieces.h"
+#include "cli/farm/probe.h"
+#include "cli/farm/report.h"
+#include "cli/farm/slurm.h"
+#include "cli/picture/frame_paths.h"
+#include "cli/picture/picture.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
+#include "cli/shell/supervise.h"
+
+/* ---- submit ---- */
+
+/* Tells whether an option of the command line is one that each piece is rendered with. */
+static bool is_passed_on(OptionId id)
+{
+    switch (id) {
+    case OPTION_FARM_FILE:
+    case OPTION_FRAMES:
+    case OPTION_QUIET: return false;
+    default: return option_belongs(id, COMMAND_RENDER);
+    }
+}
+
+/* Refuses options that name files which are not in a pack, or what a piece has of its own. */
+static KrsStatus check_passed_on(const Options *options, OptionId id)
+{
+    switch (id) {
+    case OPTION_CROP:
+    case OPTION_STEREO:
+    case OPTION_STAMP:
+    case OPTION_STATS:
+    case OPTION_DEPTH_IN:
+    case OPTION_PLATE:
+        return say_usage(options, "farm cannot divide a render with --%s", option_info[id].name);
+    default: return KRS_OK;
+    }
+}
+
+static KrsStatus collect_words(const Options *options, FarmJob *job)
+{
+    KrsStatus status = KRS_OK;
+    job->words       = arena_new_array(options->arena, const char *, options->given.count + 1);
+    for (size_t i = 0; i < options->given.count && status == KRS_OK; i++) {
+        const GivenOption *given = &options->given.items[i];
+        Text               word  = {.arena = options->arena};
+        status                   = check_passed_on(options, given->id);
+        if (!is_passed_on(given->id))
+            continue;
+        text_format(&word, "--%s", option_info[given->id].name);
+        if (given->value)
+            text_format(&word, "=%s", given->value);
+        job->words[job->word_count++] = word.bytes;
+    }
+    return status;
+}
+
+/* Returns a path that other processes can use, in other folders. */
+static const char *whole_path(Arena *arena, const char *path)
+{
+    Text  whole  = {.arena = arena};
+    char *folder = path[0] == '/' ? NULL : getcwd(NULL, 0);
+    text_format(&whole, "%s%s%s", folder ? folder : "", folder ? "/" : "", path);
+    free(folder);
+    return whole.bytes;
+}
+
+static KrsStatus find_size(const Options *options, const char *path, FarmJob *job)
+{
+    KrsScene *scene;
+    KrsState *state = NULL;
+    KrsView   view;
+    size_t    camera;
+    KrsStatus status = scene_open(options, path, &scene);
+    if (status != KRS_OK)
+        return status;
+    status = scene_state(options, scene, &state);
+    if (status == KRS_OK)
+        status = scene_camera(options, scene, &camera);
+    if (status == KRS_OK)
+        status = krs_state_view(state, camera, &view);
+    if (status == KRS_OK) {
+        const KrsRenderOptions *how = &options->how;
+        job->width                  = how->width         ? how->width
+                                      : view.image.width ? view.image.width
+                                                         : KRS_DEFAULT_WIDTH;
+        job->height                 = how->height         ? how->height
+                                      : view.image.height ? view.image.height
+                                                          : KRS_DEFAULT_HEIGHT;
+    }
+    krs_state_free(state);
+    krs_scene_free(scene);
+    return status;
+}
+
+static KrsStatus check_submission(const Options *options, const FarmJob *job)
+{
+    if (options->outputs.count != 1 || file_form(job->output) != FORM_EXR)
+        return say_usage(options, "farm submit writes EXR files: -o 'ring-%%04d.exr'");
+    if (job->animated != (frame_places(job->output) == 1))
+        return say_usage(options,
+                         job->animated ? "with --frames, `%s` needs one place for the number: %%04d"
+                                       : "without --frames, `%s` has a place for a number",
+                         job->output);
+    if (access(job_path(job, options->arena, "job.json"), F_OK) == 0)
+        return say_usage(options, "`%s` is a job already; give another --job", job->folder);
+    return check_output(options, frame_path(options, job->output, job->first));
+}
+
+static KrsStatus submit(const Options *options, const char *path)
+{
+    Text    folder = {.arena = options->arena};
+    FarmJob job    = {.animated = options->animated,
+                      .first    = options->animated ? options->first_frame : 0,
+                      .last     = options->animated ? options->last_frame : 0,
+                      .across   = options->farm_tiles[0] ? options->farm_tiles[0] : 1,
+                      .down     = options->farm_tiles[1] ? options->farm_tiles[1] : 1,
+                      .chunk    = options->chunk};
+    text_format(&folder, "%s.farm", scene_name(options->arena, path));
+    job.folder = whole_path(options->arena, options->farm_job ? options->farm_job : folder.bytes);
+    job.output = options->outputs.count ? whole_path(options->arena, options->outputs.items[0])
+                                        : "";
+    KrsStatus status = check_submission(options, &job);
+    if (status == KRS_OK)
+        status = collect_words(options, &job);
+    if (status == KRS_OK)
+        status = find_size(options, path, &job);
+    if (status == KRS_OK && (job.across > job.width || job.down > job.height))
+        status = say_usage(options, "a picture of %ux%u has not so many tiles", job.width,
+                           job.height);
+    if (status == KRS_OK)
+        status = job_write(&job, options->arena);
+    if (status == KRS_OK)
+        status = pack_scene(options, path, job_path(&job, options->arena, "scene.krsz"));
+    if (status == KRS_OK && options->slurm)
+        status = slurm_submit(&job, options, options->slurm);
+    if (status == KRS_OK && !options->quiet)
+        say(options->slurm ? "`%s` has %u pieces; `krs farm status` tells how far they are"
+                           : "`%s` has %u pieces; `krs farm work` renders them, on each machine "
+                             "that sees the folder",
+            job.folder, job_pieces(&job));
+    return status;
+}
+
+/* ---- work ---- */
+
+/* Returns the piece that this process is to render, as the option or a batch system says; the count: none does. */
+static uint32_t own_piece(const FarmJob *job, const Options *options)
+{
+    static const char *const names[] = {"SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX",
+                                        "OMPI_COMM_WORLD_RANK"};
+    const char              *first   = getenv("KRS_FARM_FIRST");
+    if (options->piece < UINT32_MAX)
+        return options->piece;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *number = getenv(names[i]);
+        if (number)
+            return (uint32_t)(strtoul(number, NULL, 10) + (first ? strtoul(first, NULL, 10) : 0));
+    }
+    return job_pieces(job);
+}
+
+static bool is_cancelled(const FarmJob *job, const Options *options)
+{
+    return access(job_path(job, options->arena, "cancelled"), F_OK) == 0;
+}
+
+static KrsStatus begin(const FarmJob *job, const Options *options)
+{
+    stage_enter(STAGE_RENDER);
+    stage_resumable(true);
+    return probe(job, options);
+}
+
+static KrsStatus run(const FarmJob *job, const Options *options)
+{
+    const uint32_t number = own_piece(job, options);
+    if (number >= job_pieces(job))
+        return say_usage(options,
+                         "no piece is named: --piece from 0 to %u, or a variable of a batch system",
+                         job_pieces(job) - 1);
+    const FarmPiece piece  = job_piece(job, number);
+    KrsStatus       status = is_cancelled(job, options) ? KRS_OK : begin(job, options);
+    return status == KRS_OK && !is_cancelled(job, options)
+               ? (KrsStatus)piece_render(job, options, &piece)
+               : status;
+}
+
+/* Renders pieces as long as there are some that nobody is at.  Each is tried three times. */
+static KrsStatus work(const FarmJob *job, const Options *options)
+{
+    KrsStatus status = begin(job, options);
+    bool      more   = status == KRS_OK;
+    while (more) {
+        more = false;
+        for (uint32_t number = 0; number < job_pieces(job) && status == KRS_OK; number++) {
+            const FarmPiece piece = job_piece(job, number);
+            if (is_cancelled(job, options))
+                return KRS_OK;
+            if (piece_state(job, options, &piece) != PIECE_WAITS)
+                continue;
+            const int ended = piece_render(job, options, &piece);
+            stage_enter(STAGE_RENDER);
+            more = true;
+            if (*interrupted())
+                status = KRS_INTERRUPTED;
+            else if (ended != KRS_OK)
+                say("piece %u has failed with status %d", number, ended);
+        }
+        more = more && status == KRS_OK;
+    }
+    for (uint32_t frame = job->first; frame <= job->last && status == KRS_OK; frame++)
+        status = frame_finish(job, options, frame);
+    return status == KRS_OK && !options->quiet ? report_status(job, options) : status;
+}
+
+/* ---- the rest ---- */
+
+static KrsStatus cancel(const FarmJob *job, const Options *options)
+{
+    KrsStatus status = write_output_text(job_path(job, options->arena, "cancelled"), "", 0);
+    return status == KRS_OK ? slurm_cancel(job, options) : status;
+}
+
+/* Forgets failures, and that the job was cancelled. */
+static KrsStatus retry(const FarmJob *job, const Options *options)
+{
+    unlink(job_path(job, options->arena, "cancelled"));
+    for (uint32_t number = 0; number < job_pieces(job); number++)
+        unlink(job_file(job, options->arena, number, "failed"));
+    return KRS_OK;
+}
+
+static const struct {
+    const char *verb;
+    KrsStatus (*function)(const FarmJob *job, const Options *options);
+} verbs[] = {{"work", work},     {"run", run},     {"status", report_status},
+             {"cancel", cancel}, {"retry", retry}, {"logs", report_logs}};
+
+KrsStatus command_farm(Options *options)
+{
+    const char *verb = options->files.items[0], *path = options->files.items[1];
+    FarmJob     job;
+    if (strcmp(verb, "submit") == 0)
+        return submit(options, path);
+    for (size_t i = 0; i < sizeof verbs / sizeof *verbs; i++)
+        if (strcmp(verb, verbs[i].verb) == 0) {
+            KrsStatus status = job_read(options->arena, whole_path(options->arena, path), &job);
+            return status == KRS_OK ? verbs[i].function(&job, options) : status;
+        }
+    return say_usage(options,
+                     "farm cannot `%s`; it can submit, work, run, status, cancel, retry and logs",
+                     verb);
+}

@@ -1,0 +1,184 @@
+/*
+ * pieces.c: renders pieces of a job by `krs render`, and puts pictures together.
+ */
+#include "cli/farm/pieces.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cli/farm/spawn.h"
+#include "cli/farm/tiles.h"
+#include "cli/picture/whole.h"
+#include "cli/shell/console.h"
+#include "cli/shell/supervise.h"
+#include "runtime/writer/exr.h"
+
+enum { RESUMABLE = 75 };
+
+/* ---- what is done ---- */
+
+static bool is_there(const char *path) { return access(path, F_OK) == 0; }
+
+bool frame_is_done(const FarmJob *job, const Options *options, uint32_t frame)
+{
+    return picture_is_whole(job_picture(job, options, frame));
+}
+
+static bool is_done(const FarmJob *job, const Options *options, const FarmPiece *piece)
+{
+    for (uint32_t frame = piece->first; frame <= piece->last; frame++)
+        if (!is_there(job_part(job, options->arena, piece->tile, frame)) &&
+            !frame_is_done(job, options, frame))
+            return false;
+    return true;
+}
+
+unsigned piece_failures(const FarmJob *job, Arena *arena, uint32_t piece)
+{
+    FILE    *file     = fopen(job_file(job, arena, piece, "failed"), "r");
+    unsigned failures = 0;
+    for (int c; file && (c = getc(file)) != EOF;)
+        failures += c == '\n';
+    if (file)
+        fclose(file);
+    return failures;
+}
+
+/* Opens a file that is locked as long as this process, or one that it starts, lives.  -1: somebody else has it. */
+static int lock(const char *path)
+{
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    const int    file  = open(path, O_RDWR | O_CREAT, 0666); /* children keep it */
+    if (file >= 0 && fcntl(file, F_OFD_SETLK, &whole) == 0)
+        return file;
+    if (file >= 0)
+        close(file);
+    return -1;
+}
+
+static bool is_locked(const char *path)
+{
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    const int    file  = open(path, O_RDONLY | O_CLOEXEC);
+    const bool   found = file >= 0 && fcntl(file, F_OFD_GETLK, &whole) == 0 &&
+                       whole.l_type != F_UNLCK;
+    if (file >= 0)
+        close(file);
+    return found;
+}
+
+PieceState piece_state(const FarmJob *job, const Options *options, const FarmPiece *piece)
+{
+    if (is_done(job, options, piece))
+        return PIECE_DONE;
+    if (is_locked(job_file(job, options->arena, piece->number, "lock")))
+        return PIECE_RUNS;
+    return piece_failures(job, options->arena, piece->number) >= MAX_TRIES ? PIECE_FAILED
+                                                                           : PIECE_WAITS;
+}
+
+/* ---- pictures ---- */
+
+static bool fill(const void *user, OutputFile *file, OutputError *error)
+{
+    return exr_write(user, file, error);
+}
+
+static KrsStatus merge(const FarmJob *job, const Options *options, const char *const *parts,
+                       uint32_t frame)
+{
+    Tiles     tiles;
+    KrsStatus status = tiles_read(options, parts, job_tiles(job), &tiles);
+    if (status != KRS_OK)
+        return status;
+    status = write_output(job_picture(job, options, frame), fill, &tiles.picture);
+    tiles_free(&tiles);
+    for (uint32_t tile = 0; tile < job_tiles(job) && status == KRS_OK; tile++)
+        unlink(parts[tile]);
+    return status;
+}
+
+KrsStatus frame_finish(const FarmJob *job, const Options *options, uint32_t frame)
+{
+    const char **parts = arena_new_array(options->arena, const char *, job_tiles(job));
+    Text         path  = {.arena = options->arena};
+    for (uint32_t tile = 0; tile < job_tiles(job); tile++) {
+        parts[tile] = job_part(job, options->arena, tile, frame);
+        if (!is_there(parts[tile]))
+            return KRS_OK;
+    }
+    text_format(&path, "%s/parts/%06u.lock", job->folder, frame);
+    const int held = lock(path.bytes);
+    if (held < 0)
+        return KRS_OK; /* somebody else is writing it */
+    KrsStatus status = frame_is_done(job, options, frame) ? KRS_OK
+                                                          : merge(job, options, parts, frame);
+    unlink(path.bytes);
+    close(held);
+    return status;
+}
+
+/* ---- rendering ---- */
+
+static int run_render(const FarmJob *job, const Options *options, const FarmPiece *piece)
+{
+    const KrsWindow window = job_window(job, piece->tile);
+    Arena          *arena  = options->arena;
+    Words           words  = {0};
+    Text            frames = {.arena = arena}, crop = {.arena = arena}, part = {.arena = arena};
+    text_format(&crop, "--crop=%u,%u,%u,%u", window.x, window.y, window.width, window.height);
+    text_format(&frames, "--frames=%u..%u", piece->first, piece->last);
+    text_format(&part, "--output=%s/parts/%u-%s.exr", job->folder, piece->tile,
+                job->animated ? "%06d" : "000000");
+    spawn_begin(arena, &words, "render", job_path(job, arena, "scene.krsz"));
+    for (size_t i = 0; i < job->word_count; i++)
+        spawn_add(arena, &words, job->words[i]);
+    spawn_add(arena, &words, crop.bytes);
+    spawn_add(arena, &words, part.bytes);
+    spawn_add(arena, &words, "--quiet");
+    spawn_add(arena, &words, "--resume");
+    if (job->animated) {
+        spawn_add(arena, &words, frames.bytes);
+        spawn_add(arena, &words, "--skip-existing");
+    }
+    return spawn_run(options, &words, job_file(job, arena, piece->number, "log"));
+}
+
+static void note_failure(const FarmJob *job, Arena *arena, uint32_t piece, int status)
+{
+    FILE *file      = fopen(job_file(job, arena, piece, "failed"), "a");
+    char  host[256] = "";
+    gethostname(host, sizeof host - 1);
+    if (!file)
+        return;
+    fprintf(file, "%d %lld %s\n", status, (long long)time(NULL), host);
+    fclose(file);
+}
+
+static KrsStatus finish_frames(const FarmJob *job, const Options *options, const FarmPiece *piece)
+{
+    KrsStatus status = KRS_OK;
+    for (uint32_t frame = piece->first; frame <= piece->last && status == KRS_OK; frame++)
+        status = frame_finish(job, options, frame);
+    return status;
+}
+
+int piece_render(const FarmJob *job, const Options *options, const FarmPiece *piece)
+{
+    if (is_done(job, options, piece))
+        return finish_frames(job, options, piece);
+    const int held = lock(job_file(job, options->arena, piece->number, "lock"));
+    if (held < 0)
+        return KRS_OK;
+    int status = is_done(job, options, piece) ? KRS_OK : run_render(job, options, piece);
+    if (status != KRS_OK && status != RESUMABLE && status != KRS_INTERRUPTED)
+        note_failure(job, options->arena, piece->number, status);
+    if (status == KRS_OK)
+        status = finish_frames(job, options, piece);
+    close(held);
+    return status;
+}
