@@ -152,11 +152,15 @@ void add_python_lights(Text *to, const Export *export)
     }
 }
 
-/* Adds the mean of the sky, which is one colour in Blender. */
+/* Adds a dictionary of the sky's colours. */
 void add_python_sky(Text *to, const Export *export)
 {
-    double mean[3];
-    for (int k = 0; k < 3; k++)
-        mean[k] = 0.5 * (export->view.sky.zenith[k] + export->view.sky.horizon[k]);
-    text_json_vector(to, mean, 3);
+    const KrsSky *sky = &export->view.sky;
+    text_add(to, "{");
+    add_list(to, "zenith", sky->zenith, 3);
+    text_add(to, ", ");
+    add_list(to, "horizon", sky->horizon, 3);
+    text_add(to, ", ");
+    add_list(to, "ground", sky->ground, 3);
+    text_add(to, "}");
 }

@@ -61,7 +61,7 @@ suite() { # script, its words
     grep -o 'SKIP .*' "$work/said" | sort -u | sed 's/^/# /'
 }
 suite tests/cli/export.sh "compilers take what is written: glslang, spirv-cross, g++, mcs"
-KRS_EXPORT_SHOTS=$folder suite tests/web/exports.sh "Chromium and three.js draw it, with pictures"
+KRS_EXPORT_SHOTS=$folder suite tests/web/export.sh "Chromium and three.js draw it, with pictures"
 
 # ---- editors ----
 
