@@ -17,6 +17,8 @@
 enum { SLABS = 8, QUARTERS = 4, PARTS = 2 };
 /* A cell with a shorter tape is not divided. */
 enum { SHORT_TAPE = 32 };
+/* A tape has become shorter if it takes less than this part of the steps. */
+static const float SHORTER = 0.85f;
 /* The least part of all slabs that is free. */
 static const float NEAREST_SLAB = 1e-5f;
 
@@ -226,11 +228,11 @@ static void add_cell(const March *m, Cells *cells, const Bundle *bundle, float f
         cells->points[k][i] = middle[k];
 }
 
-static void march_cells(March *m, const CellTape *tape, uint32_t depth, Cells *cells);
+static void march_cells(March *m, const CellTape *tape, uint32_t depth, Cells *cells, bool shorter);
 
 /* Goes on within a cell that may have a surface. */
 static void enter(March *m, const CellTape *tape, uint32_t depth, const Bundle *bundle, float first,
-                  float last)
+                  float last, bool shorter)
 {
     Cells cells = {.count = 0};
     if (depth == LEAF_DEPTH || cell_cost(tape) < SHORT_TAPE) {
@@ -242,12 +244,19 @@ static void enter(March *m, const CellTape *tape, uint32_t depth, const Bundle *
         for (int s = 0; s < PARTS && parts[q].count > 0; s++)
             add_cell(m, &cells, &parts[q], first + (last - first) * (float)s / PARTS,
                      s + 1 < PARTS ? first + (last - first) * (float)(s + 1) / PARTS : last);
-    march_cells(m, tape, depth + 1, &cells);
+    march_cells(m, tape, depth + 1, &cells, shorter);
+}
+
+/* The rays of the smallest cells ask few distances, and finding slopes takes as long as many of these.  So tapes that
+   need that are shortened there only if those around them have become `shorter` by that. */
+static bool is_worth_pruning(const CellTape *tape, uint32_t depth, bool shorter)
+{
+    return depth < LEAF_DEPTH || tape->steep || shorter;
 }
 
 /* Bounds the cells, which lie in a cell with this tape, and enters those in which there may be a surface, one after the
    other.  Those of one bundle follow each other, the nearest first. */
-static void march_cells(March *m, const CellTape *tape, uint32_t depth, Cells *cells)
+static void march_cells(March *m, const CellTape *tape, uint32_t depth, Cells *cells, bool shorter)
 {
     float values[CELL_LANES];
     for (int i = cells->count; i < CELL_LANES; i++)
@@ -264,10 +273,15 @@ static void march_cells(March *m, const CellTape *tape, uint32_t depth, Cells *c
             skip_rays(m, cells->bundle[i], last);
             continue;
         }
+        if (!is_worth_pruning(tape, depth, shorter)) {
+            enter(m, tape, depth, cells->bundle[i], first, last, shorter);
+            continue;
+        }
         const CellMark mark   = cell_mark(m->work);
         const CellTape pruned = cell_prune(tape, m->work, depth, (uint32_t)i,
                                            cells->radius[i] + cells->taps[i], m->field->margin);
-        enter(m, &pruned, depth, cells->bundle[i], first, last);
+        enter(m, &pruned, depth, cells->bundle[i], first, last,
+              (float)cell_cost(&pruned) < SHORTER * (float)cell_cost(tape));
         cell_release(m->work, mark);
     }
 }
@@ -383,7 +397,7 @@ static void march_slabs(March *m, const Cells *slabs)
             number = of;
             add_cell(m, &same, slabs->bundle[i], slabs->first[i], slabs->last[i]);
         }
-        march_cells(m, &starts->cubes[number].tape, 0, &same);
+        march_cells(m, &starts->cubes[number].tape, 0, &same, true);
     }
 }
 
