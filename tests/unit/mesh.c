@@ -578,6 +578,31 @@ static void smooth_surfaces_have_large_triangles(void **context)
     }
 }
 
+/* One surface by two functions: proofs know the bends of both as well. */
+static void equal_surfaces_have_as_many_triangles(void **context)
+{
+    static const char *const pairs[][2] = {
+        {"exp((x * x + z * z) * -2)", "exp2((x * x + z * z) * -2.8853900817779268)"},
+        {"(1 - 2 / (exp(6 * x) + 1)) * cos(2 * z)", "tanh(3 * x) * cos(2 * z)"}};
+    (void)context;
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        double counts[2];
+        for (int k = 0; k < 2; k++) {
+            char text[256];
+            snprintf(text, sizeof text, "show field(y - 0.3 * %s).within(box([2, 1.2, 2]));",
+                     pairs[i][k]);
+            Scene    s    = scene_of(text);
+            KrsMesh *mesh = even_mesh_of(s, 0.04);
+            counts[k]     = (double)mesh->triangle_count;
+            krs_mesh_free(mesh);
+            scene_close(s);
+        }
+        print_message("# %g triangles by %s, %g by %s\n", counts[0], pairs[i][0], counts[1],
+                      pairs[i][1]);
+        assert_true(counts[1] <= 1.05 * counts[0]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -595,6 +620,7 @@ int main(void)
         cmocka_unit_test(drafts_keep_walls),
         cmocka_unit_test(triangles_are_left_out_where_that_is_permitted),
         cmocka_unit_test(smooth_surfaces_have_large_triangles),
+        cmocka_unit_test(equal_surfaces_have_as_many_triangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
