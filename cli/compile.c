@@ -73,16 +73,16 @@ static void add_table_json(Json *json, const char *name, const TableFile *file, 
     Text path = {.arena = json->text.arena};
     text_format(&path, "%s%s", name, file->ending);
     json_open(json, NULL, "{");
-    json_string(json, "name", file->buffer);
+    json_text(json, "name", file->buffer);
     if (target == KRS_TARGET_ESSL) {
         json_whole(json, "width", KRS_TEXTURE_WIDTH);
     } else {
         json_whole(json, target == KRS_TARGET_WGSL ? "group" : "set", 0);
         json_whole(json, "binding", file->binding);
     }
-    json_string(json, "format", file->format);
+    json_text(json, "format", file->format);
     json_whole(json, "texels", texels);
-    json_string(json, "file", path.bytes);
+    json_text(json, "file", path.bytes);
     json_close(json, "}");
 }
 
@@ -106,12 +106,12 @@ static void add_textures_json(Json *json, const KrsScene *scene)
         KrsTexture texture;
         krs_texture(scene, i, &texture);
         json_open(json, NULL, "{");
-        json_string(json, "file", texture.file);
+        json_text(json, "file", texture.file);
         json_whole(json, "width", texture.width);
         json_whole(json, "height", texture.height);
         json_whole(json, "levels", texture.levels);
-        json_string(json, "texel", texture.gray ? "RG32F" : "RGBA16F");
-        json_string(json, "buffer", cells_file.buffer);
+        json_text(json, "texel", texture.gray ? "RG32F" : "RGBA16F");
+        json_text(json, "buffer", cells_file.buffer);
         json_whole(json, "header", texture.header);
         json_whole(json, "first", texture.first);
         json_close(json, "}");
@@ -126,7 +126,7 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
 {
     Json json = {.text = {.arena = options->arena}, .spaced = true};
     json_open(&json, NULL, "{");
-    json_string(&json, "name", name);
+    json_text(&json, "name", name);
     info_add_json(&json, scene);
     json_whole(&json, "parameter_slots", krs_parameter_slots(scene));
     json_whole(&json, "value_slots", krs_value_slots(scene));

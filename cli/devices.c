@@ -47,9 +47,9 @@ static void print_json(Arena *arena, const KrsDevice *devices, size_t count)
         text_format(&vulkan, "%u.%u.%u", version.major, version.minor, version.patch);
         json_open(&json, NULL, "{");
         json_whole(&json, "index", i);
-        json_string(&json, "name", devices[i].name);
-        json_string(&json, "kind", kind_names[devices[i].kind]);
-        json_string(&json, "vulkan", vulkan.bytes);
+        json_text(&json, "name", devices[i].name);
+        json_text(&json, "kind", kind_names[devices[i].kind]);
+        json_text(&json, "vulkan", vulkan.bytes);
         json_truth(&json, "usable", devices[i].usable);
         json_truth(&json, "preferred", devices[i].preferred);
         json_close(&json, "}");

@@ -190,11 +190,11 @@ static void add_bound(Json *json, const KrsBound *bound)
 {
     json_open(json, NULL, "{");
     json_whole(json, "depth", bound->depth);
-    json_string(json, "name", bound->name);
-    json_string(json, "source", bound->source);
+    json_text(json, "name", bound->name);
+    json_text(json, "source", bound->source);
     json_whole(json, "line", bound->line);
     json_whole(json, "column", bound->column);
-    json_string(json, "rule", bound->rule);
+    json_text(json, "rule", bound->rule);
     json_number(json, "slope", bound->slope);
     json_numbers(json, "low", bound->low, 3);
     json_numbers(json, "high", bound->high, 3);
@@ -228,7 +228,7 @@ static void add_components(Json *json, const KrsScene *scene)
         KrsComponent component;
         krs_component(scene, i, &component);
         json_open(json, NULL, "{");
-        json_string(json, "name", component.name);
+        json_text(json, "name", component.name);
         json_numbers(json, "low", component.low, 3);
         json_numbers(json, "high", component.high, 3);
         json_number(json, "slope", component.slope);
@@ -253,7 +253,7 @@ static void add_parameters(Json *json, const KrsScene *scene)
         KrsParameter parameter;
         krs_parameter(scene, i, &parameter);
         json_open(json, NULL, "{");
-        json_string(json, "name", parameter.name);
+        json_text(json, "name", parameter.name);
         json_numbers(json, "value", parameter.value, parameter.components);
         json_numbers(json, "low", parameter.low, parameter.components);
         json_numbers(json, "high", parameter.high, parameter.components);
@@ -271,7 +271,7 @@ static void add_slopes(Json *json, const KrsScene *scene)
         krs_state_slope(scene, i, &slope);
         json_open(json, NULL, "{");
         json_whole(json, "slot", slope.slot);
-        json_string(json, "place", slope.location);
+        json_text(json, "place", slope.location);
         json_numbers(json, "low", slope.low, 3);
         json_numbers(json, "high", slope.high, 3);
         json_close(json, "}");
@@ -303,8 +303,8 @@ void info_add_json(Json *json, const KrsScene *scene)
 
 void info_begin_json(Json *json, const KrsScene *scene)
 {
-    json_string(json, "krs", KRS_VERSION);
-    json_string(json, "hash", krs_scene_hash(scene));
+    json_text(json, "krs", KRS_VERSION);
+    json_text(json, "hash", krs_scene_hash(scene));
 }
 
 static void print_json(const Options *options, const KrsScene *scene)

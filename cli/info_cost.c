@@ -131,8 +131,8 @@ static void add_part(Json *json, const ProfileRow *row)
 {
     const KrsLocation *location = &row->part->location;
     json_open(json, NULL, "{");
-    json_string(json, "name", row->part->name);
-    json_string(json, "source", location->source);
+    json_text(json, "name", row->part->name);
+    json_text(json, "source", location->source);
     json_whole(json, "line", location->line);
     json_whole(json, "column", location->column);
     json_whole(json, "start", location->start);
@@ -161,7 +161,7 @@ static void print_json(const Costing *costing)
     json_open(&json, NULL, "{");
     info_begin_json(&json, costing->scene);
     json_open(&json, "cost", "{");
-    json_string(&json, "device", costing->device);
+    json_text(&json, "device", costing->device);
     json_whole(&json, "width", profile->width);
     json_whole(&json, "height", profile->height);
     json_truth(&json, "of_processors", profile->of_processors);

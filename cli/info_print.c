@@ -198,7 +198,7 @@ static void print_json(const Printing *printing)
     json_open(&json, NULL, "{");
     info_begin_json(&json, printing->scene);
     json_open(&json, "print", "{");
-    json_string(&json, "units", printing->unit);
+    json_text(&json, "units", printing->unit);
     add_solid(&json, printing);
     add_walls(&json, printing);
     json_number(&json, "overhang_degrees", printing->options->overhang);

@@ -135,7 +135,7 @@ void module_add_json(Json *json, const SpirvModule *module)
     }
 
     json_open(json, NULL, "{");
-    json_string(json, "entry", module->entry);
+    json_text(json, "entry", module->entry);
     json_open(json, "workgroup", "[");
     for (int i = 0; i < 3; i++)
         json_whole(json, NULL, size[i]);
@@ -147,7 +147,7 @@ void module_add_json(Json *json, const SpirvModule *module)
         json_open(json, NULL, "{");
         json_whole(json, "set", ids[id].set);
         json_whole(json, "binding", ids[id].binding);
-        json_string(json, "name", binding_name(ids, &ids[id]));
+        json_text(json, "name", binding_name(ids, &ids[id]));
         json_close(json, "}");
     }
     json_close(json, "]");

@@ -8,7 +8,7 @@ cc=${CC:-cc}
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 failed=0
 number=0
-echo "1..12"
+echo "1..13"
 report() { # status, name
     number=$((number + 1))
     [ "$1" -eq 0 ] && echo "ok $number - $2" && return
@@ -60,6 +60,11 @@ done | grep / | while read -r archive; do
 done | awk 'NF == 2 { print $2 }' | sort -u | comm -12 - "$work/ours" >"$work/said"
 [ ! -s "$work/said" ]
 report $? "no static library is given a name of ours"
+ldd "$build/krs" | awk '$2 == "=>" && $3 ~ /^\// && $1 !~ /^libc\.so/ { print $3 }' | while read -r library; do
+    defined -D "$library"
+done | sort -u | comm -12 - "$work/ours" >"$work/said"
+[ ! -s "$work/said" ]
+report $? "none of ours takes the place of a name of a shared library"
 
 # What C libraries round each in its own way is our own (base/elementary.h), but for the runtime's.
 others='^(a?(sin|cos|tan)h?|atan2|exp(2|10|m1)?|log(2|10|1p)?|pow|cbrt|hypot|sincos|[lt]gamma|erfc?)[fl]?$'

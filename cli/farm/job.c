@@ -113,7 +113,7 @@ KrsStatus job_write(const FarmJob *job, Arena *arena)
             root, numbers[i].name,
             json_integer(*(const uint32_t *)((const char *)job + numbers[i].offset)));
     for (size_t i = 0; i < job->word_count; i++)
-        json_array_append_new(words, json_stringn(job->words[i], strlen(job->words[i])));
+        json_array_append_new(words, json_string(job->words[i]));
     json_object_set_new(root, "options", words);
     char     *text   = json_dumps(root, JSON_INDENT(2));
     KrsStatus status = text ? make_folder(job->folder) : say_status(KRS_OUT_OF_MEMORY, job->folder);

@@ -88,7 +88,7 @@ static void print_json(const FarmJob *job, const Options *options, const Report 
             continue;
         json_open(&json, NULL, "{");
         json_whole(&json, "piece", number);
-        json_string(&json, "said", first_words(job, options, number));
+        json_text(&json, "said", first_words(job, options, number));
         json_close(&json, "}");
     }
     json_close(&json, "]");

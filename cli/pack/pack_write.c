@@ -32,10 +32,10 @@ static void add_entries(Arena *arena, Json *json, const char *heading, const Pac
         char             hash[PACK_HASH];
         pack_hash(entry->bytes, entry->length, hash);
         json_open(json, NULL, "{");
-        json_string(json, "name", entry->name);
+        json_text(json, "name", entry->name);
         if (fonts)
             json_whole(json, "face", (uint64_t)entry->face);
-        json_string(json, "hash", hash);
+        json_text(json, "hash", hash);
         json_close(json, "}");
         add_content(arena, files, entry, hash);
     }
@@ -49,7 +49,7 @@ bool pack_write(Arena *arena, const Pack *pack, ArchiveSink *sink, void *user)
     array_push(arena, &files, (ArchiveFile){.name = PACK_CONTENTS});
     json_open(&json, NULL, "{");
     json_whole(&json, "layout", PACK_LAYOUT);
-    json_string(&json, "scene", pack->scene);
+    json_text(&json, "scene", pack->scene);
     add_entries(arena, &json, "files", &pack->files, false, &files);
     add_entries(arena, &json, "fonts", &pack->fonts, true, &files);
     json_close(&json, "}");

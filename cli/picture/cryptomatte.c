@@ -137,7 +137,7 @@ static const char *manifest_of(Arena *arena, const KrsScene *scene, Parts *parts
     for (size_t i = 0; i < parts->count; i++) {
         char identifier[9];
         snprintf(identifier, sizeof identifier, "%08x", named[i].identifier);
-        json_string(&manifest, named[i].name, identifier);
+        json_text(&manifest, named[i].name, identifier);
     }
     json_close(&manifest, "}");
     return manifest.text.bytes;

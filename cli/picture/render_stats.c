@@ -26,7 +26,7 @@ static void add_stats_json(Json *json, const KrsRenderStats *stats, const KrsPro
     json_rounded(json, "wall", stats->wall_ms);
     json_close(json, "}");
     json_truth(json, "device_time", stats->device_time);
-    json_string(json, "executor", krs_executor_names[stats->executor]);
+    json_text(json, "executor", krs_executor_names[stats->executor]);
     json_whole(json, "rays", stats->rays);
     json_whole(json, "evaluations", stats->evaluations);
     json_open(json, "evaluations_per_ray", "{");
@@ -38,7 +38,7 @@ static void add_stats_json(Json *json, const KrsRenderStats *stats, const KrsPro
     json_whole(json, "unresolved", stats->unresolved);
     json_whole(json, "clamped", stats->clamped);
     json_whole(json, "submissions", stats->submissions);
-    json_string(json, "device", stats->device);
+    json_text(json, "device", stats->device);
     json_whole(json, "peak_memory_bytes", stats->peak_memory_bytes);
 }
 
@@ -58,7 +58,7 @@ static void add_shaders_json(Json *json, const KrsRendering *rendering)
     json_open(json, "kernels", "[");
     for (size_t i = 0; i < count; i++) {
         json_open(json, NULL, "{");
-        json_string(json, "name", shaders[i].name);
+        json_text(json, "name", shaders[i].name);
         json_whole(json, "glsl_bytes", shaders[i].glsl_bytes);
         json_rounded(json, "spirv_ms", shaders[i].spirv_ms);
         json_rounded(json, "driver_ms", shaders[i].driver_ms);

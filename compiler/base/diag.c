@@ -155,7 +155,7 @@ void diag_json_range(Json *json, const char *name, const Source *source, uint32_
 static void json_location(const Diags *diags, Span span, Json *json)
 {
     const Source *source = span.source ? &diags->sources->items[span.source] : NULL;
-    json_string(json, "uri", source ? source->name : "");
+    json_text(json, "uri", source ? source->name : "");
     diag_json_range(json, "range", source, span.start, span.end);
 }
 
@@ -168,7 +168,7 @@ static void json_related(const Diags *diags, const Diag *diag, Json *json)
         json_open(json, "location", "{");
         json_location(diags, diag->secondary.items[i].span, json);
         json_close(json, "}");
-        json_string(json, "message", label ? label : "");
+        json_text(json, "message", label ? label : "");
         json_close(json, "}");
     }
     json_close(json, "]");
@@ -179,14 +179,14 @@ static void json_data(const Diag *diag, Json *json)
 {
     json_open(json, "data", "{");
     if (diag->label)
-        json_string(json, "label", diag->label);
+        json_text(json, "label", diag->label);
     if (diag->help)
-        json_string(json, "help", diag->help);
+        json_text(json, "help", diag->help);
     if (diag->replacement)
-        json_string(json, "replacement", diag->replacement);
+        json_text(json, "replacement", diag->replacement);
     json_open(json, "notes", "[");
     for (size_t i = 0; i < diag->notes.count; i++)
-        json_string(json, NULL, diag->notes.items[i]);
+        json_text(json, NULL, diag->notes.items[i]);
     json_close(json, "]");
     json_close(json, "}");
 }
@@ -198,9 +198,9 @@ void diag_json_one(const Diags *diags, const Diag *diag, Text *out)
     json_open(&json, NULL, "{");
     json_location(diags, diag->span, &json);
     json_whole(&json, "severity", (uint64_t)info->severity + 1);
-    json_string(&json, "code", info->code);
-    json_string(&json, "source", "krs");
-    json_string(&json, "message", diag->message);
+    json_text(&json, "code", info->code);
+    json_text(&json, "source", "krs");
+    json_text(&json, "message", diag->message);
     json_related(diags, diag, &json);
     json_data(diag, &json);
     json_close(&json, "}");

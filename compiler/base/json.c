@@ -28,7 +28,7 @@ void json_close(Json *json, const char *bracket)
     json->more = true;
 }
 
-void json_string(Json *json, const char *name, const char *string)
+void json_text(Json *json, const char *name, const char *string)
 {
     begin(json, name);
     if (string)

@@ -1,5 +1,5 @@
 /*
- * json.h: JSON that is written member by member.
+ * json.h: JSON that is written member by member.  No name is one of jansson, which the command links, too.
  */
 #ifndef KRS_JSON_H
 #define KRS_JSON_H
@@ -17,7 +17,7 @@ typedef struct Json {
 /* Each of these writes a member; an element of an array, or a value alone, if the name is NULL. */
 void json_open(Json *json, const char *name, const char *bracket);
 void json_close(Json *json, const char *bracket);
-void json_string(Json *json, const char *name, const char *string); /* NULL: null */
+void json_text(Json *json, const char *name, const char *string); /* NULL: null */
 void json_whole(Json *json, const char *name, uint64_t number);
 void json_truth(Json *json, const char *name, bool truth);
 /* Writes the shortest decimals that read back as the numbers; what is not finite becomes null. */

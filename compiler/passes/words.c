@@ -14,8 +14,8 @@ static void begin_word(Json *json, const char *kind, const char *name)
         text_add(&json->text, ",\n");
     json->more = false;
     json_open(json, NULL, "{");
-    json_string(json, "kind", kind);
-    json_string(json, "name", name);
+    json_text(json, "kind", kind);
+    json_text(json, "name", name);
 }
 
 /* ---- what is built in ---- */
@@ -28,7 +28,7 @@ static void write_builtin_parameters(Json *json, const char *parameters, Arena *
         const size_t length = strcspn(at, " ="), word = strcspn(at, " ");
         const bool   many = length > 3 && strncmp(at + length - 3, "...", 3) == 0;
         json_open(json, NULL, "{");
-        json_string(json, "name", arena_copy_text(arena, at, many ? length - 3 : length));
+        json_text(json, "name", arena_copy_text(arena, at, many ? length - 3 : length));
         if (many || length < word)
             json_truth(json, many ? "many" : "optional", true);
         json_close(json, "}");
@@ -44,7 +44,7 @@ static void write_builtins(Json *json, Arena *arena)
         begin_word(json, word->kind, word->name);
         if (strcmp(word->kind, "value") != 0)
             write_builtin_parameters(json, word->parameters, arena);
-        json_string(json, "about", word->meaning);
+        json_text(json, "about", word->meaning);
         json_close(json, "}");
     }
 }
@@ -61,15 +61,15 @@ static void write_parameter(Compilation *c, const Syntax *parameter, Json *json)
 {
     const ParameterKind kind = (ParameterKind)parameter->number[0];
     json_open(json, NULL, "{");
-    json_string(json, "name", parameter->name);
+    json_text(json, "name", parameter->name);
     if (kind != KIND_ANY)
-        json_string(json, "takes", parameter_kind_name(kind));
+        json_text(json, "takes", parameter_kind_name(kind));
     if (parameter->count > 0) {
         json_truth(json, "optional", true);
-        json_string(json, "default", text_of(c, parameter->children[0]->span, &c->scratch));
+        json_text(json, "default", text_of(c, parameter->children[0]->span, &c->scratch));
     }
     if (parameter->count > 1)
-        json_string(json, "range", text_of(c, parameter->children[1]->span, &c->scratch));
+        json_text(json, "range", text_of(c, parameter->children[1]->span, &c->scratch));
     json_close(json, "}");
 }
 
@@ -93,9 +93,9 @@ static void write_definition(Compilation *c, const File *file, const Syntax *def
     if (called)
         write_parameters(c, definition, json);
     if (definition->doc)
-        json_string(json, "about", definition->doc);
+        json_text(json, "about", definition->doc);
     if (!file->library)
-        json_string(json, "file", file->path);
+        json_text(json, "file", file->path);
     json_close(json, "}");
 }
 

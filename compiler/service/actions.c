@@ -47,7 +47,7 @@ void answer_color(const Here *here, const ServiceQuestion *about, Json *json)
                 byte_of(about->color[2]));
     json_open(json, NULL, "[");
     json_open(json, NULL, "{");
-    json_string(json, "label", label.bytes);
+    json_text(json, "label", label.bytes);
     json_close(json, "}");
     json_close(json, "]");
 }
@@ -58,7 +58,7 @@ static void add_edit(const Here *here, Json *json, uint32_t start, uint32_t end,
 {
     json_open(json, NULL, "{");
     diag_json_range(json, "range", here->source, start, end);
-    json_string(json, "newText", text);
+    json_text(json, "newText", text);
     json_close(json, "}");
 }
 
@@ -67,8 +67,8 @@ static void begin_action(const Here *here, Json *json, const char *title, const 
                          const char *diagnostic)
 {
     json_open(json, NULL, "{");
-    json_string(json, "title", title);
-    json_string(json, "kind", kind);
+    json_text(json, "title", title);
+    json_text(json, "kind", kind);
     if (diagnostic) {
         json_open(json, "diagnostics", "[");
         json_ready(json, NULL, diagnostic);

@@ -421,7 +421,7 @@ void add_location(Service *service, Json *json, const char *name, const Source *
         text_add(&path, "library:");
     text_add(&path, source->name);
     json_open(json, name, "{");
-    json_string(json, "uri", uri_of(service, path.bytes));
+    json_text(json, "uri", uri_of(service, path.bytes));
     diag_json_range(json, "range", source, span.start, span.end);
     json_close(json, "}");
 }

@@ -10,22 +10,22 @@ void completion_add(const Completion *c, Item item)
 {
     Json *json = c->json;
     json_open(json, NULL, "{");
-    json_string(json, "label", item.label);
+    json_text(json, "label", item.label);
     json_whole(json, "kind", item.kind);
     if (item.detail)
-        json_string(json, "detail", item.detail);
+        json_text(json, "detail", item.detail);
     if (item.doc)
-        json_string(json, "documentation", item.doc);
+        json_text(json, "documentation", item.doc);
     if (item.order) {
         Text sort = {.arena = &c->here->service->arena};
         text_format(&sort, "%c%s", item.order, item.label);
-        json_string(json, "sortText", sort.bytes);
+        json_text(json, "sortText", sort.bytes);
     }
     if (item.insert) { /* else the word at the place becomes the label */
-        json_string(json, "filterText", item.insert);
+        json_text(json, "filterText", item.insert);
         json_open(json, "textEdit", "{");
         diag_json_range(json, "range", c->here->source, c->start, c->end);
-        json_string(json, "newText", item.insert);
+        json_text(json, "newText", item.insert);
         json_close(json, "}");
     }
     json_close(json, "}");

@@ -227,13 +227,13 @@ void answer_hover(const Here *here, const ServiceQuestion *about, Json *json)
     Span span;
     (void)about;
     if (!write_hover(here, &text, &span)) {
-        json_string(json, NULL, NULL);
+        json_text(json, NULL, NULL);
         return;
     }
     json_open(json, NULL, "{");
     json_open(json, "contents", "{");
-    json_string(json, "kind", "markdown");
-    json_string(json, "value", text.bytes);
+    json_text(json, "kind", "markdown");
+    json_text(json, "value", text.bytes);
     json_close(json, "}");
     diag_json_range(json, "range", here->source, span.start, span.end);
     json_close(json, "}");

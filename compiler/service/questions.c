@@ -240,7 +240,7 @@ static void write_capabilities(Service *service, void *user)
     Json *json = &service->json;
     (void)user;
     json_open(json, NULL, "{");
-    json_string(json, "positionEncoding", "utf-16");
+    json_text(json, "positionEncoding", "utf-16");
     json_ready(json, "textDocumentSync", "{\"openClose\":true,\"change\":2,\"save\":true}");
     for (size_t i = 0; i < QUESTION_COUNT; i++)
         if (questions[i].capability)
@@ -315,9 +315,9 @@ static void add_foreign(const Diagnosed *d, const char *source, const char *seve
     const Source *own = &d->analysis->sources.items[d->analysis->files.items[0]->source];
     diag_json_range(json, "range", own, use ? use->span.start : 0, use ? use->span.end : 0);
     json_ready(json, "severity", severity);
-    json_string(json, "code", code);
-    json_string(json, "source", "krs");
-    json_string(json, "message", text.bytes);
+    json_text(json, "code", code);
+    json_text(json, "source", "krs");
+    json_text(json, "message", text.bytes);
     json_close(json, "}");
 }
 

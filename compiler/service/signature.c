@@ -90,16 +90,16 @@ void answer_signature(const Here *here, const ServiceQuestion *about, Json *json
     Signature    signature;
     (void)about;
     if (!find_call(&tokens, here->offset, &call) || !find_signature(here, &call, &signature)) {
-        json_string(json, NULL, NULL);
+        json_text(json, NULL, NULL);
         return;
     }
     const char *label = signature.label.bytes;
     json_open(json, NULL, "{");
     json_open(json, "signatures", "[");
     json_open(json, NULL, "{");
-    json_string(json, "label", label);
+    json_text(json, "label", label);
     if (signature.doc)
-        json_string(json, "documentation", signature.doc);
+        json_text(json, "documentation", signature.doc);
     json_open(json, "parameters", "[");
     for (size_t i = 0; i < signature.count; i++) {
         json_open(json, NULL, "{");

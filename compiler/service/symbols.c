@@ -69,9 +69,9 @@ static void add_symbol(const Here *here, const Syntax *syntax, SymbolKind kind, 
     if (syntax_is_function(syntax))
         signature_of_function(here->analysis, syntax, &signature);
     json_open(json, NULL, "{");
-    json_string(json, "name", title_of(here, syntax));
-    json_string(json, "detail",
-                signature.label.bytes ? signature.label.bytes : syntax_kind_name(syntax->kind));
+    json_text(json, "name", title_of(here, syntax));
+    json_text(json, "detail",
+              signature.label.bytes ? signature.label.bytes : syntax_kind_name(syntax->kind));
     json_whole(json, "kind", kind);
     diag_json_range(json, "range", here->source, syntax->span.start, syntax->span.end);
     diag_json_range(json, "selectionRange", here->source, name.start, name.end);
@@ -114,7 +114,7 @@ static void add_fold(const Source *source, uint32_t start, uint32_t end, const c
     json_whole(json, "startLine", first);
     json_whole(json, "endLine", last);
     if (kind)
-        json_string(json, "kind", kind);
+        json_text(json, "kind", kind);
     json_close(json, "}");
 }
 

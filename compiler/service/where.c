@@ -69,7 +69,7 @@ void answer_definition(const Here *here, const ServiceQuestion *about, Json *jso
         const Span name = target.syntax->name_span;
         add_location(here->service, json, NULL, &here->analysis->sources.items[name.source], name);
     } else
-        json_string(json, NULL, NULL);
+        json_text(json, NULL, NULL);
 }
 
 /* ---- references ---- */
@@ -214,7 +214,7 @@ void answer_renamed(const Here *here, const ServiceQuestion *about, Json *json)
         return;
     json_open(json, NULL, "{");
     diag_json_range(json, "range", here->source, target.span.start, target.span.end);
-    json_string(json, "placeholder", target.name);
+    json_text(json, "placeholder", target.name);
     json_close(json, "}");
 }
 
@@ -392,7 +392,7 @@ void answer_rename(const Here *here, const ServiceQuestion *about, Json *json)
             json_open(json, NULL, "{");
             diag_json_range(json, "range", source, places.items[i].span.start,
                             places.items[i].span.end);
-            json_string(json, "newText", about->word);
+            json_text(json, "newText", about->word);
             json_close(json, "}");
         }
         json_close(json, "]");
@@ -421,7 +421,7 @@ void answer_links(const Here *here, const ServiceQuestion *about, Json *json)
         text_add(&path, source->name);
         json_open(json, NULL, "{");
         diag_json_range(json, "range", here->source, span.start, span.end);
-        json_string(json, "target", uri_of(here->service, path.bytes));
+        json_text(json, "target", uri_of(here->service, path.bytes));
         json_close(json, "}");
     }
     json_close(json, "]");

@@ -69,7 +69,7 @@ static void write_end(KrsStatus status, const KrsChanges *changes)
     json_number(to, "status", status);
     if (changes && status == KRS_OK) {
         json_open(to, "changes", "{");
-        json_string(to, "kind", kinds[changes->kind]);
+        json_text(to, "kind", kinds[changes->kind]);
         json_truth(to, "parameters", changes->parameters);
         json_truth(to, "components", changes->components);
         json_truth(to, "cameras", changes->cameras);
@@ -94,15 +94,15 @@ static void write_parameter(const KrsScene *scene, size_t index)
     KrsParameter p;
     krs_parameter(scene, index, &p);
     json_open(to, NULL, "{");
-    json_string(to, "name", p.name);
+    json_text(to, "name", p.name);
     json_numbers(to, "value", p.value, p.components);
     json_numbers(to, "low", p.low, p.components);
     json_numbers(to, "high", p.high, p.components);
     json_truth(to, "degrees", p.degrees);
     json_truth(to, "color", p.color);
     json_truth(to, "whole", p.whole);
-    json_string(to, "doc", p.doc);
-    json_string(to, "source", p.source);
+    json_text(to, "doc", p.doc);
+    json_text(to, "source", p.source);
     json_number(to, "start", p.start);
     json_number(to, "end", p.end);
     json_close(to, "}");
@@ -113,7 +113,7 @@ static void write_component(const KrsScene *scene, size_t index)
     KrsComponent c;
     krs_component(scene, index, &c);
     json_open(to, NULL, "{");
-    json_string(to, "name", c.name);
+    json_text(to, "name", c.name);
     json_numbers(to, "low", c.low, 3);
     json_numbers(to, "high", c.high, 3);
     json_truth(to, "exact", c.exact);
@@ -128,7 +128,7 @@ static void write_texture(const KrsScene *scene, size_t index)
     KrsTexture t;
     krs_texture(scene, index, &t);
     json_open(to, NULL, "{");
-    json_string(to, "file", t.file);
+    json_text(to, "file", t.file);
     json_number(to, "width", t.width);
     json_number(to, "height", t.height);
     json_number(to, "levels", t.levels);
@@ -145,10 +145,10 @@ static void write_image(const KrsScene *scene)
     json_number(to, "width", image.width);
     json_number(to, "height", image.height);
     json_number(to, "samples", image.samples);
-    json_string(to, "integrator", image.integrator);
+    json_text(to, "integrator", image.integrator);
     json_number(to, "exposure", image.exposure);
-    json_string(to, "tone_map", image.tone_map);
-    json_string(to, "pixel_filter", image.pixel_filter);
+    json_text(to, "tone_map", image.tone_map);
+    json_text(to, "pixel_filter", image.pixel_filter);
     json_numbers(to, "white_balance", image.white_balance, 2);
     json_close(to, "}");
 }
@@ -185,7 +185,7 @@ static void write_scene(const KrsScene *scene)
 {
     const KrsDiagnostic *too_large = krs_scene_too_large(scene);
     json_open(to, NULL, "{");
-    json_string(to, "version", krs_version());
+    json_text(to, "version", krs_version());
     json_open(to, "parameters", "[");
     for (size_t i = 0; i < krs_parameter_count(scene); i++)
         write_parameter(scene, i);
@@ -204,7 +204,7 @@ static void write_scene(const KrsScene *scene)
     json_number(to, "value_slots", (double)krs_value_slots(scene));
     json_number(to, "table_rows", (double)krs_table_rows(scene));
     json_number(to, "table_cells", (double)krs_table_cells(scene));
-    json_string(to, "too_large", too_large ? too_large->message : NULL);
+    json_text(to, "too_large", too_large ? too_large->message : NULL);
     json_close(to, "}");
 }
 
@@ -234,7 +234,7 @@ static void write_camera(KrsState *state, const char *given, size_t index)
     if (krs_state_camera(state, index, &camera) != KRS_OK)
         return;
     json_open(to, NULL, "{");
-    json_string(to, "name", given);
+    json_text(to, "name", given);
 #define KRS_CAMERA(member, ...)       ADD_MEMBER(&camera, member);
 #define KRS_CAMERA_FIXED(member, ...) json_number(to, #member, camera.member);
 #include "krs/camera.def"
@@ -247,7 +247,7 @@ static void write_light(KrsState *state, const char *given, size_t index)
     if (krs_state_light(state, index, &light) != KRS_OK)
         return;
     json_open(to, NULL, "{");
-    json_string(to, "name", given);
+    json_text(to, "name", given);
     json_truth(to, "positional", light.positional);
     json_truth(to, "shadow", light.shadow);
     json_truth(to, "spot", light.spot);
