@@ -93,6 +93,10 @@ disturb() {
         sleep 0.5
         slurmd -N "$host"
     fi
+    # Slurm lets two minutes pass before it runs tasks of a daemon that was lost again.
+    [ $((tries % 20)) -eq 0 ] && squeue -h -t PENDING -r -o '%i %r' | while read -r task reason; do
+        [ "$reason" = BeginTime ] && scontrol update "JobId=$task" StartTime=now
+    done
 }
 wait_for_slurm disturb
 echo "$killed killed" >out
