@@ -138,9 +138,11 @@ static KrsStatus submit(const Options *options, const char *path)
         status = say_usage(options, "a picture of %ux%u has not so many tiles", job.width,
                            job.height);
     if (status == KRS_OK)
-        status = job_write(&job, options->arena);
+        status = job_make_folders(&job, options->arena);
     if (status == KRS_OK)
         status = pack_scene(options, path, job_path(&job, options->arena, "scene.krsz"));
+    if (status == KRS_OK)
+        status = job_write(&job, options->arena);
     if (status == KRS_OK && options->slurm)
         status = slurm_submit(&job, options, options->slurm);
     if (status == KRS_OK && !options->quiet)

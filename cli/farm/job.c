@@ -103,6 +103,15 @@ static KrsStatus make_folder(const char *path)
     return error.status;
 }
 
+KrsStatus job_make_folders(const FarmJob *job, Arena *arena)
+{
+    static const char *const names[] = {"parts", "pieces", "probes"};
+    KrsStatus                status  = make_folder(job->folder);
+    for (size_t i = 0; i < sizeof names / sizeof *names && status == KRS_OK; i++)
+        status = make_folder(job_path(job, arena, names[i]));
+    return status;
+}
+
 KrsStatus job_write(const FarmJob *job, Arena *arena)
 {
     json_t *root  = json_pack("{s:i, s:s, s:b}", "description", DESCRIPTION, "output", job->output,
@@ -116,13 +125,7 @@ KrsStatus job_write(const FarmJob *job, Arena *arena)
         json_array_append_new(words, json_string(job->words[i]));
     json_object_set_new(root, "options", words);
     char     *text   = json_dumps(root, JSON_INDENT(2));
-    KrsStatus status = text ? make_folder(job->folder) : say_status(KRS_OUT_OF_MEMORY, job->folder);
-    if (status == KRS_OK)
-        status = make_folder(job_path(job, arena, "parts"));
-    if (status == KRS_OK)
-        status = make_folder(job_path(job, arena, "pieces"));
-    if (status == KRS_OK)
-        status = make_folder(job_path(job, arena, "probes"));
+    KrsStatus status = text ? KRS_OK : say_status(KRS_OUT_OF_MEMORY, job->folder);
     if (status == KRS_OK)
         status = write_output_text(job_path(job, arena, "job.json"), text, strlen(text));
     free(text);

@@ -37,7 +37,8 @@ typedef struct FarmPiece {
     uint32_t number, tile, first, last;
 } FarmPiece;
 
-/* Makes the folder with job.json, and says why if it cannot. */
+/* These make the folders of a job, and write job.json, which makes it one; they say why if they cannot. */
+KrsStatus job_make_folders(const FarmJob *job, Arena *arena);
 KrsStatus job_write(const FarmJob *job, Arena *arena);
 /* Reads that; KRS_IO_ERROR and words if there is no job. */
 KrsStatus job_read(Arena *arena, const char *folder, FarmJob *job);

@@ -72,6 +72,10 @@ KrsStatus probe(const FarmJob *job, const Options *options)
         text_format(&written, "-%u", job->first);
     text_add(&written, ".exr");
     const bool is_first = link(written.bytes, first) == 0;
+    if (!is_first && errno != EEXIST) {
+        say("cannot create `%s`: %s", first, strerror(errno));
+        return KRS_CANNOT_CREATE;
+    }
     if (is_first || same_bytes(written.bytes, first)) {
         rename(written.bytes, own.bytes);
         return KRS_OK;
