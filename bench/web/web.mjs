@@ -22,6 +22,7 @@ const sizes = files => {
     return `${kilobytes(bytes)}, gzip ${kilobytes(zlib.gzipSync(bytes))}, brotli ${kilobytes(zlib.brotliCompressSync(bytes))}`;
 };
 console.log(`compiler: ${sizes(['krs.wasm', 'krs.mjs', 'core.mjs', 'worker.mjs'])}`);
+console.log(`fonts, where a scene has texts: ${sizes(['letters.wasm', 'letters.mjs'])}`);
 console.log(`view: ${sizes(['index.mjs', 'compiler.mjs', 'view.mjs', 'frame.mjs', 'painter.mjs', 'picture.mjs', 'tiles.mjs', 'display.mjs', 'programs.mjs', 'shaders.mjs'])}`);
 
 // In the page: what follows is asked for by calls of `until`, which returns when something is seen of it; pictures of before

@@ -21,18 +21,21 @@ const types = { html: 'text/html', mjs: 'text/javascript', js: 'text/javascript'
     wasm: 'application/wasm', png: 'image/png', svg: 'image/svg+xml', jpg: 'image/jpeg', webmanifest: 'application/manifest+json', krs: 'text/plain', ttf: 'font/ttf' };
 
 // Serves folders on a port of this machine, a free one by default: `{ '/': 'build/web', '/examples/': 'examples' }`, or one folder for '/'.
+// `asked` are the paths that it was asked for, and those in `missing` are not found.
 export async function serve(folders, port = 0) {
+    const asked = [], missing = new Set();
     const places = Object.entries(typeof folders === 'string' ? { '/': folders } : folders).sort((a, b) => b[0].length - a[0].length);
     const server = http.createServer((request, response) => {
         const name = decodeURIComponent(new URL(request.url, 'http://here').pathname);
-        const [prefix, folder] = places.find(([start]) => name.startsWith(start)) ?? [];
+        asked.push(name);
+        const [prefix, folder] = missing.has(name) ? [] : places.find(([start]) => name.startsWith(start)) ?? [];
         const file = folder && path.join(folder, path.normalize(`/${name.slice(prefix.length)}`));
         const found = file && [file, path.join(file, 'index.html')].find(f => fs.statSync(f, { throwIfNoEntry: false })?.isFile());
         response.writeHead(found ? 200 : 404, { 'Content-Type': `${types[path.extname(found ?? '').slice(1)] ?? 'text/plain'}; charset=utf-8` });
         response.end(found ? fs.readFileSync(found) : '');
     });
     await new Promise(resolve => server.listen(port, '127.0.0.1', resolve));
-    return { url: `http://127.0.0.1:${server.address().port}`, close: () => { server.closeAllConnections?.(); server.close(); } };
+    return { url: `http://127.0.0.1:${server.address().port}`, asked, missing, close: () => { server.closeAllConnections?.(); server.close(); } };
 }
 
 // ---- the browser ----

@@ -8,7 +8,7 @@ import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const [module, folder] = process.argv.slice(2);
-const { loadCore } = await import(pathToFileURL(path.resolve(module, 'core.mjs')));
+const { loadCore, loadLetters } = await import(pathToFileURL(path.resolve(module, 'core.mjs')));
 const read = file => {
     try {
         return fs.readFileSync(file);
@@ -17,7 +17,9 @@ const read = file => {
     }
 };
 const fonts = { 'DejaVu Serif': 'DejaVuSerif.ttf', 'DejaVu Serif:bold': 'DejaVuSerif-Bold.ttf' };
+const letters = await loadLetters({ wasm: fs.readFileSync(path.join(module, 'letters.wasm')) });
 const core = await loadCore({
+    letters: () => letters,
     wasm: fs.readFileSync(path.join(module, 'krs.wasm')),
     load: read,
     font: name => ({ bytes: read(path.join('/usr/share/fonts/truetype/dejavu', fonts[name] ?? 'DejaVuSans.ttf')) }),

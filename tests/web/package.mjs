@@ -3,6 +3,9 @@
 //     node package.mjs build/web
 //
 // Prints TAP.
+import fs from 'node:fs';
+import path from 'node:path';
+import zlib from 'node:zlib';
 import { launch, serve } from './browser.mjs';
 
 let number = 0, failed = 0;
@@ -10,6 +13,11 @@ const report = (good, what) => {
     console.log(`${good ? 'ok' : 'not ok'} ${++number} - ${what}`);
     failed += !good;
 };
+
+// What a page waits for.  Servers compress, the better ones by brotli.
+const size = names => zlib.brotliCompressSync(Buffer.concat(names.map(name => fs.readFileSync(path.join(process.argv[2], name))))).length / 1000;
+const core = ['krs.wasm', 'krs.mjs', 'core.mjs', 'worker.mjs'], letters = ['letters.wasm', 'letters.mjs'];
+report(size(core) <= 600 && size(core) + size(letters) <= 800, `the compiler has at most 600 kB, with fonts 800 (${size(core)}, ${size(letters)})`);
 
 const server = await serve({ '/': 'tests/web/pages', '/krs/': process.argv[2], '/examples/': 'examples' });
 const browser = await launch();
@@ -104,12 +112,19 @@ for (const [what, text] of Object.entries(deep)) {
     report(said.length === 1 && said[0][0] === 'E0503' && /within itself/.test(said[0][1]) && said[0][2] === 0, `endless recursion is told (${said})`);
 }
 
+report(!server.asked.some(name => /letters|ttf/.test(name)), 'what reads fonts is not fetched for scenes without texts');
+server.missing.add('/krs/letters.wasm');
+report(/^fonts cannot be read: .*404|^fonts cannot be read: .*Not Found/.test(await page.evaluate(() =>
+    krs.compile('show text("krs").extrude(0.2);').catch(error => error.message))) && await page.evaluate(async () => (await krs.compile('show sphere(1);')).ok),
+'where it cannot be fetched, that is told, and other scenes are compiled');
+server.missing.clear();
+
 report(await page.evaluate(async () => {
     const parts = await krs.compile('use "part.krs"; show part();', { files: { 'part.krs': 'def part() = sphere(2);' } });
     const none = await krs.compile('use "none.krs"; show sphere(1);');
     const fetched = await krs.compile(await (await fetch('/examples/15-town.krs')).text(), { name: '15-town.krs', base: '/examples/' });
-    const letters = await krs.compile('show text("krs").extrude(0.2);');
-    return parts.ok && !none.ok && fetched.ok && letters.ok;
+    const written = await krs.compile('show text("krs").extrude(0.2);');
+    return parts.ok && !none.ok && fetched.ok && written.ok;
 }), 'files are given or fetched, and fonts are there');
 
 report(await page.evaluate(async () => {

@@ -4,7 +4,7 @@
 //     const { scene, diagnostics } = core.compile('show sphere(1);');
 //
 // What it needs from outside comes by `load` and `font`, at once: whoever has to fetch a file first compiles again when
-// it is there.  Objects of the core have memory of their own, which `free` gives back.
+// it is there.  Fonts are read by a module of its own: without `letters` there are none.  Objects of the core have memory of their own, which `free` gives back.
 import Krs from './krs.mjs';
 
 const options = { studio: 1, pictures: 2, gradients: 4, assembly: 8, figures: 16, structure: 32, automatic: 64 };
@@ -14,17 +14,29 @@ export const targets = ['glsl', 'essl', 'wgsl'];
 const bitsOf = (names, wanted) =>
     Object.entries(names).reduce((bits, [name, bit]) => (wanted[name] ? bits | bit : bits), 0);
 
-// The bytes of the module: those that are given, or what is at a place, beside this file by default.
+// The bytes of a module: those that are given, or what is at a place.
 async function instantiate(wasm, imports) {
     if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm))
         return WebAssembly.instantiate(wasm, imports);
-    const response = await fetch(wasm ?? new URL('krs.wasm', import.meta.url));
+    const response = await fetch(wasm);
+    if (!response.ok)
+        throw new Error(`${response.url}: ${response.statusText || response.status}`);
     if (response.headers.get('Content-Type') === 'application/wasm')
         return WebAssembly.instantiateStreaming(response, imports);
     return WebAssembly.instantiate(await response.arrayBuffer(), imports);
 }
 
-export async function loadCore({ wasm, load = () => null, font = () => null, progress = () => true } = {}) {
+// A module that emcc has linked, with what its page supplies.
+const begin = (make, wasm, supplied = {}) => new Promise((resolve, reject) => make({
+    instantiateWasm: (imports, done) => {
+        instantiate(wasm, imports).then(made => done(made.instance), reject);
+        return {};
+    },
+    ...supplied,
+}).then(resolve, reject));
+
+export async function loadCore({ wasm = new URL('krs.wasm', import.meta.url), load = () => null, font = () => null, letters = () => null,
+    progress = () => true } = {}) {
     let core;
     // Bytes that the core frees, and how many they are.
     const give = (bytes, length) => {
@@ -35,25 +47,27 @@ export async function loadCore({ wasm, load = () => null, font = () => null, pro
         core.words()[length >> 2] = given.length;
         return at;
     };
-    const module = await new Promise((resolve, reject) => Krs({
-        instantiateWasm: (imports, done) => {
-            instantiate(wasm, imports).then(made => done(made.instance), reject);
-            return {};
-        },
+    const module = await begin(Krs, wasm, {
         load: (path, length) => give(load(core.string(path)), length),
         font: (name, length, face) => {
-            const found = font(name ? core.string(name) : null);
+            const reader = letters(), found = font(name ? core.string(name) : null);
             core.words()[face >> 2] = found?.face ?? 0;
-            return give(found?.bytes, length);
+            return give(reader && found?.bytes, length);
         },
+        letters: (font, length, face, text, lettering, count) => letters().drawFor(core, font, length, face, text, lettering, count),
         progress: done => progress(done),
-    }).then(resolve, reject));
+    });
     core = new Core(module);
     return core;
 }
 
-// Calls into memory of the module, and what goes there and comes from there.
-class Core {
+// Reads fonts for a core (web/letters/letters.h).
+export async function loadLetters({ wasm = new URL('letters.wasm', import.meta.url) } = {}) {
+    const { default: make } = await import('./letters.mjs');
+    return new Letters(await begin(make, wasm));
+}
+
+class Memory {
     constructor(module) {
         this.m = module;
     }
@@ -64,10 +78,13 @@ class Core {
     // A copy of numbers in memory.
     copy(Type, at, count) { return new Type(this.bytes().buffer, at, count).slice(); }
 
-    string(at) {
+    // The bytes of a text, with the 0 at its end.
+    textBytes(at) {
         const bytes = this.bytes();
-        return new TextDecoder().decode(bytes.subarray(at, bytes.indexOf(0, at)));
+        return bytes.subarray(at, bytes.indexOf(0, at) + 1);
     }
+
+    string(at) { return new TextDecoder().decode(this.textBytes(at).subarray(0, -1)); }
 
     // Puts bytes into memory, with a 0 behind them.
     put(bytes) {
@@ -79,16 +96,6 @@ class Core {
         return at;
     }
 
-    putText(text) {
-        const bytes = new TextEncoder().encode(text);
-        return [this.put(bytes), bytes.length];
-    }
-
-    putNumbers(numbers) {
-        const from = Float64Array.from(numbers);
-        return this.put(new Uint8Array(from.buffer));
-    }
-
     // Calls with pieces of memory that are freed behind it.
     using(pieces, call) {
         try {
@@ -97,6 +104,34 @@ class Core {
             for (const at of pieces)
                 this.m._free(at);
         }
+    }
+}
+
+const letteringBytes = 32; // of Lettering: three numbers and what aligns lines
+
+class Letters extends Memory {
+    // Takes and gives what letters_of does, in memory of a core.
+    drawFor(core, font, length, face, text, lettering, count) {
+        const pieces = [core.bytes().subarray(font, font + length), core.textBytes(text),
+            core.bytes().subarray(lettering, lettering + letteringBytes), new Uint8Array(4)].map(bytes => this.put(bytes));
+        return this.using(pieces, (font, text, lettering, made) => {
+            const drawn = this.m._letters_of(font, length, face, text, lettering, made), numbers = this.words()[made >> 2];
+            core.words()[count >> 2] = numbers;
+            return drawn ? this.using([drawn], () => core.put(this.bytes().subarray(drawn, drawn + 8 * numbers))) : 0;
+        });
+    }
+}
+
+// Calls into memory of the module, and what goes there and comes from there.
+class Core extends Memory {
+    putText(text) {
+        const bytes = new TextEncoder().encode(text);
+        return [this.put(bytes), bytes.length];
+    }
+
+    putNumbers(numbers) {
+        const from = Float64Array.from(numbers);
+        return this.put(new Uint8Array(from.buffer));
     }
 
     answer() { return JSON.parse(this.string(this.m._core_answer())); }

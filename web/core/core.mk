@@ -10,18 +10,21 @@ emcc_flags = $(shell $(EMCC) --cflags)
 EMCC_ROOT  = $(call once,EMCC_ROOT,emcc_root)
 EMCC_FLAGS = $(call once,EMCC_FLAGS,emcc_flags)
 WASM_CC    = $(shell command -v ccache) $(EMCC_ROOT)/clang $(EMCC_FLAGS)
-# A page waits for bytes first: only what takes most of the time is compiled for speed.
-WASM_FLAGS = $(if $(filter compiler/graph/% compiler/base/elementary.c compiler/shape/box.c compiler/shape/cover.c mesh/contour/% mesh/proof/%,$<),-O2,-Os) \
+# A page waits for bytes first: only what takes most of the time is compiled for speed.  Linking by -Oz would make
+# compilations a third slower.
+WASM_FLAGS = $(if $(filter $(wildcard compiler/graph/*.c) compiler/base/elementary.c compiler/shape/box.c compiler/shape/cover.c mesh/contour/% mesh/proof/%,$<),-O2,-Os) \
              -ffunction-sections -fdata-sections -ffp-contract=off
 
 # ---- sources ----
 
-# Left out: what makes SPIR-V, and what reads OpenEXR.
-WASM_SOURCES := $(filter-out $(TARGET) %/exr.c %/exr_chunks.c %_avx2.c %_avx512.c %/sets_x86.c,$(COMPILER)) \
+# Left out: what makes SPIR-V, what reads OpenEXR, and what reads fonts.
+WASM_SOURCES := $(filter-out $(TARGET) compiler/outline/letters.c %/exr.c %/exr_chunks.c %_avx2.c %_avx512.c %/sets_x86.c,$(COMPILER)) \
                 compiler/graph/lanes/sets_plain.c $(call sources,platform/web) \
                 $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh,$(call sources,$(room))) \
                 $(call sources,web/core)
 WASM_OBJECTS := $(WASM_SOURCES:%.c=$(W)/%.o) $(W)/library_files.o $(W)/helper_files.o $(W)/essl_files.o
+# A module of its own, which few pages need.
+LETTER_SOURCES := compiler/outline/letters.c compiler/base/arena.c compiler/base/text.c platform/web/pages.c $(call sources,web/letters)
 
 # ---- libraries ----
 
@@ -34,7 +37,8 @@ FREETYPE := $(addprefix freetype/src/,base/ftbase base/ftinit base/ftsystem base
             gzip/ftgzip sfnt/sfnt truetype/truetype cff/cff psaux/psaux psnames/psnames)
 ZLIB     := $(addprefix zlib/,adler32 crc32 inffast inflate inftrees zutil)
 PNG      := $(addprefix libpng1.6/,png pngerror pngget pngmem pngread pngrio pngrtran pngrutil pngset pngtrans)
-WASM_LIBRARIES := $(QHULL) $(EXPAT) $(FREETYPE) $(ZLIB) $(PNG) harfbuzz/src/harfbuzz meshoptimizer/src/simplifier
+WASM_LIBRARIES := $(QHULL) $(EXPAT) $(ZLIB) $(PNG) meshoptimizer/src/simplifier
+LETTER_LIBRARIES := $(FREETYPE) $(filter %/inffast %/inflate %/inftrees %/zutil %/adler32 %/crc32,$(ZLIB)) harfbuzz/src/harfbuzz
 WASM_HEADERS   := $(addprefix -isystem $(SOURCES_OF)/,qhull/src expat/expat/lib freetype/include harfbuzz/src libpng1.6 zlib \
                   meshoptimizer/src) -Iweb/core/libraries
 LIBRARY_FLAGS   = $(WASM_CC) -w -Oz -ffunction-sections -fdata-sections $(WASM_HEADERS)
@@ -59,7 +63,7 @@ $(SOURCES_OF)/libpng1.6/pnglibconf.h: $(W)/libraries web/core/core.mk
 	@awk -v parts="$(PNG_PARTS)" 'BEGIN { split(parts, names); for (i in names) kept["PNG_" names[i] "_SUPPORTED"] = 1 } \
 	    !/_SUPPORTED/ || kept[$$2]' $(@D)/scripts/pnglibconf.h.prebuilt >$@
 $(PNG:%=$(SOURCES_OF)/%.o): $(SOURCES_OF)/libpng1.6/pnglibconf.h
-$(WASM_LIBRARIES:%=$(SOURCES_OF)/%.o): $(W)/libraries web/core/core.mk $(wildcard web/core/libraries/*.h)
+$(sort $(WASM_LIBRARIES:%=$(SOURCES_OF)/%.o) $(LETTER_LIBRARIES:%=$(SOURCES_OF)/%.o)): $(W)/libraries web/core/core.mk $(wildcard web/core/libraries/*.h)
 	@echo "compile $(@:$(W)/%.o=%)"
 	@$(LIBRARY_FLAGS) -c -o $@ $(firstword $(wildcard $(@:.o=.c) $(@:.o=.cc) $(@:.o=.cpp)))
 
@@ -83,7 +87,7 @@ $(W)/library_files.o: $(W)/library_files.c | $(W)/libraries
 # There are no vectors, and nothing traces rays by cells.
 $(LANES:%.c=$(W)/%.o) $(W)/compiler/graph/lanes/sets_plain.o: WASM_FLAGS += -Os -fno-unroll-loops -Wno-pass-failed -DWITHOUT_CELLS
 # Each call in a function that has setjmp takes much space.
-JUMPING := $(shell grep -lw 'jmp_buf' $(WASM_SOURCES))
+JUMPING := $(shell grep -lw 'jmp_buf' $(WASM_SOURCES) $(LETTER_SOURCES))
 $(JUMPING:%.c=$(W)/%.o): WASM_FLAGS += -fno-inline-functions
 
 # ---- the module ----
@@ -95,18 +99,24 @@ ASKED     := scene_free state_free state_set state_set_time state_fit_camera sta
              value_slots state_values table_rows table_cells state_tables state_table_inputs distance normal mesh_free
 comma     := ,
 empty     :=
-exported   = $(subst $(empty) $(empty),$(comma),$(patsubst %,_%,malloc free $(call core_names) $(ASKED:%=krs_%)))
-MODULE    := -sMODULARIZE=1 -sEXPORT_NAME=Krs -sFILESYSTEM=0 -sENVIRONMENT=web,worker -sALLOW_MEMORY_GROWTH=1 \
-             -sINITIAL_MEMORY=16MB -sMAXIMUM_MEMORY=2GB -sTOTAL_STACK=4MB -sINCOMING_MODULE_JS_API=instantiateWasm,load,font,progress \
-             -sEXPORTED_RUNTIME_METHODS=HEAPU8
+exported   = $(subst $(empty) $(empty),$(comma),$(patsubst %,_%,malloc free $(1)))
+# The options of a module, by its functions and what its page supplies.
+module_of  = -sMODULARIZE=1 -sEXPORT_NAME=Krs -sEXPORTED_FUNCTIONS=$(call exported,$(1)) -sINCOMING_MODULE_JS_API=$(2) -sFILESYSTEM=0 \
+             -sENVIRONMENT=web,worker -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=2GB -sEXPORTED_RUNTIME_METHODS=HEAPU8
+# Links a module, whose options are given.
+define LINK_MODULE
+@echo "link   $@"
+@NODE_PATH=/usr/share/nodejs $(EMCC) -Os $(1) -o $(@:.wasm=.js) $(filter %.o,$^)
+@{ cat $(@:.wasm=.js); echo 'export default Krs;'; } >$(@:.wasm=.mjs)
+@rm $(@:.wasm=.js)
+endef
 
-wasm: $(W)/krs.wasm $(W)/core.mjs
+wasm: $(addprefix $(W)/,krs.wasm letters.wasm core.mjs)
 $(W)/krs.wasm: $(WASM_OBJECTS) $(WASM_LIBRARIES:%=$(SOURCES_OF)/%.o) web/core/page.js web/core/core.h web/core/core.mk
-	@echo "link   $@"
-	@NODE_PATH=/usr/share/nodejs $(EMCC) -Os --js-library web/core/page.js -sEXPORTED_FUNCTIONS=$(call exported) $(MODULE) \
-	    -o $(W)/krs.js $(filter %.o,$^)
-	@{ cat $(W)/krs.js; echo 'export default Krs;'; } >$(W)/krs.mjs
-	@rm $(W)/krs.js
+	$(call LINK_MODULE,--js-library web/core/page.js -sINITIAL_MEMORY=16MB -sTOTAL_STACK=4MB \
+	    $(call module_of,$(core_names) $(ASKED:%=krs_%),instantiateWasm$(comma)load$(comma)font$(comma)letters$(comma)progress))
+$(W)/letters.wasm: $(LETTER_SOURCES:%.c=$(W)/%.o) $(LETTER_LIBRARIES:%=$(SOURCES_OF)/%.o) web/core/core.mk
+	$(call LINK_MODULE,$(call module_of,letters_of,instantiateWasm))
 $(W)/core.mjs: web/core/core.mjs
 	@cp $< $@
 .PHONY: wasm

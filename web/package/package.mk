@@ -6,12 +6,12 @@ FONTS_AT   ?= /usr/share/fonts/truetype/dejavu
 PAGE_FILES := $(notdir $(wildcard web/package/*.mjs)) krs.d.ts package.json README.md
 PAGE_FONTS := DejaVuSans.ttf DejaVuSans-Bold.ttf DejaVuSerif.ttf DejaVuSerif-Bold.ttf
 
-web: $(PAGE_FILES:%=$(P)/%) $(addprefix $(P)/,krs.wasm krs.mjs core.mjs shaders.mjs albedos.bin LICENSE) $(PAGE_FONTS:%=$(P)/fonts/%)
+web: $(PAGE_FILES:%=$(P)/%) $(addprefix $(P)/,krs.wasm krs.mjs letters.wasm letters.mjs core.mjs shaders.mjs albedos.bin LICENSE) $(PAGE_FONTS:%=$(P)/fonts/%)
 $(PAGE_FILES:%=$(P)/%): $(P)/%: web/package/%
 	@mkdir -p $(@D) && cp $< $@
-$(addprefix $(P)/,krs.wasm krs.mjs core.mjs): $(P)/%: $(W)/%
+$(addprefix $(P)/,krs.wasm krs.mjs letters.wasm letters.mjs core.mjs): $(P)/%: $(W)/%
 	@mkdir -p $(@D) && cp $< $@
-$(W)/krs.mjs: $(W)/krs.wasm
+$(W)/%.mjs: $(W)/%.wasm ;
 $(P)/shaders.mjs: web/picture/flatten.mjs $(wildcard web/picture/*.frag web/picture/*.glsl) $(SHADERS) $(HELPERS) $(wildcard include/krs/*.def)
 	@mkdir -p $(@D) && node $< >$@
 $(P)/albedos.bin: web/picture/albedos.mjs $(B)/albedo_tables.c

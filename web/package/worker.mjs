@@ -1,6 +1,6 @@
 // worker.mjs: the compiler, in a worker.  Answers the calls of compiler.mjs: { id, call, args } by { id, value } or
 // { id, error }; a mesh tells its progress by { id, done } before.
-import { loadCore } from './core.mjs';
+import { loadCore, loadLetters } from './core.mjs';
 
 const projections = ['perspective', 'orthographic', 'panorama'];
 // The usual fonts, by the names that scenes have for them; '' is what texts have that name none.
@@ -20,6 +20,8 @@ const fetched = new Map();
 // Addresses that a compilation has asked for and that are not there yet.
 let missing = new Set();
 let current = {}; // the options of the text that is compiled
+// What reads fonts: it is fetched when a scene has a text.
+let reader = null, wantsReader = false;
 
 function bytesAt(address) {
     if (!fetched.has(address))
@@ -34,6 +36,11 @@ function load(path) {
     return bytesAt(new URL(path, current.base).href);
 }
 
+function letters() {
+    wantsReader = !reader;
+    return reader;
+}
+
 function font(name) {
     const given = current.fonts?.[name ?? ''] ?? usualFonts[name ?? ''];
     if (given === undefined)
@@ -43,11 +50,13 @@ function font(name) {
 }
 
 async function fetchMissing() {
-    await Promise.all(Array.from(missing, async address => {
+    const files = Array.from(missing, async address => {
         const response = await fetch(address).catch(() => null);
         fetched.set(address, response?.ok ? new Uint8Array(await response.arrayBuffer()) : null);
-    }));
-    missing.clear();
+    });
+    if (wantsReader)
+        reader = await loadLetters().catch(error => { throw new Error(`fonts cannot be read: ${error.message}`); });
+    await Promise.all(files);
 }
 
 // Compiles, again as long as files have to be fetched for it.
@@ -55,8 +64,9 @@ async function withFiles(options, compile) {
     for (;;) {
         current = options;
         missing.clear();
+        wantsReader = false;
         const made = compile();
-        if (missing.size === 0)
+        if (missing.size === 0 && !wantsReader)
             return made;
         made.scene?.free();
         await fetchMissing();
@@ -359,5 +369,5 @@ async function answer({ id, call, args }) {
 }
 
 // Calls are answered one after the other: a text that waits for files keeps what follows waiting.
-let last = loadCore({ load, font, progress: done => (report(done), true) }).then(made => { core = made; });
+let last = loadCore({ load, font, letters, progress: done => (report(done), true) }).then(made => { core = made; });
 self.onmessage = ({ data }) => { last = last.then(() => answer(data), error => postMessage({ id: data.id, error: error.message })); };
