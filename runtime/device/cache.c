@@ -30,6 +30,7 @@ static const char *const endings[CACHE_KIND_COUNT] = {
     [CACHE_SPIRV]     = ".spirv",
     [CACHE_PIPELINES] = ".pipelines",
     [CACHE_STRUCTURE] = ".structure",
+    [CACHE_LOSS]      = ".loss",
 };
 static const char temporary_prefix[] = ".krs-cache-";
 

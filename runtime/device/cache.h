@@ -27,6 +27,7 @@ typedef enum CacheKind {
     CACHE_SPIRV,
     CACHE_PIPELINES,
     CACHE_STRUCTURE, /* whether scenes of a structure are edited; it is compiled from nothing */
+    CACHE_LOSS,      /* what pictures without a shader have lost (film/executor.c) */
     CACHE_KIND_COUNT
 } CacheKind;
 

@@ -176,10 +176,11 @@ static ShaderCode take_code(ShaderBuild *build)
     return code;
 }
 
-bool shader_is_known(Gpu *gpu, const ShaderSource *source)
+bool shader_is_known(Gpu *gpu, const ShaderSource *source, CacheKey *key)
 {
     ShaderBuild build;
     const bool  known = begin(gpu, &build, source) && (build.found || build.shared);
+    *key              = build.key;
     release(gpu, &build);
     return known;
 }

@@ -67,8 +67,8 @@ typedef struct ShaderRequest {
     ShaderSource source;
 } ShaderRequest;
 
-/* Tells whether a shader of this text is in the cache, or was made by this process. */
-bool shader_is_known(Gpu *gpu, const ShaderSource *source);
+/* Tells whether a shader of this text is in the cache, or was made by this process, and its key there. */
+bool shader_is_known(Gpu *gpu, const ShaderSource *source, CacheKey *key);
 /* These compile several shaders at the same time, and make them pipelines of a device.  Codes are
    the caller's to release, in either case; a shader that was not made is zero. */
 bool shader_compile_all(Gpu *gpu, const ShaderRequest *requests, size_t count, ShaderCode *codes,

@@ -3,11 +3,13 @@
  *
  * Lanes of the host trace at once.  Shaders take less time for most scenes, but compilers take theirs first.  So small parts of a
  * picture are marched by lanes, and shaders are compiled only when lanes would take longer than compilers and shaders do,
- * the pictures before counted.  So together they take at most twice as long as who would have been the better choice.
+ * the pictures before counted, those of other processes too.  So together they take at most twice as long as who would have
+ * been the better choice.
  */
 #include "runtime/film/executor.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "compiler/base/parallel.h"
 #include "runtime/tracer/lane_fields.h"
@@ -34,13 +36,35 @@
 /* Multiplications and additions of shaders in a millisecond, with those that they skip. */
 #define FLOPS_OF_MS 4e7
 
-static double compile_ms(KrsRendering *rendering)
+/* ---- What the cache has ---- */
+
+static double load_loss(Gpu *gpu, CacheKey key)
 {
-    const double bytes = (double)rendering->program->glsl_length,
-                 above = fmax(bytes - LONG_TEXT, 0);
+    size_t length = 0;
+    double loss   = 0;
+    void  *bytes  = cache_load(&gpu->cache, CACHE_LOSS, key, &length);
+    if (bytes && length == sizeof loss)
+        memcpy(&loss, bytes, sizeof loss);
+    gpu_release(gpu, bytes);
+    return loss;
+}
+
+static void store_loss(Gpu *gpu, const LaneTimes *times)
+{
+    const double loss = times->lost_before + times->lost;
+    if (times->keeps && times->lost > 0)
+        cache_store(&gpu->cache, CACHE_LOSS, times->key, &loss, sizeof loss);
+}
+
+/* ---- Times ---- */
+
+/* known: the cache has the shaders. */
+static double compile_ms(const KrsProgram *program, bool known)
+{
+    const double bytes = (double)program->glsl_length, above = fmax(bytes - LONG_TEXT, 0);
     const double fresh = COMPILE_MS + COMPILE_MS_OF_BYTE * bytes +
                          COMPILE_MS_OF_SQUARES * above * above;
-    return shaders_are_known(rendering) ? KNOWN * fresh : fresh;
+    return known ? KNOWN * fresh : fresh;
 }
 
 /* Measures what a sample takes, with the rays to lights; false with the failure noted. */
@@ -60,15 +84,20 @@ static bool try_lanes(Job *job, LaneTrial *trial)
 /* Measures what a sample of a pixel takes. */
 static bool find_times(Job *job, LaneTimes *times)
 {
-    const double pixels = (double)job->options.width * job->options.height;
-    LaneTrial    trial;
+    const double      pixels  = (double)job->options.width * job->options.height;
+    const KrsProgram *program = job->rendering->program;
+    CacheKey          key;
+    LaneTrial         trial;
     if (!try_lanes(job, &trial))
         return false;
-    *times = (LaneTimes){.compile = compile_ms(job->rendering),
-                         .known   = true,
-                         .lanes   = trial.ms / pixels,
-                         .shaders = trial.evaluations * job->rendering->program->flops / pixels /
-                                    FLOPS_OF_MS};
+    const bool known = shaders_are_known(job->rendering, &key);
+    *times           = (LaneTimes){.compile     = compile_ms(program, known),
+                                   .known       = true,
+                                   .keeps       = !known,
+                                   .key         = key,
+                                   .lost_before = known ? 0 : load_loss(job->gpu, key),
+                                   .lanes       = trial.ms / pixels,
+                                   .shaders     = trial.evaluations * program->flops / pixels / FLOPS_OF_MS};
     return true;
 }
 
@@ -83,7 +112,8 @@ static bool lanes_are_faster(Job *job, uint32_t samples, bool *failed)
     }
     const double rays = (double)job->options.width * job->options.height * samples;
     times->lost += rays * (times->lanes - times->shaders);
-    return times->lost <= times->compile;
+    store_loss(job->gpu, times);
+    return times->lost_before + times->lost <= times->compile;
 }
 
 /* Compiles what was left for later. */
@@ -120,7 +150,10 @@ bool executor_try_lanes(Job *job, double *lanes_ms, double *compiler_ms)
         gpu_refuse(job->gpu, KRS_BAD_ARGUMENT, "lanes cannot draw this alone: %s", reason);
     if (reason || !try_lanes(job, &trial))
         return false;
-    *lanes_ms    = trial.ms;
-    *compiler_ms = job->rendering->deferred ? compile_ms(job->rendering) : 0;
+    *lanes_ms = trial.ms;
+    CacheKey key;
+    *compiler_ms = job->rendering->deferred ? compile_ms(job->rendering->program,
+                                                         shaders_are_known(job->rendering, &key))
+                                            : 0;
     return true;
 }

@@ -43,10 +43,12 @@ typedef struct LaneFields {
 } LaneFields;
 
 /* Milliseconds of a sample of a pixel, by lanes and by shaders, of compilers, and what lanes have taken longer than shaders
-   would have. */
+   would have: `lost` by this process, `lost_before` by others, as the cache knows by the key. */
 typedef struct LaneTimes {
-    bool   known;
-    double lanes, shaders, compile, lost;
+    bool     known;
+    bool     keeps; /* the cache is to have what is lost, as it does not have the shaders */
+    double   lanes, shaders, compile, lost, lost_before;
+    CacheKey key;
 } LaneTimes;
 
 /* Shaders that are made while the host does other work (prewarm_thread.c). */

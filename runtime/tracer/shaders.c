@@ -335,14 +335,15 @@ static void request_all(Requests *requests, KrsPurpose purpose)
     }
 }
 
-bool shaders_are_known(KrsRendering *rendering)
+bool shaders_are_known(KrsRendering *rendering, CacheKey *key)
 {
     Requests      requests = {.rendering = rendering};
     ShaderSource *last     = NULL;
+    *key                   = (CacheKey){0};
     request_all(&requests, rendering->purpose);
     for (size_t i = 0; i < requests.count; i++)
         last = requests.items[i].source.scene ? &requests.items[i].source : last;
-    return !requests.failed && last && shader_is_known(&rendering->renderer->gpu, last);
+    return !requests.failed && last && shader_is_known(&rendering->renderer->gpu, last, key);
 }
 
 bool shaders_create(KrsRendering *rendering, KrsPurpose purpose)

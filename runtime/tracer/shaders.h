@@ -45,8 +45,8 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
                      bool planes, PathShaders *shaders);
 
 /* Tells whether the shaders that a rendering defers have been compiled before, here or as the cache knows: looks for one
-   of them. */
-bool shaders_are_known(KrsRendering *rendering);
+   of them, whose key there is *key; of zeros where the scene has none. */
+bool shaders_are_known(KrsRendering *rendering, CacheKey *key);
 /* Makes the shaders for a purpose, pictures with default options or queries, unless they exist, or are
    those that a rendering defers. */
 bool shaders_create(KrsRendering *rendering, KrsPurpose purpose);

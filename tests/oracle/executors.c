@@ -16,6 +16,8 @@
 
 #include <cmocka.h>
 
+#include "tests/support/device.h"
+#include "tests/support/folder.h"
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
 
@@ -519,17 +521,74 @@ static void first_pictures_wait_for_no_compiler(void **context)
     }
 }
 
+/* Returns a renderer as that of another process: with a cache in the current folder. */
+static KrsRenderer *new_process(void)
+{
+    const KrsRendererOptions options = {.device = tested_device(), .cache = "cache"};
+    KrsRenderer             *other   = NULL;
+    assert_int_equal(krs_renderer_new(&options, &other), KRS_OK);
+    return other;
+}
+
+/* Returns as many samples as lanes draw in a twentieth of the time that compilers take. */
+static uint32_t samples_of_a_twentieth(KrsScene *scene, KrsState *state)
+{
+    KrsRenderer           *process = new_process();
+    const KrsRenderOptions options = {.width = 96, .height = 54};
+    double                 lanes = 0, compilers = 0;
+    KrsRendering          *rendering;
+    KrsFilm               *film;
+    assert_int_equal(krs_rendering_new(process, scene, KRS_FOR_FIRST_PICTURES, &rendering), KRS_OK);
+    assert_int_equal(krs_film_new(rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_try_lanes(film, state, NULL, &lanes, &compilers), KRS_OK);
+    krs_film_free(film);
+    krs_rendering_free(rendering);
+    krs_renderer_free(process);
+    return 1 + (uint32_t)(compilers / lanes / 20);
+}
+
+/* Processes that each draw little by lanes together lose what compilers take; then one compiles. */
+static void what_processes_lose_is_added(void **context)
+{
+    enum { MOST = 400 };
+    char      text[128];
+    KrsScene *scene;
+    KrsState *state;
+    size_t    shaders = 0;
+    int       drawn   = 0;
+    (void)context;
+    snprintf(text, sizeof text, "show torus(1, 0.3) | sphere(0.6%d);", (int)getpid());
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_state_new(scene, &state), KRS_OK);
+    const uint32_t samples = samples_of_a_twentieth(scene, state);
+    for (; shaders == 0 && drawn < MOST; drawn++) {
+        KrsRenderer  *process = new_process();
+        KrsRendering *rendering;
+        assert_int_equal(krs_rendering_new(process, scene, KRS_FOR_FIRST_PICTURES, &rendering),
+                         KRS_OK);
+        shaders = shaders_with_scene(rendering, state, KRS_EXECUTOR_DEFAULT, samples);
+        krs_rendering_free(rendering);
+        krs_renderer_free(process);
+    }
+    print_message("compiled for picture %d of %u samples\n", drawn, samples);
+    assert_true(drawn > 1 && drawn < MOST);
+    krs_state_free(state);
+    krs_scene_free(scene);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures_are_the_same),
-                                       cmocka_unit_test(pictures_of_all_cameras_are_the_same),
-                                       cmocka_unit_test(another_lens_is_seen),
-                                       cmocka_unit_test(a_moved_scene_is_seen),
-                                       cmocka_unit_test(what_lanes_do_not_know_is_refused),
-                                       cmocka_unit_test(what_is_too_large_for_shaders_is_drawn),
-                                       cmocka_unit_test(crops_are_parts_of_the_whole),
-                                       cmocka_unit_test(what_is_kept_changes_nothing),
-                                       cmocka_unit_test(trying_lanes_compiles_nothing),
-                                       cmocka_unit_test(first_pictures_wait_for_no_compiler)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_are_the_same),
+        cmocka_unit_test(pictures_of_all_cameras_are_the_same),
+        cmocka_unit_test(another_lens_is_seen),
+        cmocka_unit_test(a_moved_scene_is_seen),
+        cmocka_unit_test(what_lanes_do_not_know_is_refused),
+        cmocka_unit_test(what_is_too_large_for_shaders_is_drawn),
+        cmocka_unit_test(crops_are_parts_of_the_whole),
+        cmocka_unit_test(what_is_kept_changes_nothing),
+        cmocka_unit_test(trying_lanes_compiles_nothing),
+        cmocka_unit_test(first_pictures_wait_for_no_compiler),
+        cmocka_unit_test_setup_teardown(what_processes_lose_is_added, enter_folder, leave_folder)};
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);
 }
