@@ -13,10 +13,12 @@
 #include "cli/farm/report.h"
 #include "cli/farm/slurm.h"
 #include "cli/picture/frame_paths.h"
+#include "cli/options/values.h"
 #include "cli/picture/picture.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/console.h"
 #include "cli/shell/supervise.h"
+#include "runtime/film/doublings.h"
 
 /* ---- submit ---- */
 
@@ -74,6 +76,27 @@ static const char *whole_path(Arena *arena, const char *path)
     return whole.bytes;
 }
 
+/* Refuses to divide samples where `krs render` would refuse it. */
+static KrsStatus check_ranges(const Options *options, const FarmJob *job, double noise)
+{
+    const uint32_t blocks = (job->samples + SAMPLES_OF_BLOCK - 1) / SAMPLES_OF_BLOCK;
+    if (job->ranges > blocks)
+        return say_usage(options, "%u samples are at most %u range%s, of %d each", job->samples,
+                         blocks, blocks == 1 ? "" : "s", SAMPLES_OF_BLOCK);
+    KrsRenderOptions how    = options->how;
+    KrsStatus        status = KRS_OK;
+    how.samples             = job->samples;
+    for (uint32_t range = 0; range < job->ranges && status == KRS_OK; range++) {
+        Options piece = *options;
+        piece.command = COMMAND_RENDER;
+        if (!read_samples(&piece, job_samples(job, options->arena, range)))
+            return KRS_INTERNAL;
+        piece.command = options->command;
+        status        = samples_check(&piece, &how, how.noise > 0 ? how.noise : noise);
+    }
+    return status;
+}
+
 static KrsStatus find_size(const Options *options, const char *path, FarmJob *job)
 {
     KrsScene *scene;
@@ -96,6 +119,11 @@ static KrsStatus find_size(const Options *options, const char *path, FarmJob *jo
         job->height                 = how->height         ? how->height
                                       : view.image.height ? view.image.height
                                                           : KRS_DEFAULT_HEIGHT;
+        job->samples                = how->samples         ? how->samples
+                                      : view.image.samples ? view.image.samples
+                                                           : KRS_DEFAULT_SAMPLES;
+        if (job->ranges > 1)
+            status = check_ranges(options, job, view.image.noise);
     }
     krs_state_free(state);
     krs_scene_free(scene);
@@ -124,6 +152,7 @@ static KrsStatus submit(const Options *options, const char *path)
                       .last     = options->animated ? options->last_frame : 0,
                       .across   = options->farm_tiles[0] ? options->farm_tiles[0] : 1,
                       .down     = options->farm_tiles[1] ? options->farm_tiles[1] : 1,
+                      .ranges   = options->split_samples,
                       .chunk    = options->chunk};
     text_format(&folder, "%s.farm", scene_name(options->arena, path));
     job.folder = whole_path(options->arena, options->farm_job ? options->farm_job : folder.bytes);

@@ -137,7 +137,10 @@ static KrsStatus choose_how(Render *render)
     how->integrator   = find_integrator(how->integrator, view.image.integrator);
     how->progress     = show_progress;
     how->user         = render;
-    return check_how(render);
+    if (options->first_sample > 0)
+        how->aovs = KRS_AOV_COLOR; /* the others come from the first sample */
+    status = check_how(render);
+    return status == KRS_OK ? samples_check(options, how, render->noise) : status;
 }
 
 static void show_stats(Render *render, const KrsRenderStats *stats, uint32_t frame)
@@ -162,7 +165,7 @@ static KrsStatus write_outputs(Render *render, const KrsPicture *picture, double
     const Options *options = render->options;
     KrsView        view;
     KrsStatus      status  = krs_state_view(render->state, render->how.camera, &view);
-    PictureNotes   notes   = {.scene = render->scene, .time = time};
+    PictureNotes   notes   = {.scene = render->scene, .time = time, .sums = render->sums};
     notes.display.exposure = isnan(options->exposure) ? view.image.exposure : options->exposure;
     notes.display.white_balance = options->white_balance;
     if (!(options->white_balance.kelvins > 0))
@@ -205,10 +208,15 @@ static KrsStatus render_picture(Render *render, uint32_t frame, KrsPicture **pic
 {
     if (render->options->stereo >= 0)
         return render_eyes(render, picture);
-    if (!render->options->resume)
+    if (!render->options->resume && !render->options->samples_divided)
         return krs_render(render->rendering, render->state, &render->how, picture);
-    const CheckpointFrame resumed = {render->rendering, render->state, &render->how,
-                                     render->samples, frame};
+    const CheckpointFrame resumed = {
+        render->rendering,
+        render->state,
+        &render->how,
+        render->options->samples_divided ? render->options->last_sample + 1 : render->samples,
+        frame,
+        &render->sums};
     return checkpoint_render(&render->checkpoint, &resumed, picture);
 }
 
@@ -262,6 +270,8 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     }
     status = write_outputs(render, picture, time, frame);
     free_others(render);
+    free(render->sums.numbers);
+    render->sums.numbers = NULL;
     if (status == KRS_OK)
         show_stats(render, &picture->stats, frame);
     render_faults_add(&render->faults, picture, render->noise);

@@ -16,7 +16,7 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_fixture.c queried.c \
                cache_folder.c compiled_files.c crossings.c instance_scene.c closed_forms.c)
 PROPERTY_SHARED := $(addprefix tests/property/, instance_parts.c garden.c op_trial.c reach_instances.c)
-UNIT        := specks texts watchdog front service service_random synonyms arguments visibility diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
+UNIT        := specks exact texts watchdog front service service_random synonyms arguments visibility diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute state state_floor framing query zones surroundings cache cache_limits \
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid instance_grid instances \
                instance_shaders instance_ends instance_pictures few_parts tables device_tables table_files printing printers elementary gathered_noises answers structure update coordinates reload live saved_texts camera_text resolution painter saver profile profiler edits values lane_math mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly

@@ -12,9 +12,10 @@
 #include "cli/picture/frame_paths.h"
 #include "cli/shell/console.h"
 #include "cli/shell/supervise.h"
+#include "runtime/film/doublings.h"
 
 /* The version of the description: jobs of a later one are refused. */
-enum { DESCRIPTION = 1 };
+enum { DESCRIPTION = 2 };
 
 /* The numbers of a job, and what they may be. */
 static const struct {
@@ -28,6 +29,8 @@ static const struct {
     {"height", offsetof(FarmJob, height), 1, KRS_MAX_SIDE},
     {"across", offsetof(FarmJob, across), 1, KRS_MAX_SIDE},
     {"down", offsetof(FarmJob, down), 1, KRS_MAX_SIDE},
+    {"samples", offsetof(FarmJob, samples), 1, KRS_MAX_SAMPLES},
+    {"ranges", offsetof(FarmJob, ranges), 1, KRS_MAX_SAMPLES / SAMPLES_OF_BLOCK},
     {"chunk", offsetof(FarmJob, chunk), 1, 1000001},
 };
 
@@ -42,10 +45,10 @@ const char *job_path(const FarmJob *job, Arena *arena, const char *name)
     return path.bytes;
 }
 
-const char *job_part(const FarmJob *job, Arena *arena, uint32_t tile, uint32_t frame)
+const char *job_part(const FarmJob *job, Arena *arena, uint32_t part, uint32_t frame)
 {
     Text path = {.arena = arena};
-    text_format(&path, "%s/parts/%u-%06u.exr", job->folder, tile, frame);
+    text_format(&path, "%s/parts/%u-%06u.exr", job->folder, part, frame);
     return path.bytes;
 }
 
@@ -65,19 +68,19 @@ const char *job_file(const FarmJob *job, Arena *arena, uint32_t piece, const cha
 
 uint32_t job_frames(const FarmJob *job) { return job->last - job->first + 1; }
 
-uint32_t job_tiles(const FarmJob *job) { return job->across * job->down; }
+uint32_t job_parts(const FarmJob *job) { return job->across * job->down * job->ranges; }
 
 uint32_t job_pieces(const FarmJob *job)
 {
-    return (job_frames(job) + job->chunk - 1) / job->chunk * job_tiles(job);
+    return (job_frames(job) + job->chunk - 1) / job->chunk * job_parts(job);
 }
 
-/* All tiles of some frames come before the next frames, so that pictures are complete early. */
+/* All parts of some frames come before the next frames, so that pictures are complete early. */
 FarmPiece job_piece(const FarmJob *job, uint32_t number)
 {
-    const uint32_t first = job->first + number / job_tiles(job) * job->chunk;
+    const uint32_t first = job->first + number / job_parts(job) * job->chunk;
     const uint32_t last  = job->last - first < job->chunk ? job->last : first + job->chunk - 1;
-    return (FarmPiece){number, number % job_tiles(job), first, last};
+    return (FarmPiece){number, number % job_parts(job), first, last};
 }
 
 static uint32_t edge(uint32_t side, uint32_t number, uint32_t count)
@@ -85,12 +88,26 @@ static uint32_t edge(uint32_t side, uint32_t number, uint32_t count)
     return (uint32_t)((uint64_t)side * number / count);
 }
 
-KrsWindow job_window(const FarmJob *job, uint32_t tile)
+KrsWindow job_window(const FarmJob *job, uint32_t part)
 {
+    const uint32_t tile = part / job->ranges;
     const uint32_t i = tile % job->across, k = tile / job->across;
     const uint32_t x = edge(job->width, i, job->across), y = edge(job->height, k, job->down);
     return (KrsWindow){x, y, edge(job->width, i + 1, job->across) - x,
                        edge(job->height, k + 1, job->down) - y};
+}
+
+/* Ranges are whole blocks, but for the last. */
+const char *job_samples(const FarmJob *job, Arena *arena, uint32_t part)
+{
+    const uint32_t blocks = (job->samples + SAMPLES_OF_BLOCK - 1) / SAMPLES_OF_BLOCK;
+    const uint32_t number = part % job->ranges;
+    const uint32_t first  = SAMPLES_OF_BLOCK * edge(blocks, number, job->ranges);
+    const uint32_t end    = SAMPLES_OF_BLOCK * edge(blocks, number + 1, job->ranges);
+    Text           range  = {.arena = arena};
+    text_format(&range, "%u..%u/%u", first, (end < job->samples ? end : job->samples) - 1,
+                job->samples);
+    return range.bytes;
 }
 
 /* ---- the description ---- */
@@ -142,7 +159,8 @@ static bool read_numbers(const json_t *root, FarmJob *job)
             return false;
         *(uint32_t *)((char *)job + numbers[i].offset) = (uint32_t)value;
     }
-    return job->last >= job->first && job->across <= job->width && job->down <= job->height;
+    return job->last >= job->first && job->across <= job->width && job->down <= job->height &&
+           (job->ranges == 1 || (job->ranges - 1) * SAMPLES_OF_BLOCK < job->samples);
 }
 
 static bool read_words(Arena *arena, const json_t *words, FarmJob *job)

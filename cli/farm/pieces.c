@@ -31,7 +31,7 @@ bool frame_is_done(const FarmJob *job, const Options *options, uint32_t frame)
 static bool is_done(const FarmJob *job, const Options *options, const FarmPiece *piece)
 {
     for (uint32_t frame = piece->first; frame <= piece->last; frame++)
-        if (!is_there(job_part(job, options->arena, piece->tile, frame)) &&
+        if (!is_there(job_part(job, options->arena, piece->part, frame)) &&
             !frame_is_done(job, options, frame))
             return false;
     return true;
@@ -92,23 +92,23 @@ static KrsStatus merge(const FarmJob *job, const Options *options, const char *c
                        uint32_t frame)
 {
     Tiles     tiles;
-    KrsStatus status = tiles_read(options, parts, job_tiles(job), &tiles);
+    KrsStatus status = tiles_read(options, parts, job_parts(job), &tiles);
     if (status != KRS_OK)
         return status;
     status = write_output(job_picture(job, options, frame), fill, &tiles.picture);
     tiles_free(&tiles);
-    for (uint32_t tile = 0; tile < job_tiles(job) && status == KRS_OK; tile++)
-        unlink(parts[tile]);
+    for (uint32_t part = 0; part < job_parts(job) && status == KRS_OK; part++)
+        unlink(parts[part]);
     return status;
 }
 
 KrsStatus frame_finish(const FarmJob *job, const Options *options, uint32_t frame)
 {
-    const char **parts = arena_new_array(options->arena, const char *, job_tiles(job));
+    const char **parts = arena_new_array(options->arena, const char *, job_parts(job));
     Text         path  = {.arena = options->arena};
-    for (uint32_t tile = 0; tile < job_tiles(job); tile++) {
-        parts[tile] = job_part(job, options->arena, tile, frame);
-        if (!is_there(parts[tile]))
+    for (uint32_t part = 0; part < job_parts(job); part++) {
+        parts[part] = job_part(job, options->arena, part, frame);
+        if (!is_there(parts[part]))
             return KRS_OK;
     }
     text_format(&path, "%s/parts/%06u.lock", job->folder, frame);
@@ -126,17 +126,23 @@ KrsStatus frame_finish(const FarmJob *job, const Options *options, uint32_t fram
 
 static int run_render(const FarmJob *job, const Options *options, const FarmPiece *piece)
 {
-    const KrsWindow window = job_window(job, piece->tile);
+    const KrsWindow window = job_window(job, piece->part);
     Arena          *arena  = options->arena;
     Words           words  = {0};
-    Text            frames = {.arena = arena}, crop = {.arena = arena}, part = {.arena = arena};
+    Text            frames = {.arena = arena}, crop = {.arena = arena}, part = {.arena = arena},
+         samples = {.arena = arena};
     text_format(&crop, "--crop=%u,%u,%u,%u", window.x, window.y, window.width, window.height);
     text_format(&frames, "--frames=%u..%u", piece->first, piece->last);
-    text_format(&part, "--output=%s/parts/%u-%s.exr", job->folder, piece->tile,
+    text_format(&part, "--output=%s/parts/%u-%s.exr", job->folder, piece->part,
                 job->animated ? "%06d" : "000000");
     spawn_begin(arena, &words, "render", job_path(job, arena, "scene.krsz"));
     for (size_t i = 0; i < job->word_count; i++)
-        spawn_add(arena, &words, job->words[i]);
+        if (job->ranges == 1 || strncmp(job->words[i], "--samples=", 10) != 0)
+            spawn_add(arena, &words, job->words[i]);
+    if (job->ranges > 1) {
+        text_format(&samples, "--samples=%s", job_samples(job, arena, piece->part));
+        spawn_add(arena, &words, samples.bytes);
+    }
     spawn_add(arena, &words, crop.bytes);
     spawn_add(arena, &words, part.bytes);
     spawn_add(arena, &words, "--quiet");

@@ -33,7 +33,8 @@ static KrsStatus render(const FarmJob *job, const Options *options, const char *
     text_format(&output, "--output=%s", picture);
     spawn_add(options->arena, &words, output.bytes);
     spawn_add(options->arena, &words, "--size=48x27");
-    spawn_add(options->arena, &words, "--samples=2");
+    /* Ranges say which device made them. */
+    spawn_add(options->arena, &words, job->ranges > 1 ? "--samples=0..1/2" : "--samples=2");
     spawn_add(options->arena, &words, "--quiet");
     if (job->animated) {
         text_format(&frame, "--frames=%u..%u", job->first, job->first);

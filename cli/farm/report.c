@@ -113,7 +113,7 @@ static void print_text(const FarmJob *job, const Options *options, const Report 
     for (uint32_t number = 0; number < job_pieces(job); number++) {
         const FarmPiece piece = job_piece(job, number);
         if (piece_state(job, options, &piece) == PIECE_FAILED)
-            printf("piece %u, tile %u of frames %u to %u, has failed: %s\n", number, piece.tile,
+            printf("piece %u, part %u of frames %u to %u, has failed: %s\n", number, piece.part,
                    piece.first, piece.last, first_words(job, options, number));
     }
 }

@@ -159,6 +159,9 @@ typedef struct Options {
 
     uint32_t farm_tiles[2]; /* --tiles; 0: one */
 
+    bool     samples_divided; /* --samples A..B/N */
+    uint32_t first_sample, last_sample;
+
     bool     animated; /* --frames */
     uint32_t first_frame, last_frame;
 

@@ -320,6 +320,24 @@ bool read_size(const char *word, KrsRenderOptions *how)
     return true;
 }
 
+bool read_samples(Options *options, const char *word)
+{
+    const char *dots = strstr(word, ".."), *slash = strchr(word, '/');
+    uint64_t    first, last;
+    if (!dots)
+        return read_count(word, 1, KRS_MAX_SAMPLES, &options->how.samples);
+    if (options->command != COMMAND_RENDER || !slash || slash < dots ||
+        !read_count(slash + 1, 1, KRS_MAX_SAMPLES, &options->how.samples) ||
+        !read_whole(arena_copy_text(options->arena, dots + 2, (size_t)(slash - dots) - 2), 0,
+                    options->how.samples - 1, &last) ||
+        !read_whole(arena_copy_text(options->arena, word, (size_t)(dots - word)), 0, last, &first))
+        return false;
+    options->samples_divided = true;
+    options->first_sample    = (uint32_t)first;
+    options->last_sample     = (uint32_t)last;
+    return true;
+}
+
 bool read_tiles(const char *word, uint32_t tiles[2])
 {
     return read_wholes(word, 'x', 1, KRS_MAX_SIDE, tiles, 2);

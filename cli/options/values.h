@@ -16,6 +16,7 @@ bool read_count(const char *word, uint32_t low, uint32_t high, uint32_t *value);
 bool read_number(const char *word, double low, double high, double *value);
 
 bool read_size(const char *word, KrsRenderOptions *how); /* "640x480" */
+bool read_samples(Options *options, const char *word);   /* "16", or "0..63/256" to render */
 bool read_tiles(const char *word, uint32_t tiles[2]);    /* "4x2" */
 bool read_crop(const char *word, KrsWindow *crop);       /* "X,Y,WIDTH,HEIGHT" */
 bool read_frames(Options *options, const char *word);    /* "1..24" */

@@ -261,20 +261,22 @@ static void load(Checkpoint *checkpoint, const CheckpointFrame *frame, KrsFilm *
 static KrsStatus add_samples(Checkpoint *checkpoint, const CheckpointFrame *frame, KrsFilm *film)
 {
     const double   between = seconds_between();
-    const uint32_t all     = frame->samples;
+    const Options *options = checkpoint->options;
+    const uint32_t end = frame->end, first = options->first_sample;
+    const double   all     = end - first;
     double         seconds = between; /* of one sample */
     double         written = clock_now();
     KrsStatus      status  = KRS_OK;
-    while (status == KRS_OK && krs_film_samples(film) < all) {
+    while (status == KRS_OK && krs_film_samples(film) < end) {
         const double   start = clock_now(), due = between / seconds;
-        const uint32_t before = krs_film_samples(film), left = all - before;
+        const uint32_t before = krs_film_samples(film), left = end - before;
         const uint32_t portion = due < 1 ? 1 : due < left ? (uint32_t)due : left;
-        checkpoint->done       = (double)before / all;
-        checkpoint->share      = (double)portion / all;
+        checkpoint->done       = (before - first) / all;
+        checkpoint->share      = portion / all;
         status                 = krs_film_add(film, frame->state, NULL, portion);
-        const double end       = clock_now();
-        seconds                = fmax((end - start) / portion, 1e-9);
-        if (status == KRS_OK && portion < left && end - written >= between) {
+        const double now       = clock_now();
+        seconds                = fmax((now - start) / portion, 1e-9);
+        if (status == KRS_OK && options->resume && portion < left && now - written >= between) {
             status  = write_checkpoint(checkpoint, frame->number, frame->how, film);
             written = clock_now();
         }
@@ -282,6 +284,17 @@ static KrsStatus add_samples(Checkpoint *checkpoint, const CheckpointFrame *fram
     checkpoint->done  = 0;
     checkpoint->share = 1;
     return status;
+}
+
+/* Keeps the sums of a film that has been read. */
+static KrsStatus keep_sums(const CheckpointFrame *frame, const KrsFilm *film, KrsPicture **picture)
+{
+    *frame->sums = film_sums(film);
+    if (frame->sums->numbers)
+        return KRS_OK;
+    krs_picture_free(*picture);
+    *picture = NULL;
+    return KRS_OUT_OF_MEMORY;
 }
 
 KrsStatus checkpoint_render(Checkpoint *checkpoint, const CheckpointFrame *frame,
@@ -292,10 +305,14 @@ KrsStatus checkpoint_render(Checkpoint *checkpoint, const CheckpointFrame *frame
     *picture         = NULL;
     if (status != KRS_OK)
         return status;
+    if (checkpoint->options->samples_divided)
+        film_begin_at(film, checkpoint->options->first_sample);
     load(checkpoint, frame, film);
     status = add_samples(checkpoint, frame, film);
     if (status == KRS_OK)
         status = krs_film_read(film, 0, picture);
+    if (status == KRS_OK && checkpoint->options->samples_divided)
+        status = keep_sums(frame, film, picture);
     krs_film_free(film);
     return status;
 }

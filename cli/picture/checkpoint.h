@@ -4,6 +4,7 @@
 #ifndef KRS_CHECKPOINT_H
 #define KRS_CHECKPOINT_H
 
+#include "cli/picture/sample_sums.h"
 #include "cli/shell/commands.h"
 
 typedef struct Checkpoint {
@@ -20,7 +21,8 @@ typedef struct CheckpointFrame {
     KrsRendering           *rendering;
     KrsState               *state;
     const KrsRenderOptions *how;
-    uint32_t                samples, number;
+    uint32_t                end, number; /* behind its last sample; of the frame */
+    SampleSums             *sums;        /* what becomes of them, if they are divided */
 } CheckpointFrame;
 
 /* Begins the checkpoint of a command whose first output has this name, or that has none: NULL.
@@ -31,7 +33,7 @@ KrsStatus checkpoint_begin(Checkpoint *checkpoint, const Options *options, const
    from which on it goes on; that of the first one where there is none. */
 uint32_t checkpoint_find(Checkpoint *checkpoint, const KrsScene *scene,
                          const KrsRenderer *renderer);
-/* Does what krs_render does, from where the checkpoint has the frame, and writes new ones. */
+/* Does what krs_render does, from where the checkpoint has the frame, and writes new ones with --resume. */
 KrsStatus checkpoint_render(Checkpoint *checkpoint, const CheckpointFrame *frame,
                             KrsPicture **picture);
 /* The frame of this number has been written: the next one is what remains, or nothing is. */

@@ -88,7 +88,7 @@ static const char *describe_now(const Options *options)
 }
 
 static size_t collect_texts(const Options *options, const KrsPicture *source,
-                            const PictureNotes *notes, PictureText texts[TEXTS])
+                            const PictureNotes *notes, PictureText texts[TEXTS + SAMPLE_TEXTS])
 {
     size_t count   = 0;
     texts[count++] = (PictureText){"software", "krs " KRS_VERSION};
@@ -103,6 +103,8 @@ static size_t collect_texts(const Options *options, const KrsPicture *source,
         texts[count++] = (PictureText){"krs:seconds",
                                        describe_number(options, source->stats.wall_ms / 1000)};
     }
+    if (options->samples_divided)
+        count = samples_texts(options, &notes->sums, source->stats.device, texts, count);
     return count;
 }
 
@@ -179,7 +181,8 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
 {
     const LightGroups *groups   = &notes->groups;
     PictureChannel    *channels = arena_new_array(options->arena, PictureChannel,
-                                                  CHANNELS + groups->channel_count + CAUGHT_CHANNELS);
+                                                  CHANNELS + groups->channel_count + CAUGHT_CHANNELS +
+                                                      SUM_AND_NOISE_NUMBERS);
     PictureMatrix      to_camera, to_ndc;
     float             *values = NULL;
     memcpy(to_camera.m, source->world_to_camera, sizeof to_camera.m);
@@ -191,6 +194,8 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
     for (size_t i = 0; i < groups->channel_count; i++)
         channels[picture->channel_count++] = groups->channels[i];
     add_caught(options, source, channels, picture);
+    if (notes->sums.numbers)
+        picture->channel_count += samples_channels(&notes->sums, channels + picture->channel_count);
     if (!add_mattes(options, source, notes, channels, texts, picture, &values))
         return say_status(KRS_OUT_OF_MEMORY, path);
     KrsStatus status = write_output(path, fill_exr, &(Contents){options, picture, NULL});
@@ -254,7 +259,7 @@ static KrsStatus write_png(const Options *options, const KrsPicture *source, con
 KrsStatus picture_write(const Options *options, const KrsPicture *source, const PictureNotes *notes,
                         const char *path)
 {
-    PictureText texts[TEXTS];
+    PictureText texts[TEXTS + SAMPLE_TEXTS];
     Picture     picture = {.width       = source->width,
                            .height      = source->height,
                            .crop_x      = source->window.x,

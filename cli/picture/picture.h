@@ -6,6 +6,7 @@
 
 #include "cli/shell/commands.h"
 #include "cli/picture/light_groups.h"
+#include "cli/picture/sample_sums.h"
 
 typedef enum FileForm { FORM_UNKNOWN, FORM_EXR, FORM_PNG } FileForm;
 
@@ -21,6 +22,7 @@ typedef struct PictureNotes {
     double          time;    /* of the scene */
     DisplayOptions  display; /* for PNG */
     LightGroups     groups;  /* further channels for EXR, or none */
+    SampleSums      sums;    /* likewise */
 } PictureNotes;
 
 /* Writes the pixels to standard output, as a PNG shows them: rows from the top, R G B, a byte each. */

@@ -5,6 +5,7 @@
 #define KRS_RENDER_H
 
 #include "cli/picture/checkpoint.h"
+#include "cli/picture/sample_sums.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/console.h"
 #include "cli/picture/render_faults.h"
@@ -25,6 +26,7 @@ typedef struct Render {
     Progress     progress;
     RenderFaults faults;
     Checkpoint   checkpoint;
+    SampleSums   sums; /* of the frame at hand, if its samples are divided */
     bool (*outdated)(
         void *user); /* asked while a picture is made: true ends it; NULL: it never is */
     void *user;      /* handed to `outdated` */

@@ -12,6 +12,7 @@
 
 #include "runtime/tracer/band.h"
 #include "runtime/integrators/integrators.h"
+#include "runtime/film/sample_blocks.h"
 #include "runtime/film/executor.h"
 #include "runtime/film/resident.h"
 #include "runtime/film/inputs.h"
@@ -84,6 +85,7 @@ void krs_film_free(KrsFilm *film)
         return;
     release_band(film);
     krs_picture_free(film->sums);
+    blocks_free(film);
     gpu_release(&film->rendering->renderer->gpu, film->kept);
     gpu_release(&film->rendering->renderer->gpu, film->lights);
     gpu_release(&film->rendering->renderer->gpu, film);
@@ -93,7 +95,8 @@ void krs_film_clear(KrsFilm *film)
 {
     const uint64_t bytes = film->sums->stats.peak_memory_bytes;
     release_band(film);
-    film->samples = 0;
+    film->samples = film->first;
+    blocks_clear(film);
     mattes_clear(film->sums);
     film->sums->stats = (KrsRenderStats){.peak_memory_bytes = bytes};
 }
@@ -292,7 +295,7 @@ static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
 {
     if (!make_room(job, plan, film) || !wait_for_shaders(job))
         return false;
-    if (film->samples == 0)
+    if (film->samples == film->first)
         begin_film(job, film);
     const double   start       = clock_ms();
     const uint64_t submissions = job->gpu->submissions;
@@ -369,8 +372,8 @@ static KrsStatus add_moments(KrsFilm *film, const Addition *a, const double shut
         Addition moment = *a;
         part -= floor(part);
         moment.samples    = 1;
-        moment.part       = 1.0 / a->samples;
-        moment.part_begun = moment.part * i;
+        moment.part       = a->part / a->samples;
+        moment.part_begun = a->part_begun + moment.part * i;
         status            = krs_state_set_time(a->state,
                                                begin + shutter[0] + part * (shutter[1] - shutter[0]));
         if (status == KRS_OK)
@@ -394,7 +397,21 @@ static KrsStatus add(KrsFilm *film, const Addition *a)
         gpu_refuse(gpu, KRS_BAD_ARGUMENT, "%s", "a film has 1 to 65536 samples per pixel");
         return gpu->status;
     }
-    return find_shutter(film, a, shutter) ? add_moments(film, a, shutter) : add_moment(film, a);
+    const bool moments = find_shutter(film, a, shutter);
+    KrsStatus  status  = KRS_OK;
+    for (uint32_t done = 0; done < a->samples && status == KRS_OK;) {
+        Addition portion = *a;
+        if (!blocks_close(film)) {
+            krs_film_clear(film);
+            return gpu->status;
+        }
+        portion.samples    = blocks_room(film, a->samples - done);
+        portion.part       = a->part * portion.samples / a->samples;
+        portion.part_begun = a->part_begun + a->part * done / a->samples;
+        status = moments ? add_moments(film, &portion, shutter) : add_moment(film, &portion);
+        done += portion.samples;
+    }
+    return status;
 }
 
 KrsStatus krs_film_add(KrsFilm *film, KrsState *state, const KrsCamera *camera, uint32_t samples)
@@ -428,7 +445,9 @@ static bool store_all(KrsFilm *film)
     KrsRendering  *rendering   = film->rendering;
     const double   start       = clock_ms();
     const uint64_t submissions = rendering->renderer->gpu.submissions;
-    const bool     good        = rendering->resident.film != film || resident_store(rendering);
+    const bool     blocks      = film->divided || film->exact;
+    const bool     good        = (!blocks || blocks_close(film)) &&
+                      (rendering->resident.film != film || resident_store(rendering));
     film->sums->stats.wall_ms += clock_ms() - start;
     film->sums->stats.submissions += rendering->renderer->gpu.submissions - submissions;
     return good;
@@ -441,7 +460,7 @@ static uint64_t count_rays(const KrsFilm *film)
     const uint32_t *ended  = film->sums->pixel_samples;
     uint64_t        rays   = 0;
     for (size_t k = 0; k < pixels; k++)
-        rays += ended && ended[k] > 0 ? ended[k] : film->samples;
+        rays += ended && ended[k] > 0 ? ended[k] : film->samples - film->first;
     return rays;
 }
 
@@ -465,10 +484,11 @@ static bool finish(const KrsFilm *film, KrsPicture *picture)
     stats->gflops = marching > 0 ? (double)stats->evaluations * flops / marching / 1e6 : 0;
     stats->peak_memory_bytes += gpu->memory_peak;
     snprintf(stats->device, sizeof stats->device, "%s", gpu_describe(gpu).name);
-    picture->samples = film->samples;
+    picture->samples = film->samples - film->first;
+    blocks_finish(film, picture);
     if (!lights_finish(film, picture) || !plate_finish(film, picture))
         return false;
-    picture_divide(picture, film->sums->pixel_samples, film->samples);
+    picture_divide(picture, film->sums->pixel_samples, picture->samples);
     noise_finish(picture);
     picture_compose(picture, film->options.depth, film->options.plate);
     mattes_sort(picture);

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "runtime/film/doublings.h"
 #include "runtime/tracer/dispatch.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
@@ -77,6 +78,8 @@ bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samp
 {
     if (samples < FIRST_NOISE_SAMPLES || !is_power_of_two(samples))
         return true;
+    if (job->options.noise == 0 && samples > SAMPLES_OF_BLOCK)
+        return true; /* sample_blocks.c and doublings.c do it */
     if (samples == FIRST_NOISE_SAMPLES)
         return run_phase(job, work, NOISE_BEGINS, samples);
     return list_pixels(job, plan, work, NOISE_ENDS_SAMPLES, samples, unfinished);
@@ -97,14 +100,18 @@ static uint32_t last_estimate(uint32_t samples)
     return at <= samples ? at : 0;
 }
 
+float noise_since(uint32_t samples)
+{
+    return sqrtf((float)last_estimate(samples) / (float)samples);
+}
+
 void noise_finish(KrsPicture *picture)
 {
-    const size_t   pixels = (size_t)picture->window.width * picture->window.height;
-    const uint32_t last   = last_estimate(picture->samples);
-    const float    since  = sqrtf((float)last / (float)picture->samples);
+    const size_t pixels = (size_t)picture->window.width * picture->window.height;
+    const float  since  = noise_since(picture->samples);
     for (size_t k = 0; picture->noise && k < pixels; k++)
         if (picture->pixel_samples[k] == 0) {
             picture->pixel_samples[k] = picture->samples;
-            picture->noise[k]         = last ? since * picture->noise[k] : INFINITY;
+            picture->noise[k]         = since > 0 ? since * picture->noise[k] : INFINITY;
         }
 }

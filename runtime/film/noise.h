@@ -19,6 +19,8 @@ bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samp
 /* Gives pixels that have ended their colours back, after all samples. */
 bool noise_restore(Job *job, const WorkBlock *work, uint32_t samples);
 
+/* Returns by how much the error after so many samples is smaller than that which was estimated last; 0: none was. */
+float noise_since(uint32_t samples);
 /* Completes the AOVs of noise of a picture for pixels that have not ended. */
 void noise_finish(KrsPicture *picture);
 

@@ -9,8 +9,6 @@
 #include "runtime/film/mattes.h"
 #include "runtime/film/picture.h"
 
-enum { KEPT_ROWS = 3 };
-
 KrsWindow resident_cover(const KrsRenderOptions *options)
 {
     const KrsWindow *crop   = &options->crop;
@@ -134,10 +132,11 @@ static uint32_t rows_of_sums(const KrsFilm *film)
 /* Copies the rows of sums of the whole tiles in the buffers to what the film keeps, or back. */
 static void copy_kept(const KrsFilm *film, const ResidentBand *resident, float *results, bool back)
 {
-    static const uint32_t kept_rows[KEPT_ROWS] = {ROW_COLORS, ROW_NOISE, ROW_EARLIER};
-    const KrsWindow       cover = resident_cover(&film->options), *traced = &resident->traced;
-    const size_t          band  = (size_t)traced->height * traced->width;
-    const size_t          whole = (size_t)cover.height * cover.width;
+    static const uint32_t kept_rows[KEPT_ROWS] = {
+        [KEPT_COLORS] = ROW_COLORS, [KEPT_NOISE] = ROW_NOISE, [KEPT_EARLIER] = ROW_EARLIER};
+    const KrsWindow cover = resident_cover(&film->options), *traced = &resident->traced;
+    const size_t    band  = (size_t)traced->height * traced->width;
+    const size_t    whole = (size_t)cover.height * cover.width;
     for (size_t row = 0; row < KEPT_ROWS; row++)
         for (size_t y = resident->from; y < resident->from + resident->rows; y++) {
             const size_t in_band = (cover.y + y - traced->y) * traced->width + cover.x - traced->x;

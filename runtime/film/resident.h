@@ -4,6 +4,7 @@
 #ifndef KRS_RESIDENT_H
 #define KRS_RESIDENT_H
 
+#include "runtime/film/doublings.h"
 #include "runtime/tracer/handles.h"
 
 struct KrsFilm {
@@ -17,10 +18,15 @@ struct KrsFilm {
     /* Sums of the light of each light, where they are separate: all pixels of the crop for the
        first, then for the next.  The sums of `sums` are those of the rest. */
     float (*lights)[4];
-    uint32_t light_count;      /* 0: they are not separate; the last CAUGHT_ROWS are of the plate */
-    uint32_t samples;          /* of each pixel so far, unless it has ended by noise */
-    uint32_t rows;             /* of a band; 0: no band has been made */
-    double   rebase_origin[3]; /* positions of the first sample are relative to it */
+    uint32_t light_count; /* 0: they are not separate; the last CAUGHT_ROWS are of the plate */
+    uint32_t samples; /* number of the next sample of each pixel, unless it has ended by noise */
+    uint32_t first,
+        closed;          /* numbers of the first sample, and of the first that is not in `exact` */
+    bool divided;        /* others have further samples of the picture */
+    Exact (*exact)[4];   /* sums of blocks that are closed; NULL: none is */
+    Doubling *doublings; /* NULL: no block is closed, or no error is estimated */
+    uint32_t  rows;      /* of a band; 0: no band has been made */
+    double    rebase_origin[3]; /* positions of the first sample are relative to it */
 };
 
 /* Returns the crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels
@@ -28,6 +34,7 @@ struct KrsFilm {
 KrsWindow resident_cover(const KrsRenderOptions *options);
 /* Tells how many numbers of four members `kept` has: of each pixel of these tiles in the rows of colours,
    noise and earlier sums. */
+enum { KEPT_COLORS, KEPT_NOISE, KEPT_EARLIER, KEPT_ROWS };
 size_t resident_kept(const KrsRenderOptions *options);
 
 /* Copies the samples in the buffers to their film, unless it has them. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "compiler/base/fingerprints.h"
+#include "runtime/film/sample_blocks.h"
 #include "runtime/film/resident.h"
 #include "runtime/film/lights.h"
 #include "runtime/film/noise.h"
@@ -40,6 +41,7 @@ typedef struct Header {
     uint32_t  width, height;
     uint32_t  aovs, mattes; /* bits of KrsAov; whether there are mattes */
     uint32_t  samples, max_evaluations;
+    uint32_t  first, closed;
 } Header;
 
 /* Describes the film as it is with samples or without. */
@@ -53,7 +55,8 @@ static Header describe(const KrsFilm *film)
                                 .width  = sums->width,
                                 .height = sums->height,
                                 .aovs   = film->options.aovs,
-                                .mattes = film->options.mattes};
+                                .mattes = film->options.mattes,
+                                .first  = film->first};
     memcpy(header.sources, fingerprint_film, sizeof header.sources);
     return header;
 }
@@ -72,6 +75,7 @@ static Header header_of(const KrsFilm *film)
     header.clamped         = stats->clamped;
     header.submissions     = stats->submissions;
     header.samples         = film->samples;
+    header.closed          = film->closed;
     header.max_evaluations = stats->max_evaluations_per_ray;
     return header;
 }
@@ -90,6 +94,7 @@ static void take_header(KrsFilm *film, const Header *header)
     stats->submissions             = header->submissions;
     stats->max_evaluations_per_ray = header->max_evaluations;
     film->samples                  = header->samples;
+    film->closed                   = header->closed;
 }
 
 static bool fits(const KrsFilm *film, const Header *header)
@@ -100,8 +105,8 @@ static bool fits(const KrsFilm *film, const Header *header)
            own.kept == header->kept && own.lights == header->lights &&
            memcmp(&own.window, &header->window, sizeof own.window) == 0 &&
            own.width == header->width && own.height == header->height && own.aovs == header->aovs &&
-           own.mattes == header->mattes && header->samples > 0 &&
-           header->samples <= KRS_MAX_SAMPLES;
+           own.mattes == header->mattes && own.first == header->first &&
+           header->samples > own.first && header->samples <= KRS_MAX_SAMPLES;
 }
 
 /* Passes all arrays of the film. */
@@ -118,6 +123,10 @@ static bool pass_arrays(const KrsFilm *film, const Way *way)
         if (sums->mattes[kind] &&
             !pass(way, sums->mattes[kind], pixels * KRS_MATTE_RANKS * sizeof(KrsMatte)))
             return false;
+    if (film->exact && !pass(way, film->exact, pixels * sizeof *film->exact))
+        return false;
+    if (film->doublings && !pass(way, film->doublings, pixels * sizeof *film->doublings))
+        return false;
     return pass(way, film->lights, lights_numbers(film) * sizeof *film->lights) &&
            (!film->kept ||
             pass(way, film->kept, resident_kept(&film->options) * sizeof *film->kept));
@@ -154,6 +163,8 @@ KrsStatus krs_film_load(KrsFilm *film, KrsReadCallback *read, void *user)
         gpu_refuse(gpu, KRS_IO_ERROR, "the film cannot be read");
     else if (!fits(film, &header))
         gpu_refuse(gpu, KRS_BAD_ARGUMENT, "what was saved is no film like this one");
+    else if (header.closed > header.first && !blocks_make_room(film))
+        return gpu->status;
     else if (!pass_arrays(film, &way))
         gpu_refuse(gpu, KRS_IO_ERROR, "the film cannot be read");
     else

@@ -2,7 +2,7 @@
 # farm.sh: several processes share a render, are killed, and leave the files of one render, byte for byte.
 # shellcheck source-path=SCRIPTDIR disable=SC2086
 . "$(dirname "$0")/common.sh"
-plan 28
+plan 32
 export XDG_CACHE_HOME="$work/caches"
 
 cat >ball.krs <<'END'
@@ -116,6 +116,19 @@ run farm work still.farm --quiet
 run render other.krs $how --cryptomatte --quiet -o once.exr
 cmp -s once.exr still.exr
 result $? "a single picture is divided, too"
+
+# Samples, too: two ranges of two tiles.
+long="--size 32x22 --samples 100 --rays kernels --integrator path --time 0.4"
+run farm submit other.krs --tiles 2x1 --split-samples 2 $long --job ranges.farm -o ranges.exr
+said 0 "has 4 pieces" "samples are divided"
+run farm work ranges.farm --quiet
+run render other.krs $long --quiet -o once.exr
+cmp -s once.exr ranges.exr
+result $? "and the picture is that of all samples"
+run farm submit other.krs --split-samples 3 $long --job wrong.farm -o wrong.exr
+said 2 "100 samples are at most 2 ranges" "no range is shorter than a block of samples"
+run farm submit other.krs --split-samples 2 $long --cryptomatte --job wrong.farm -o wrong.exr
+said 2 "a range of --samples" "what has no ranges is refused"
 
 # Slurm: a stand-in for sbatch notes how it is called.
 mkdir bin
