@@ -135,8 +135,11 @@ static KrsStatus choose_how(Render *render)
         how->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-options->exposure);
     how->light_groups = options->light_groups;
     how->integrator   = find_integrator(how->integrator, view.image.integrator);
-    how->progress     = show_progress;
-    how->user         = render;
+    if (how->integrator == KRS_INTEGRATOR_PREVIEW &&
+        krs_scene_program(render->scene)->volumes > 0 && !options->quiet)
+        say("`preview` shows no media; `--integrator path` does");
+    how->progress = show_progress;
+    how->user     = render;
     if (options->first_sample > 0)
         how->aovs = KRS_AOV_COLOR; /* the others come from the first sample */
     status = check_how(render);

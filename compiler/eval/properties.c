@@ -1,7 +1,7 @@
 /*
  * properties.c: the properties that blocks of a scene may have, and their values.
  *
- * Blocks are materials, cameras, lights, the sky, fog, the image and zones.
+ * Blocks are materials, cameras, lights, the sky, fog, media, the image and zones.
  */
 #include "compiler/eval/elaborate.h"
 
@@ -20,6 +20,8 @@ static const struct BlockProperty {
 #define KRS_CAMERA(name, kind, part, positive, counts, ...) {SYNTAX_CAMERA, #name, false},
 #define KRS_CAMERA_FIXED(name, type, part, counts)          {SYNTAX_CAMERA, #name, false},
 #include "krs/camera.def"
+#define KRS_MEDIUM(name, type, otherwise, low, high) {SYNTAX_MEDIUM, #name, false},
+#include "compiler/shape/medium.def"
     {SYNTAX_LIGHT, "direction", false},
 #define KRS_LIGHT(member, kind, of_direction, of_position, ...) {SYNTAX_LIGHT, of_position, false},
 #include "krs/lights.def"
@@ -39,6 +41,7 @@ static const struct BlockProperty {
     {SYNTAX_FOG, "density", false},
     {SYNTAX_FOG, "height", false},
     {SYNTAX_FOG, "base", false},
+    {SYNTAX_MEDIUM, "within", false},
     {SYNTAX_IMAGE, "size", false},
     {SYNTAX_IMAGE, "samples", false},
     {SYNTAX_IMAGE, "integrator", false},
@@ -75,6 +78,7 @@ const char *block_name(SyntaxKind kind)
     case SYNTAX_LIGHT: return "a light";
     case SYNTAX_SKY: return "the sky";
     case SYNTAX_FOG: return "the fog";
+    case SYNTAX_MEDIUM: return "a medium";
     case SYNTAX_ZONE: return "a zone";
     default: return "the image";
     }

@@ -312,6 +312,7 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
     case SYNTAX_LIGHT:
     case SYNTAX_SKY:
     case SYNTAX_FOG:
+    case SYNTAX_MEDIUM:
     case SYNTAX_IMAGE:
     case SYNTAX_ZONE: elaborate_view(e, env, syntax); break;
     default: break; /* errors of the parser */

@@ -328,6 +328,7 @@ static void walk(Checker *c, const Syntax *syntax)
     case SYNTAX_LIGHT:
     case SYNTAX_SKY:
     case SYNTAX_FOG:
+    case SYNTAX_MEDIUM:
     case SYNTAX_IMAGE:
     case SYNTAX_ZONE:
         walk_children(c, syntax);

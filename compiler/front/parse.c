@@ -167,6 +167,7 @@ static Syntax *parse_block_statement(Parser *p)
     case TOKEN_LIGHT:
     case TOKEN_SKY:
     case TOKEN_FOG:
+    case TOKEN_MEDIUM:
     case TOKEN_IMAGE:
     case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
@@ -328,6 +329,7 @@ static Syntax *parse_statement(Parser *p)
     case TOKEN_LIGHT:
     case TOKEN_SKY:
     case TOKEN_FOG:
+    case TOKEN_MEDIUM:
     case TOKEN_IMAGE:
     case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);

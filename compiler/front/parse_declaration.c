@@ -330,6 +330,14 @@ static Syntax *parse_fog(Parser *p)
                                      "for example `fog { color: #dfe9f2, density: 0.05 }`");
 }
 
+/* medium = "medium" properties ; */
+static Syntax *parse_medium(Parser *p)
+{
+    return parse_block_of_properties(
+        p, SYNTAX_MEDIUM, false, "`{` and the properties of the medium",
+        "for example `medium { within: box([4, 2, 4]), density: 0.5 }`");
+}
+
 /* image = "image" properties ; */
 static Syntax *parse_image(Parser *p)
 {
@@ -344,7 +352,7 @@ static Syntax *parse_zone(Parser *p)
                                      "for example `zone { center: [0, 1, 0], radius: 0.5 }`");
 }
 
-/* surroundings = camera | light | sky | fog | image | zone ; */
+/* surroundings = camera | light | sky | fog | medium | image | zone ; */
 Syntax *parse_surroundings(Parser *p)
 {
     switch (kind_here(p)) {
@@ -352,6 +360,7 @@ Syntax *parse_surroundings(Parser *p)
     case TOKEN_LIGHT: return parse_light(p);
     case TOKEN_SKY: return parse_sky(p);
     case TOKEN_FOG: return parse_fog(p);
+    case TOKEN_MEDIUM: return parse_medium(p);
     case TOKEN_ZONE: return parse_zone(p);
     default: return parse_image(p);
     }

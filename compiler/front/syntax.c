@@ -38,6 +38,7 @@ const char *syntax_kind_name(SyntaxKind kind)
         [SYNTAX_LIGHT]         = "light",
         [SYNTAX_SKY]           = "sky",
         [SYNTAX_FOG]           = "fog",
+        [SYNTAX_MEDIUM]        = "medium",
         [SYNTAX_IMAGE]         = "image",
         [SYNTAX_ZONE]          = "zone",
         [SYNTAX_PROPERTY]      = "property",

@@ -48,6 +48,7 @@ typedef enum SyntaxKind {
     SYNTAX_LIGHT,        /* name?  PROPERTY... */
     SYNTAX_SKY,          /* -      PROPERTY... */
     SYNTAX_FOG,          /* -      PROPERTY... */
+    SYNTAX_MEDIUM,       /* -      PROPERTY... */
     SYNTAX_IMAGE,        /* -      PROPERTY... */
     SYNTAX_ZONE,         /* -      PROPERTY... */
     SYNTAX_PROPERTY,     /* name   [0] value */

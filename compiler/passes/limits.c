@@ -335,19 +335,64 @@ static void refuse_default(Compilation *c, Node node)
     arena_free(&c->scratch);
 }
 
+/* A cell of a medium in which the density has no bound. */
+typedef struct UnboundedCell {
+    KrsVolume volume;
+    uint32_t  at[3];
+} UnboundedCell;
+
+enum { SIDE_OF_VOLUMES = 8 }; /* of media that are looked at, in cells */
+
+/* Returns the number of a medium whose density has no bound somewhere, as near a pole; that of all media: there
+   is none. */
+static size_t find_unbounded(const Compilation *c, KrsState *state, float (*bounds)[2],
+                             UnboundedCell *cell)
+{
+    size_t i = 0;
+    for (; i < c->scene->volume_count; i++) {
+        cell->volume = krs_scene_volume(c->scene, i);
+        for (int k = 0; k < 3; k++)
+            cell->volume.cells[k] = SIDE_OF_VOLUMES;
+        if (state_volume(state, i, &cell->volume, bounds, cell->at) == KRS_BAD_SCENE)
+            break;
+    }
+    return i;
+}
+
+static void refuse_volume(Compilation *c, size_t number, const UnboundedCell *cell)
+{
+    double middle[3];
+    for (int k = 0; k < 3; k++)
+        middle[k] = cell->volume.low[k] + (cell->at[k] + 0.5) / SIDE_OF_VOLUMES *
+                                              (cell->volume.high[k] - cell->volume.low[k]);
+    Diag *diag  = diag_add(&c->diags, DIAG_BAD_VALUE, c->elaborated.volumes.items[number].span,
+                           "the density of a medium has no bound");
+    diag->label = diag_text(&c->diags, "none near [%.3g, %.3g, %.3g]", middle[0], middle[1],
+                            middle[2]);
+    diag->help  = "limit it, as in `min(1 / length(p), 100)`";
+}
+
 /* Refuses a scene that is not finite at time 0 with all defaults, the first frame of all
    callers. */
 static KrsStatus check_defaults(Compilation *c)
 {
+    const size_t  volumes = c->scene->volume_count;
+    UnboundedCell cell;
+    float(*bounds)[2] = arena_alloc(
+        &c->scratch, volumes ? SIDE_OF_VOLUMES * SIDE_OF_VOLUMES * SIDE_OF_VOLUMES : 1,
+        sizeof *bounds);
     KrsState *state;
     KrsStatus status = state_new(c->scene, &state);
     if (status != KRS_OK)
         return status;
-    Node node = state_infinite(state);
+    Node   node      = state_infinite(state);
+    size_t unbounded = node == NODE_NONE ? find_unbounded(c, state, bounds, &cell) : volumes;
     state_free(state);
     if (node != NODE_NONE)
         refuse_default(c, node);
-    return node == NODE_NONE ? KRS_OK : KRS_BAD_SCENE;
+    if (unbounded < volumes)
+        refuse_volume(c, unbounded, &cell);
+    return node == NODE_NONE && unbounded == volumes ? KRS_OK : KRS_BAD_SCENE;
 }
 
 /* ---- text ---- */

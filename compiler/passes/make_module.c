@@ -65,6 +65,8 @@ KrsStatus pass_emit(Compilation *c)
                              .research_count  = roots_of(roots, ROOTS_RESEARCH).count,
                              .gradients       = roots_of(roots, ROOTS_GRADIENT).items,
                              .zone            = zone_root(scene),
+                             .volumes         = roots_of(roots, ROOTS_VOLUME).items,
+                             .volume_count    = scene->volume_count,
                              .planes          = roots_of(roots, ROOTS_PLANE).items,
                              .camera_relative = program->camera_relative
                                                     ? roots_of(roots, ROOTS_CAMERA_RELATIVE).items

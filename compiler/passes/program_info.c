@@ -63,6 +63,7 @@ static void find_kinds(Compilation *c)
     for (size_t i = 0; i < s->lights.count; i++)
         program->shadows = program->shadows || s->lights.items[i].shadow;
     program->emits   = c->scene->emissive_count > 0;
+    program->volumes = s->volumes.count;
     program->sky_map = s->sky.map != NULL || s->sky.daylight;
 }
 
@@ -192,6 +193,8 @@ void print_info(Compilation *c, Text *out)
     text_format(out, "operations  %zu\nflops  %.6g\nloops  %u\n", program->operations,
                 program->flops, program->loops);
     print_flags(program, out);
+    if (program->volumes > 0)
+        text_format(out, "media  %zu\n", program->volumes);
     if (program->subsurface)
         text_add(out, "subsurface  yes\n");
     if (program->media) /* a line of its own, since few scenes have any */

@@ -136,6 +136,28 @@ static void retain_parameters(Compilation *c)
     }
 }
 
+/* Returns how many lowered components are shown before this one. */
+static uint32_t components_before(const Scene *s, size_t shown)
+{
+    uint32_t count = 0;
+    for (size_t i = 0; i < s->components.count; i++)
+        count += s->components.items[i].first < shown;
+    return count;
+}
+
+static void retain_volumes(Compilation *c)
+{
+    KrsScene    *scene  = c->scene;
+    const Scene *s      = &c->elaborated;
+    scene->volume_count = s->volumes.count;
+    scene->volumes      = arena_new_array(&scene->arena, RetainedVolume, s->volumes.count + 1);
+    for (size_t i = 0; i < s->volumes.count; i++) {
+        const SceneVolume *from = &s->volumes.items[i];
+        scene->volumes[i] = (RetainedVolume){from->within->box, components_before(s, from->before),
+                                             retain_place(c, from->span)};
+    }
+}
+
 static void retain_scene(Compilation *c)
 {
     KrsScene    *scene = c->scene;
@@ -146,6 +168,7 @@ static void retain_scene(Compilation *c)
     retain_slopes(c);
     retain_boxes(c);
     retain_parameters(c);
+    retain_volumes(c);
     scene->camera_count  = s->cameras.count;
     scene->cameras       = arena_new_array(arena, SceneCamera, s->cameras.count + 1);
     scene->camera_places = arena_new_array(arena, RetainedPlace, s->cameras.count + 1);
@@ -214,9 +237,10 @@ static void retain_tapes(Compilation *c)
     scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);
     if (scene->assembly.items.count > 0)
         scene->assembly.tape = tape_of(scene, roots_of(roots, ROOTS_ASSEMBLY), arena);
-    scene->places      = tape_of(scene, roots_of(roots, ROOTS_PLACE), arena);
-    scene->box_numbers = tape_of(scene, roots_of(roots, ROOTS_BOX), arena);
-    scene->view        = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
+    scene->volumes_tape = tape_of(scene, roots_of(roots, ROOTS_VOLUME), arena);
+    scene->places       = tape_of(scene, roots_of(roots, ROOTS_PLACE), arena);
+    scene->box_numbers  = tape_of(scene, roots_of(roots, ROOTS_BOX), arena);
+    scene->view         = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
 
     const Instances *instances = scene->graph->instances;
     if (instances)
@@ -229,9 +253,10 @@ static void retain_frame(Compilation *c)
 {
     KrsScene         *scene   = c->scene;
     const Graph      *graph   = scene->graph;
-    const Tape *const tapes[] = {&scene->distance,  &scene->guarded, &scene->ahead,
-                                 &scene->gradients, &scene->surface, &scene->places,
-                                 &scene->view,      &scene->rows,    &scene->assembly.tape};
+    const Tape *const tapes[] = {&scene->distance,     &scene->guarded, &scene->ahead,
+                                 &scene->gradients,    &scene->surface, &scene->places,
+                                 &scene->volumes_tape, &scene->view,    &scene->rows,
+                                 &scene->assembly.tape};
     bool             *needed  = arena_new_array(&c->scratch, bool, graph->count);
     size_t            count   = 0;
     for (size_t t = 0; t < sizeof tapes / sizeof *tapes; t++)

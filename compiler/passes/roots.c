@@ -26,6 +26,7 @@ static void allocate_roots(Compilation *c, RootRange assembly)
     const size_t counts[ROOT_KINDS] = {
         [ROOTS_SURFACE]         = components * ROOT_COUNT,
         [ROOTS_ZONE]            = s->zone_count > 0,
+        [ROOTS_VOLUME]          = s->volumes.count * NODES_OF(VolumeRoots),
         [ROOTS_CAMERA]          = s->cameras.count * NODES_OF(CameraNodes),
         [ROOTS_LIGHT]           = s->lights.count * NODES_OF(LightNodes),
         [ROOTS_SKY]             = NODES_OF(SkyRoots),
@@ -62,6 +63,41 @@ static bool lower_components(Compilation *c, Graph *g, LoweredGroups *groups)
         }
         if (place && *place == NODE_NONE)
             *place = graph_number(g, 0);
+    }
+    return true;
+}
+
+/* Returns a vector with each component within [0, 1]. */
+static Node within_one(Graph *g, Node vector)
+{
+    static const double none[3] = {0, 0, 0}, all[3] = {1, 1, 1};
+    return graph_op3(g, OP_clamp, vector, graph_constant(g, TYPE_VEC3, none),
+                     graph_constant(g, TYPE_VEC3, all));
+}
+
+/* Lowers media.  Where densities and what scatters would be out of bounds, they are at the bounds. */
+static bool lower_volumes(Compilation *c, Graph *g, LoweredGroups *groups)
+{
+    const Scene *s = &c->elaborated;
+    for (size_t i = 0; i < s->volumes.count; i++) {
+        const SceneVolume *volume  = &s->volumes.items[i];
+        VolumeRoots       *roots   = volume_roots(&c->scene->roots, i);
+        const MediumNodes *nodes   = &volume->nodes;
+        const double       none[3] = {0, 0, 0};
+        Node               zero    = graph_number(g, 0), distance;
+        g->here                    = volume->span;
+        if (!lower_solid(g, volume->within, groups, &c->scratch, &distance)) {
+            Diag *diag = diag_add(&c->diags, DIAG_TOO_LARGE, volume->span,
+                                  "the shape of the medium needs too many operations");
+            diag->help = "a simpler `within`: what is outside may have a density of 0 as well";
+            return false;
+        }
+        roots->density    = graph_op3(g, OP_select, graph_op2(g, OP_less, distance, zero),
+                                      graph_op2(g, OP_max, nodes->density, zero), zero);
+        roots->albedo     = within_one(g, graph_op2(g, OP_scale, nodes->color, nodes->scatter));
+        roots->anisotropy = graph_op3(g, OP_clamp, nodes->anisotropy, graph_number(g, -0.99),
+                                      graph_number(g, 0.99));
+        roots->emission = graph_op2(g, OP_max, nodes->emission, graph_constant(g, TYPE_VEC3, none));
     }
     return true;
 }
@@ -241,11 +277,11 @@ KrsStatus pass_lower(Compilation *c)
     if (c->options->pictures && !c->request->min_instances)
         lowered_groups_take_few(groups);
     allocate_roots(c, find_assembly(c, groups));
-    if (!lower_components(c, s->graph, groups))
+    if (!lower_components(c, s->graph, groups) || !lower_volumes(c, s->graph, groups))
         return KRS_BAD_SCENE;
     find_motions(c);
     more->open_surfaces   = any_thin_open_surfaces(s);
-    more->camera_relative = !more->open_surfaces &&
+    more->camera_relative = !more->open_surfaces && s->volumes.count == 0 &&
                             may_need_rebase(s, s->graph, roots, c->options->pictures, &c->scratch);
     gather_view(s, roots);
     lower_marches(c, s->graph, groups);

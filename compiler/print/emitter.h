@@ -170,7 +170,11 @@ void emit_prepare_entry_point(Emitter *e);
 void emit_head(Emitter *e, KrsFunction function);
 void emit_prepare_head(Emitter *e);
 void emit_zone_depth_head(Emitter *e);
-void emit_head_of(Emitter *e, FunctionKind kind, uint32_t component);
+/* The functions of a medium: those of KRS_FUNCTION_DENSITY and behind it. */
+enum { VOLUME_FUNCTIONS = 4 };
+void        emit_head_of_volume(Emitter *e, uint32_t which, uint32_t volume);
+const char *emit_call_of_volume(Emitter *e, uint32_t which, uint32_t volume);
+void        emit_head_of(Emitter *e, FunctionKind kind, uint32_t component);
 /* These emit a call of a component's function, in one with operands of the same names, or with
    others. */
 const char *emit_call_of(Emitter *e, FunctionKind kind, uint32_t component);
@@ -201,8 +205,16 @@ const MirrorNodes *mirror_nodes(const Emitter *e, Node fold);
 /* Emits a distance without what zones cut out. */
 const char *emit_cut(Emitter *e, const char *distance);
 void        need_distance(Emitter *e);
-void        need_gradient(Emitter *e);
-void        need_tangent(Emitter *e);
+/* volumes.c: functions of media that scatter light. */
+void emit_volumes(Emitter *e);
+void emit_density(Emitter *e);
+void emit_albedo(Emitter *e);
+void emit_anisotropy(Emitter *e);
+void emit_emission(Emitter *e);
+/* Tells whether functions of media are wanted. */
+bool emit_wants_volumes(const Emitter *e);
+void need_gradient(Emitter *e);
+void need_tangent(Emitter *e);
 /* Tells whether krs_tangent keeps the distance to a component's plane from overflow by the box around the component. */
 bool emit_keeps_plane(const Emitter *e, uint32_t component);
 /* Tells whether a function is wanted that finds the gradient of what is nearest. */

@@ -28,10 +28,11 @@ static void emit_global(Emitter *e, GraphType type, const char *name)
 /* Tells whether a function that is wanted knows the ray's medium. */
 static bool reads_medium(const Emitter *e)
 {
-    static const KrsFunction functions[] = {
-        KRS_FUNCTION_DISTANCE, KRS_FUNCTION_ALONG,   KRS_FUNCTION_STEPS,  KRS_FUNCTION_DISTANCE_LOD,
-        KRS_FUNCTION_GRADIENT, KRS_FUNCTION_TANGENT, KRS_FUNCTION_SURFACE};
-    bool found = false;
+    static const KrsFunction functions[] = {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_ALONG,
+                                            KRS_FUNCTION_STEPS,    KRS_FUNCTION_DISTANCE_LOD,
+                                            KRS_FUNCTION_GRADIENT, KRS_FUNCTION_TANGENT,
+                                            KRS_FUNCTION_SURFACE,  KRS_FUNCTION_DENSITY};
+    bool                     found       = false;
     for (size_t i = 0; i < sizeof functions / sizeof *functions; i++)
         found = found || e->wanted[functions[i]];
     return found;

@@ -41,7 +41,9 @@ typedef struct Module {
     const Node
         *gradients; /* lower_gradient's two, of the zones as well; FLOATs where there is none */
     /* The rest is the scene's: */
-    Node        zone;   /* the depth in zones, or NODE_NONE */
+    Node        zone;    /* the depth in zones, or NODE_NONE */
+    const Node *volumes; /* of each medium, in the order of functions of KRS_FUNCTION_DENSITY */
+    size_t      volume_count;
     const Node *planes; /* where a ray meets one, and how steeply it falls */
     const Node
         *camera_relative; /* surfaces, planes and the zone, if there is one, of camera-relative

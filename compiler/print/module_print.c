@@ -34,6 +34,10 @@ static const struct {
     [KRS_FUNCTION_MEDIUM_AT]           = {need_media, emit_medium_at},
     [KRS_FUNCTION_GLASS]               = {need_media, emit_glass},
     [KRS_FUNCTION_SUBSURFACE]          = {need_subsurface, emit_subsurface},
+    [KRS_FUNCTION_DENSITY]             = {NULL, emit_density},
+    [KRS_FUNCTION_ALBEDO]              = {NULL, emit_albedo},
+    [KRS_FUNCTION_ANISOTROPY]          = {NULL, emit_anisotropy},
+    [KRS_FUNCTION_EMISSION]            = {NULL, emit_emission},
 };
 
 static void (*const component_functions[FUNCTION_KINDS])(Emitter              *e,
@@ -180,6 +184,7 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
     NodeList all = {0}, camera_relative = {0};
     add_nodes(&e, &all, module->surfaces, count * ROOT_COUNT);
     add_nodes(&e, &all, &module->zone, module->zone != NODE_NONE);
+    add_nodes(&e, &all, module->volumes, module->volume_count * VOLUME_FUNCTIONS);
     add_nodes(&e, &all, module->guarded, count);
     add_nodes(&e, &all, module->along, count);
     add_nodes(&e, &all, module->research, module->research_count);
@@ -244,6 +249,8 @@ static NodeList gather_roots(Emitter *e)
     add_nodes(e, &roots, &zone, zone != NODE_NONE && e->cuts);
     add_nodes(e, &roots, e->module->gradients + 2 * e->module->components,
               zone != NODE_NONE && emit_wants_gradient(e) ? 2 : 0);
+    add_nodes(e, &roots, e->module->volumes,
+              emit_wants_volumes(e) ? e->module->volume_count * VOLUME_FUNCTIONS : 0);
     add_boxes(e, &roots, e->wanted[KRS_FUNCTION_DISTANCE_LOD],
               e->wanted[KRS_FUNCTION_SCENE_PART_BOX] && !e->variant->camera_relative);
     add_kept_boxes(e, &roots);
@@ -260,6 +267,7 @@ static void emit_functions(Emitter *e)
     static const char *const sines[] = {"krs_sin", "krs_cos", "krs_tan"};
     emit_instances(e);
     emit_zones(e);
+    emit_volumes(e);
     for (FunctionKind kind = 0; kind < FUNCTION_KINDS; kind++)
         for (uint32_t i = 0; i < e->module->components; i++)
             if (e->needed_of[kind][i]) {

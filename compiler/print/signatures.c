@@ -25,6 +25,7 @@ static const TextParameter normal    = {TYPE_VEC3, "normal", false},
                            reach     = {TYPE_FLOAT, "reach", false};
 static const TextParameter footprint = {TYPE_FLOAT, "footprint", false};
 static const TextParameter part      = {TYPE_UINT, "scene_part", false};
+static const TextParameter medium    = {TYPE_UINT, "volume", false};
 static const TextParameter low = {TYPE_VEC3, "low", true}, high = {TYPE_VEC3, "high", true};
 
 /* The functions of the scene; what has no row has no function of its own. */
@@ -106,11 +107,36 @@ static const Signature of_scene[KRS_FUNCTION_COUNT] = {
                                 TYPE_FLOAT,
                                 {&point},
                                 "// The distance to what may let light through; negative inside.\n"},
+    [KRS_FUNCTION_DENSITY] =
+        {"krs_volume_density",
+         TYPE_FLOAT,
+         {&medium, &point},
+         "// How much of the light is lost or scattered by a medium, on a unit of length.\n"},
+    [KRS_FUNCTION_ALBEDO]     = {"krs_volume_albedo",
+                                 TYPE_VEC3,
+                                 {&medium, &point},
+                                 "// The part of that which is scattered.\n"},
+    [KRS_FUNCTION_ANISOTROPY] = {"krs_volume_anisotropy",
+                                 TYPE_FLOAT,
+                                 {&medium, &point},
+                                 "// The mean cosine of the angle by which it is scattered.\n"},
+    [KRS_FUNCTION_EMISSION]   = {"krs_volume_emission",
+                                 TYPE_VEC3,
+                                 {&medium, &point},
+                                 "// What a medium sends out itself where it is dense.\n"},
     [KRS_FUNCTION_SUBSURFACE] =
         {"krs_subsurface",
          TYPE_FLOAT,
          {&point},
          "// The distance to that below whose surface light may go on; negative inside.\n"},
+};
+
+/* The functions of a medium, whose number is the end of the name. */
+static const Signature of_volume[VOLUME_FUNCTIONS] = {
+    {"krs_volume_density", TYPE_FLOAT, {&point}, NULL},
+    {"krs_volume_albedo", TYPE_VEC3, {&point}, NULL},
+    {"krs_volume_anisotropy", TYPE_FLOAT, {&point}, NULL},
+    {"krs_volume_emission", TYPE_VEC3, {&point}, NULL},
 };
 
 static const Signature zone_depth = {"krs_zone_depth", TYPE_FLOAT, {&point}, NULL};
@@ -180,6 +206,25 @@ static void begin(Emitter *e, const Signature *signature, const char *name)
 
 void emit_prepare_head(Emitter *e) { begin(e, &prepare, prepare.name); }
 void emit_zone_depth_head(Emitter *e) { begin(e, &zone_depth, zone_depth.name); }
+
+static const char *name_of_volume(Emitter *e, uint32_t which, uint32_t volume)
+{
+    Text text = {.arena = e->scratch};
+    text_format(&text, "%s_%u", of_volume[which].name, volume + 1);
+    return text.bytes;
+}
+
+void emit_head_of_volume(Emitter *e, uint32_t which, uint32_t volume)
+{
+    begin(e, &of_volume[which], name_of_volume(e, which, volume));
+}
+
+const char *emit_call_of_volume(Emitter *e, uint32_t which, uint32_t volume)
+{
+    Text text = {.arena = e->scratch};
+    text_format(&text, "%s(p)", name_of_volume(e, which, volume));
+    return text.bytes;
+}
 
 void emit_head(Emitter *e, KrsFunction function)
 {

@@ -64,6 +64,16 @@ typedef enum KrsFunction {
     /* float krs_subsurface(vec3 p): the distance to components below whose surface light may go on
        (KrsProgram.subsurface), < 0 inside of one. */
     KRS_FUNCTION_SUBSURFACE,
+    /* Media that scatter light (KrsProgram.volumes), numbered from 0:
+       float krs_volume_density(uint volume, vec3 p): how much of the light that goes on from p is lost
+       or scattered, on a unit of length; 0 outside of the medium.
+       vec3 krs_volume_albedo: the part of that which is scattered.
+       float krs_volume_anisotropy: the mean cosine of scattering.
+       vec3 krs_volume_emission: what the medium sends out itself where it is dense. */
+    KRS_FUNCTION_DENSITY,
+    KRS_FUNCTION_ALBEDO,
+    KRS_FUNCTION_ANISOTROPY,
+    KRS_FUNCTION_EMISSION,
     /* float krs_sin(float a), krs_cos, krs_tan: for callers that need them as well. */
     KRS_FUNCTION_SINES,
     /* float krs_atan2(float a, float b), likewise. */

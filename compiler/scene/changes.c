@@ -266,14 +266,22 @@ static bool same_groups(const Module *a, const Module *b)
             memcmp(a->is_subsurface, b->is_subsurface, count * sizeof *a->is_subsurface) == 0);
 }
 
+static bool same_volumes(const KrsScene *a, const KrsScene *b)
+{
+    bool same = a->volume_count == b->volume_count;
+    for (size_t i = 0; same && i < a->volume_count; i++)
+        same = a->volumes[i].before == b->volumes[i].before;
+    return same;
+}
+
 static bool same_info(const KrsScene *a, const KrsScene *b)
 {
     return a->component_count == b->component_count && a->zone_count == b->zone_count &&
            krs_scene_is_panoramic(a) == krs_scene_is_panoramic(b) &&
            krs_scene_has_lens(a) == krs_scene_has_lens(b) &&
            a->program.sky_map == b->program.sky_map && a->program.emits == b->program.emits &&
-           a->program.films == b->program.films &&
-           a->program.anisotropic == b->program.anisotropic &&
+           a->program.films == b->program.films && a->program.volumes == b->program.volumes &&
+           same_volumes(a, b) && a->program.anisotropic == b->program.anisotropic &&
            a->program.subsurface == b->program.subsurface && same_slots(&a->program, &b->program) &&
            same_methods(&a->program, &b->program) && a->module.has_slopes == b->module.has_slopes &&
            !a->module.box_nodes.around == !b->module.box_nodes.around &&

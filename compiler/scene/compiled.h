@@ -59,6 +59,7 @@ typedef struct KrsProgram {
     bool          media;   /* a component may let light through: there are variants of KrsGlass */
     bool          layers;  /* a material has a coat, sheen, or a mirror other than usual */
     bool          films;   /* a material may have a thin film */
+    size_t        volumes; /* media that scatter light */
     bool          subsurface;  /* light may go on below the surface of a component */
     bool          anisotropic; /* a material may be rougher along its tangent than across */
     KrsMarchGroup march_groups[KRS_MAX_MARCH_GROUPS];
@@ -113,6 +114,21 @@ KrsStatus krs_state_view(KrsState *state, size_t camera, KrsView *view);
    emitted elsewhere is not in them. */
 size_t krs_state_emissive(KrsState *state, const double low[3], const double high[3],
                           double min_radius, KrsEmissive balls[KRS_MAX_EMISSIVE]);
+/* A medium that scatters light, in cells of a box around it; `before`: how many components count as
+   shown before it. */
+typedef struct KrsVolume {
+    double   low[3], high[3];
+    uint32_t cells[3], before;
+} KrsVolume;
+enum { KRS_MAX_VOLUME_CELLS = 16384 };
+/* Tells where a medium is.  In all states of a scene this is the same. */
+KrsVolume krs_scene_volume(const KrsScene *scene, size_t volume);
+/* Finds bounds of its density in each cell, in this state, the columns of x first.  They are proven, by
+   interval arithmetic over somewhat more than the cell, and hold for densities in single precision.
+   Returns KRS_BAD_SCENE where there is no bound. */
+KrsStatus krs_state_volume(KrsState *state, size_t volume, float (*bounds)[2]);
+/* Returns its density at a point. */
+double krs_state_density(KrsState *state, size_t volume, const double point[3]);
 /* Tells whether the rounding error of such a coordinate in single precision is visible in pixels of this
    width.  Then points must be relative to an origin near the camera. */
 bool krs_needs_rebase(double coordinate, double pixel);

@@ -22,6 +22,7 @@
 typedef enum RootKind {
     ROOTS_SURFACE, /* for each component an array that is indexed by ComponentRoot */
     ROOTS_ZONE,    /* the depth in the zones; none if there are no zones */
+    ROOTS_VOLUME,  /* VolumeRoots of each medium */
     ROOTS_CAMERA,  /* CameraNodes of each camera */
     ROOTS_LIGHT,   /* LightNodes of each light */
     ROOTS_SKY,     /* SkyRoots, with fog */
@@ -39,6 +40,11 @@ typedef enum RootKind {
     ROOT_KINDS
 } RootKind;
 
+typedef struct VolumeRoots {
+    Node density; /* 0 outside of the shape that the medium is in */
+    Node albedo;  /* for each colour the part of light that is scattered */
+    Node anisotropy, emission;
+} VolumeRoots;
 typedef struct SkyRoots {
     Node zenith, horizon, ground, rotation, intensity, turbidity;
     Node fog_color, fog_density, fog_fall, fog_base;
@@ -93,6 +99,11 @@ static inline Node *research_roots(const Roots *roots, ResearchMethod method)
     return all.items + method * (all.count / RESEARCH_COUNT);
 }
 
+static inline VolumeRoots *volume_roots(const Roots *roots, size_t volume)
+{
+    return (VolumeRoots *)roots_of(roots, ROOTS_VOLUME).items + volume;
+}
+
 static inline CameraNodes *camera_roots(const Roots *roots, size_t camera)
 {
     return (CameraNodes *)roots_of(roots, ROOTS_CAMERA).items + camera;
@@ -132,6 +143,13 @@ typedef struct RetainedPlace {
     Position    position;
 } RetainedPlace;
 
+/* A medium of a scene. */
+typedef struct RetainedVolume {
+    Box           box;    /* around it, for all values of the parameters */
+    uint32_t      before; /* components that count as shown before it */
+    RetainedPlace place;
+} RetainedVolume;
+
 struct KrsScene {
     Memory           memory;
     Arena            arena;   /* of all that is below: graph, names, program */
@@ -144,6 +162,8 @@ struct KrsScene {
     Roots            roots;
     size_t           component_count, shown_count, camera_count, light_count;
     size_t           zone_count; /* zones that the scene declares; they share one root */
+    RetainedVolume  *volumes;
+    size_t           volume_count;
     KrsComponent    *components; /* all that are shown */
     size_t          *lowered;    /* of each of these: its index among those that are lowered, */
     size_t          *rank;       /* and krs_joined_rank */
@@ -174,13 +194,14 @@ struct KrsScene {
     Tape             distance; /* distances of all components, and zones */
     Tape             guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
     zones */
-    Tape ahead;     /* if there are open surfaces: ROOTS_ALONG of all components, and zones */
-    Tape gradients; /* if there are open surfaces: gradients of all components */
-    Tape surface;   /* all roots of all components, and zones */
-    Tape places;    /* ROOTS_PLACE; empty if nobody asks for meshes */
-    Tape view;      /* cameras, lights and sky */
-    Tape rows;      /* numbers of tables that depend on the state */
-    Tape frame;     /* of all these, what does not depend on points */
+    Tape ahead;        /* if there are open surfaces: ROOTS_ALONG of all components, and zones */
+    Tape gradients;    /* if there are open surfaces: gradients of all components */
+    Tape surface;      /* all roots of all components, and zones */
+    Tape volumes_tape; /* ROOTS_VOLUME */
+    Tape places;       /* ROOTS_PLACE; empty if nobody asks for meshes */
+    Tape view;         /* cameras, lights and sky */
+    Tape rows;         /* numbers of tables that depend on the state */
+    Tape frame;        /* of all these, what does not depend on points */
 };
 
 /* The tapes of the scene that read tables, over the tables of a state where these are its own. */
@@ -247,6 +268,11 @@ char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *
 void state_refresh(KrsState *state);
 /* Does the same, and the tables of the state: for values at points. */
 void state_refresh_points(KrsState *state);
+
+/* Finds bounds as krs_state_volume does, in cells that the caller has chosen; `at` is the cell without a
+   bound. */
+KrsStatus state_volume(KrsState *state, size_t number, const KrsVolume *volume, float (*bounds)[2],
+                       uint32_t at[3]);
 
 /* state_boxes.c: the boxes of the shown components, but for a floor, at the values of the state; NULL:
    they are those of all states. */

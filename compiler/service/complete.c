@@ -42,6 +42,7 @@ static SyntaxKind declaration_of(const Completion *c, size_t bracket)
             case TOKEN_LIGHT: return SYNTAX_LIGHT;
             case TOKEN_SKY: return SYNTAX_SKY;
             case TOKEN_FOG: return SYNTAX_FOG;
+            case TOKEN_MEDIUM: return SYNTAX_MEDIUM;
             case TOKEN_IMAGE: return SYNTAX_IMAGE;
             case TOKEN_ZONE: return SYNTAX_ZONE;
             case TOKEN_MATERIAL: return SYNTAX_MATERIAL;

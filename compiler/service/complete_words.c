@@ -75,9 +75,9 @@ void complete_statement(const Completion *c, SyntaxKind block)
 {
     static const char *const of_krs[] = {"kernel", "reflect", "mobius", "let", "for",
                                          "if",     "print",   "assert", NULL};
-    static const char *const words[]  = {"let",   "def", "param", "shape", "material", "camera",
-                                         "light", "sky", "fog",   "image", "zone",     "show",
-                                         "use",   "for", "if",    "print", "assert",   NULL};
+    static const char *const words[]  = {
+         "let",   "def",  "param", "shape", "material", "camera", "light", "sky",    "fog", "medium",
+         "image", "zone", "show",  "use",   "for",      "if",     "print", "assert", NULL};
     completion_add_words(c, block == SYNTAX_KRS ? of_krs : words, ITEM_KEYWORD);
 }
 

@@ -31,6 +31,7 @@ static SymbolKind kind_of_symbol(SyntaxKind kind)
     case SYNTAX_LIGHT:
     case SYNTAX_SKY:
     case SYNTAX_FOG:
+    case SYNTAX_MEDIUM:
     case SYNTAX_IMAGE:
     case SYNTAX_ZONE: return SYMBOL_OBJECT;
     case SYNTAX_SHOW: return SYMBOL_EVENT;

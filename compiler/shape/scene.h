@@ -100,6 +100,22 @@ typedef struct StateFloor {
     } eyes; /* of cameras */
 } StateFloor;
 
+/* Rows of medium.def. */
+typedef struct MediumNodes {
+#define KRS_MEDIUM(name, type, otherwise, low, high) Node name;
+#include "compiler/shape/medium.def"
+} MediumNodes;
+
+enum { MAX_VOLUMES = 8 };
+
+/* A medium: what fills a shape and scatters light, as smoke does.  Surfaces know nothing of it. */
+typedef struct SceneVolume {
+    const Shape *within;
+    MediumNodes  nodes;
+    size_t before; /* components that were shown before; glass that is shown later has none of it */
+    Span   span;   /* of its density, or else of its block */
+} SceneVolume;
+
 typedef struct Scene {
     Graph *graph;
     struct {
@@ -124,6 +140,10 @@ typedef struct Scene {
         SceneLight *items;
         size_t      count, capacity;
     } lights;
+    struct {
+        SceneVolume *items;
+        size_t       count, capacity;
+    } volumes;
     struct {
         const char **items;
         size_t       count, capacity;

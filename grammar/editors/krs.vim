@@ -7,7 +7,7 @@ if exists("b:current_syntax")
     finish
 endif
 
-syntax keyword krsStatement let def param shape material camera light sky fog image zone show use krs
+syntax keyword krsStatement let def param shape material camera light sky fog medium image zone show use krs
 syntax keyword krsControl for if then else in
 syntax keyword krsOperatorWord and or not
 syntax keyword krsConstant true false

@@ -22,4 +22,4 @@ from krs.view import View, view
 __all__ = ["ArgumentError", "Camera", "DeviceError", "Diagnostic", "Error", "Expression", "Grid", "InternalError",
            "Interrupted", "Library", "MemoryLimit", "Mesh", "Parameter", "Picture", "Scene", "SceneError",
            "SceneWarning", "Section", "Sequence", "Sketch", "View", "camera", "choose", "deg", "devices", "fog", "image",
-           "kernel", "let", "light", "material", "param", "show", "sky", "use", "view", "zone"]
+           "kernel", "let", "light", "material", "medium", "param", "show", "sky", "use", "view", "zone"]

@@ -593,7 +593,7 @@ def _surroundings(word: str) -> Any:
 
 
 camera = _surroundings("camera")
-sky, fog, image, zone = (_surroundings(word) for word in ("sky", "fog", "image", "zone"))
+sky, fog, medium, image, zone = (_surroundings(word) for word in ("sky", "fog", "medium", "image", "zone"))
 
 
 class Use(Definition):

@@ -24,6 +24,7 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 #include "runtime/film/settings.h"
+#include "runtime/film/volumes.h"
 #include "runtime/tracer/view.h"
 
 static IntegratorPlan *const integrators[KRS_INTEGRATOR_COUNT] = {
@@ -278,7 +279,7 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
                               job->options.light, job->rebase_origin, inputs_room(job)))
         return false;
     rendering_set_emissive(rendering, job->emissive, job->frame.emissive_count);
-    inputs_upload_map(job);
+    inputs_upload_tables(job);
     return true;
 }
 
@@ -331,7 +332,8 @@ static Job job_of(KrsFilm *film, const Addition *a)
 static KrsStatus add_moment(KrsFilm *film, const Addition *a)
 {
     Job job = job_of(film, a);
-    if (!job_read_frame(&job, a->state, a->camera) || !executor_choose(&job, a->samples))
+    if (!job_read_frame(&job, a->state, a->camera) || !volumes_find(&job) ||
+        !executor_choose(&job, a->samples))
         return job.gpu->status;
     film->sums->stats.executor = job.options.methods.executor;
     film->rendering->catches   = plate_catches(film);

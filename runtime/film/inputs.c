@@ -7,6 +7,7 @@
 
 #include "runtime/film/plate.h"
 #include "runtime/film/plate_map.h"
+#include "runtime/film/volumes.h"
 #include "runtime/tracer/rendering.h"
 
 /* Copies the listed rays of a band to the device, behind the lights. */
@@ -46,6 +47,9 @@ static size_t rays_of_map(const Job *job)
     return plate_map_exists(job) ? (plate_map_rows(job) + 1) / 2 : 0;
 }
 
+/* Two rows are as large as a ray. */
+static size_t rays_of_volumes(const Job *job) { return (volumes_rows(job) + 1) / 2; }
+
 /* Copies the depths at which rays of a band end to the device, behind the listed rays, and the planes
    of a plate behind them.  The map of the plate is there already. */
 static void upload_limits(const Job *job, const KrsWindow *traced)
@@ -72,15 +76,22 @@ size_t inputs_room(const Job *job)
 {
     const size_t pixels = job->rendering->band.pixels;
     return (job->rays ? pixels : 0) + (job->options.depth ? rays_of_limits(job) : 0) +
-           rays_of_planes(job) + rays_of_map(job);
+           rays_of_planes(job) + rays_of_map(job) + rays_of_volumes(job);
 }
 
-void inputs_upload_map(const Job *job)
+void inputs_upload_tables(const Job *job)
 {
-    const size_t    before = inputs_room(job) - rays_of_map(job);
-    ListedRayBlock *rays   = rendering_listed_rays(job->rendering, job->view.light_count);
+    const size_t    of_volumes = inputs_room(job) - rays_of_volumes(job);
+    const size_t    of_map     = of_volumes - rays_of_map(job);
+    ListedRayBlock *rays       = rendering_listed_rays(job->rendering, job->view.light_count);
+    FrameBlock     *frame      = job->rendering->frame.bytes;
     if (plate_map_exists(job))
-        plate_map_make(job, (uint32_t(*)[4])(rays + before));
+        plate_map_make(job, (uint32_t(*)[4])(rays + of_map));
+    if (volumes_rows(job) == 0)
+        return;
+    volumes_copy(job, (uint32_t(*)[4])(rays + of_volumes));
+    frame->volumes_at = LIGHTS_AT + 2 * (uint32_t)of_volumes +
+                        LIGHT_ROWS * ((uint32_t)job->view.light_count + LIGHTS_AT_ONCE);
 }
 
 void inputs_upload(const Job *job, const KrsWindow *traced)

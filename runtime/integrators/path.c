@@ -41,10 +41,15 @@ static void add_items(const Paths *paths, KrsPhase phase, const Shader *shader, 
 /* Adds what happens where the rays of paths end: at surface `number`, from 0, or at none. */
 static void add_surface(const Paths *paths, uint32_t number)
 {
+    const bool         volumes   = paths->shaders.track != NULL;
     const KrsRenderer *renderer  = paths->job->rendering->renderer;
     const RayKind      rays      = paths->job->rendering->rays;
     const bool         ends      = number == paths->bounces;
     PassConstants      constants = {.phase = ends ? PATHS_END : PATHS_GO_ON, .value = number};
+    if (volumes)
+        add_items(paths, KRS_PHASE_BOUNCES, paths->shaders.track,
+                  number == 0 ? LIST_OF_PIXELS : LIST_OF_PATHS, LIST_IN_VOLUMES,
+                  (PassConstants){.value = number, .of_paths = number > 0});
     add_items(paths, KRS_PHASE_RESOLVE, number == 0 ? &renderer->escapes[rays] : paths->escape,
               number == 0 ? LIST_OF_BAND : LIST_OF_PATHS, LIST_ALL,
               (PassConstants){.value = number});
@@ -54,6 +59,9 @@ static void add_surface(const Paths *paths, uint32_t number)
     if (number == 0 && paths->plate)
         add_items(paths, KRS_PHASE_NORMALS, paths->plate, LIST_ALL, NO_LIST, (PassConstants){0});
     add_items(paths, KRS_PHASE_SHADING, paths->shaders.scatter, LIST_ALL, LIST_OF_PATHS, constants);
+    if (volumes)
+        add_items(paths, KRS_PHASE_SHADING, paths->shaders.collide, LIST_IN_VOLUMES, NO_LIST,
+                  constants);
     if (!ends && (paths->job->view.light_count > 0 || paths->job->view.sky.map))
         plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
                                      .phase     = KRS_PHASE_SHADOWS,

@@ -178,6 +178,8 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
     Path  path = load(pixel, index, base, slope);
     bool  hits = ray.state == STATE_HIT;
     unresolved += ray.unresolved ? 1u : 0u;
+    if (ends_in_volume(index)) // a medium is before it (track.comp); AOVs are those of the surface
+        return hits && path.density == 0.0 && control.first_ray != 0u;
     bool lost = ray.unresolved && path.density > 0.0;
 #ifdef PATH_RAYS
     float begun = abs(load_path(PATH_TOWARD, index).w); // in a medium

@@ -194,7 +194,9 @@ vec4 load_lane(uint row, uint number) { return load_hit_row(lane_at(number) + ro
 void store_lane(uint row, uint number, vec4 numbers) { hits[lane_at(number) + row] = numbers; }
 #endif
 
-// Packs from the lowest bit on: state, side, unresolved, march group; then the steps.
+// Packs from the lowest bit on: state, side, unresolved, march group; then the steps, and at last whether
+// a medium scatters its light before it ends (track.comp).
+const uint MAX_RAY_STEPS = 0x7fffffu, IN_VOLUME = 0x80000000u;
 uint pack_ray(RayEnd ray)
 {
     return ray.state | (ray.side < 0.0 ? 4u : 0u) | (ray.unresolved ? 8u : 0u) |
@@ -205,9 +207,11 @@ RayEnd find_end(uint index)
 {
     uvec2 row = load_end(index);
     uint  bits = row.y;
-    return RayEnd(uintBitsToFloat(row.x), (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u, bits & 3u,
+    return RayEnd(uintBitsToFloat(row.x), (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u & MAX_RAY_STEPS, bits & 3u,
                   (bits & 8u) != 0u, bits >> 4u & 15u);
 }
+
+bool ends_in_volume(uint index) { return (load_end(index).y & IN_VOLUME) != 0u; }
 
 // Finds the tiles that overlap the band, of `side` pixels a side, counted in the whole picture: the
 // first one, and how many in each direction.

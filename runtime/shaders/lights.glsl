@@ -39,3 +39,33 @@ LightPoint sample_sky(vec3 place, float chance, vec2 square_point)
     return point;
 }
 #endif
+
+#ifdef CHOOSES_LIGHTS
+// Chooses a point of a light, or of the sky; `all`: the importance of all lights together.
+LightPoint choose_light_point(vec3 place, vec2 square_point, out uint number, out bool is_sky,
+                              out float all)
+{
+    all = sum_importance(place);
+    float left = square_point.x * all - frame.sky_power;
+    is_sky = left < 0.0;
+    float part = 1.0 + left / max(frame.sky_power, 1e-30); // of what the chosen one has of the square
+    number = 0u;
+    float importance = 0.0;
+    for (uint i = 0u; i < control.lights; i++) {
+        float own = find_importance(find_light(i), place);
+        bool  chosen = left >= 0.0 && own > 0.0;
+        number = chosen ? i : number;
+        importance = chosen ? own : importance;
+        part = chosen ? left / own : part;
+        left -= own;
+    }
+    square_point.x = min(part, BELOW_1);
+    LightPoint point = sample_light(find_light(number), place, importance / max(all, 1e-30),
+                                    square_point);
+#ifdef SKY_MAP
+    if (is_sky)
+        point = sample_sky(place, frame.sky_power / all, square_point);
+#endif
+    return point;
+}
+#endif

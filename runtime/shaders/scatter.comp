@@ -11,6 +11,8 @@
  * DIRECT: paths end at the second surface, but glass is none.  They go on through it, and light of lights
  * comes through it straight.
  *
+ * VOLUMES: media dim the light of lights (volumes.glsl).
+ *
  * CATCHES: a plate catches shadows.  Paths that begin there have rows of results of their own.  What the
  * plate shows may hide lights from surfaces of the scene.
  */
@@ -26,6 +28,7 @@
 #include "path_samples.glsl"
 #include "bsdf.glsl"
 #include "bsdf_samples.glsl"
+#define CHOOSES_LIGHTS
 #include "lights.glsl"
 #include "emissive.glsl"
 #include "boundary.glsl"
@@ -73,6 +76,12 @@ vec3 find_normal(HitPoint hit, KrsSurface surface, vec3 facing)
     return usable ? normal / size : facing;
 }
 
+#if defined(SUBSURFACE) || defined(VOLUMES)
+#include "chances.glsl"
+#endif
+#ifdef VOLUMES
+#include "volumes.glsl"
+#endif
 #ifdef SUBSURFACE
 #include "subsurface.glsl"
 
@@ -85,7 +94,7 @@ vec3 go_below(uvec2 pixel, inout HitPoint hit, inout vec4 facing, inout Bsdf bsd
     if (sample_choice(own, control.ray, 0x20000u + control.value, control.seed).x >=
         bsdf.chance_below)
         return vec3(1.0 / max(1.0 - bsdf.chance_below, 1e-6));
-    begin_chances(own);
+    begin_chances(own, 0x30000u);
     Walk walk = walk_below(hit, facing.xyz, surface.subsurface_color, surface.subsurface_radius);
     vec3 part = bsdf.entering * walk.weight / bsdf.chance_below;
     bsdf = make_dull(bsdf);
@@ -174,30 +183,12 @@ bool is_behind_plate(LightPoint point, HitPoint hit)
 // Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it, and the
 // row of results to which it is added.
 vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec3 facing,
-                  vec3 weight, Cones cones, out uint row)
+                  vec3 weight, Cones cones, Boundary boundary, out uint row)
 {
-    vec2  square_point = choose(pixel, 1u);
-    float all = sum_importance(hit.position);
-    float left = square_point.x * all - frame.sky_power;
-    bool  is_sky = left < 0.0;
-    float part = 1.0 + left / max(frame.sky_power, 1e-30); // of what the chosen one has of the square
-    uint  number = 0u;
-    float importance = 0.0;
-    for (uint i = 0u; i < control.lights; i++) {
-        float own = find_importance(find_light(i), hit.position);
-        bool  chosen = left >= 0.0 && own > 0.0;
-        number = chosen ? i : number;
-        importance = chosen ? own : importance;
-        part = chosen ? left / own : part;
-        left -= own;
-    }
-    square_point.x = min(part, BELOW_1);
-    LightPoint point = sample_light(find_light(number), hit.position, importance / max(all, 1e-30),
-                                    square_point);
-#ifdef SKY_MAP
-    if (is_sky)
-        point = sample_sky(hit.position, frame.sky_power / all, square_point);
-#endif
+    bool  is_sky;
+    uint  number;
+    float all;
+    LightPoint point = choose_light_point(hit.position, choose(pixel, 1u), number, is_sky, all);
     vec3 light = into(axes, point.toward);
     vec4 scattered = scatter(bsdf, light);
     vec3 tint = find_tint_to(point, hit, facing);
@@ -211,6 +202,12 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     added = finite_or_black(added);
     if (largest(added) > 0.0 && is_behind_plate(point, hit))
         added = vec3(0.0);
+#ifdef VOLUMES
+    begin_chances(work.corner + pixel, 0x70000u);
+    enter_medium(rise < 0.0 ? boundary.beyond : boundary.code);
+    float end = largest(added) > 0.0 ? point.end : 0.0;
+    added *= find_left_by_volumes(hit.position, point.toward, end);
+#endif
     // Light that hardly comes back to the eye, as beside the lobe of a mirror, is asked for seldom, and counts more.
     // The first surface always asks, so that light without a size has no noise there.
     float sent = PI * largest(weight * scattered.rgb);
@@ -363,6 +360,14 @@ void do_item(uint number)
                                                    : 1.0 - MIRRORED_LOBE;
 #endif
     }
+#ifdef VOLUMES // a medium is before the surface, whose colour nobody sees
+    if (ends_in_volume(index)) {
+        if ((rows & ~(1u << ROW_COLORS)) != 0u)
+            store_aovs(index, rows & ~(1u << ROW_COLORS), vec4(0.0), hit, hit.side * normal,
+                       albedo_of(surface), surface);
+        return;
+    }
+#endif
     store_seen(index, radiance, hit, normal, surface);
     if (control.phase == PATHS_END)
         return;
@@ -379,7 +384,8 @@ void do_item(uint number)
     Cones cones = find_cones(hit.position, facing.xyz, hit.side > 0.0 ? dull : 0.0);
     uint  row;
     vec3  of_lights = is_direct() && come_by != STRAIGHT ? vec3(0.0) : weight;
-    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, of_lights, cones, row);
+    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, of_lights, cones,
+                                boundary, row);
     float side = continue_path(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
                        surface.distance, boundary, cones);
     store_path(PATH_TOWARD, index, vec4(toward, side));

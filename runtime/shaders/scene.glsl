@@ -45,4 +45,9 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
     surface.normal = normal;
     return surface;
 }
+
+float krs_volume_density(uint volume, vec3 p) { return max(1.0 - length(p), 0.0); }
+vec3  krs_volume_albedo(uint volume, vec3 p) { return vec3(1.0); }
+float krs_volume_anisotropy(uint volume, vec3 p) { return 0.0; }
+vec3  krs_volume_emission(uint volume, vec3 p) { return vec3(0.0); }
 #endif

@@ -27,23 +27,6 @@ struct Walk {
     bool moved; // it leaves elsewhere
 };
 
-// ---- chance ----
-
-uint chances;
-
-void begin_chances(uvec2 pixel)
-{
-    chances = hash_bits(pixel.x + hash_bits(pixel.y + hash_bits(control.ray +
-              hash_bits(0x30000u + control.value + hash_bits(control.seed)))));
-}
-
-// Returns a random number in (0, 1).
-float find_chance()
-{
-    chances += 0x9e3779b9u;
-    return (float(hash_bits(chances) >> 9u) + 0.5) / 8388608.0;
-}
-
 // Chooses a point on the unit sphere, evenly.
 vec3 choose_anywhere()
 {

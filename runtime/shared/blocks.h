@@ -13,7 +13,7 @@
 #include <stdint.h>
 typedef uint32_t     uint;
 typedef float        vec2[2], vec3[3], vec4[4];
-typedef unsigned int uvec2[2];
+typedef unsigned int uvec2[2], uvec3[3];
 #define CONSTANT(name, value) enum { name = (value) }
 #else
 #define CONSTANT(name, value) const uint name = uint(value)
@@ -96,8 +96,9 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
     /* occlusion; radius of the taps for a normal, in pixels; mean irradiance by the sky, which */     \
     /* paths use. */                                                                                   \
     FLOATS(13, error, occlusion_reach, normal_reach, sky_power)                                        \
-    /* Most steps of a ray; balls around what emits light; 1: hits are snapped (march_step.glsl). */   \
-    UINTS(14, max_steps, emissive_count, snaps, gap_a)                                                 \
+    /* Most steps of a ray; balls around what emits light; 1: hits are snapped (march_step.glsl); */   \
+    /* where media begin in the inputs (volumes.glsl). */                                              \
+    UINTS(14, max_steps, emissive_count, snaps, volumes_at)                                            \
     /* The lens, if LENS is set: its radius in `right` and `up`, 1 / the distance of what is sharp, */ \
     /* corners of the aperture; 0: it is round. */                                                     \
     ONE(15, lens)                                                                                      \
@@ -339,7 +340,7 @@ CONSTANT(SURFACE_ROWS, 11);
    the width there.  PATH_DIRECTION: unit, and the growth of the width.  PATH_WEIGHT: the part of
    the light from there that reaches the eye, and the probability density of the direction; 0: it
    is the camera's.  PATH_LIGHT: what a light adds if nothing is in between, and its distance.
-   PATH_TOWARD: the direction to that light, and the side on which the ray begins: 1 outside of all
+   Before that, where a medium scatters: the place, and the medium.  PATH_TOWARD: the direction to that light, and the side on which the ray begins: 1 outside of all
    solids, -1 inside of one, 0: the path has ended; with media more (media.glsl).  PATH_SURFACE: where
    the path was scattered last, and the side on which the ray to the light begins. */
 CONSTANT(PATH_ORIGIN, 0);
@@ -375,6 +376,7 @@ CONSTANT(LIST_ALL, 0);
 CONSTANT(LIST_SPARSE, 1);
 CONSTANT(LIST_TO_LIGHTS, 1); /* of paths: pixels with a ray to a light; `sparse` counts them */
 CONSTANT(LIST_REMAINING, 2);
+CONSTANT(LIST_IN_VOLUMES, 2); /* of paths: pixels whose light a medium scatters */
 CONSTANT(LIST_WIDE, 3);
 CONSTANT(LIST_OF_MARCH_GROUP, 4);
 /* Behind these lists are words of shared.glsl, with room for whole tiles: of rays, and of means
@@ -447,6 +449,18 @@ CONSTANT(WIDE_ROUGHNESSES, 16);
 CONSTANT(WIDE_ANISOTROPIES, 5);
 CONSTANT(LIGHTS_AT, 4096 + 2 * 32 + 12 * 16 * 5); /* the row of the first light */
 
+/* A medium among the inputs.  Behind all of them are bounds of densities in cells, two cells in a row: for
+   each the least and the most. */
+struct VolumeBox {
+    vec3  low;    /* a corner of the box */
+    uint  before; /* components that count as shown before it */
+    vec3  cell;   /* the sides of a cell */
+    uint  first;  /* row of the first cell, counted from where media begin */
+    uvec3 cells;  /* in each direction */
+    uint  gap_a;
+};
+CONSTANT(VOLUME_ROWS, 3);
+
 /* A ball around something that emits light (emissive.glsl). */
 struct EmissiveBall {
     vec3  middle;
@@ -473,6 +487,8 @@ typedef struct Light LightBlock;
 static_assert(sizeof(LightBlock) == 16 * LIGHT_ROWS, "std430");
 typedef struct EmissiveBall EmissiveBlock;
 static_assert(sizeof(EmissiveBlock) == 16 * EMISSIVE_ROWS, "std430");
+typedef struct VolumeBox VolumeBlock;
+static_assert(sizeof(VolumeBlock) == 16 * VOLUME_ROWS, "std430");
 enum { WIDE_ALBEDO_ROWS = WIDE_COSINES * WIDE_ROUGHNESSES * WIDE_ANISOTROPIES };
 static_assert(WIDE_ALBEDOS_AT == ALBEDO_ROWS + EMISSIVE_ROWS * MAX_EMISSIVE, "rows of inputs");
 static_assert(LIGHTS_AT == WIDE_ALBEDOS_AT + WIDE_ALBEDO_ROWS, "rows of inputs");

@@ -145,10 +145,13 @@ struct KrsRendering {
     Buffer table_rows, table_cells; /* krs_state_tables; none where there are no tables */
     double (*table_inputs)
         [4]; /* krs_state_table_inputs of those on the device; NULL: there are none yet */
-    Buffer   sky_table;      /* sky_table.h; none for other skies */
-    uint64_t sky_version;    /* of the map in it */
-    double   sky_irradiance; /* by half of it, on the average */
-    Buffer   inputs;         /* lights, then the rays of a list */
+    Buffer   sky_table;         /* sky_table.h; none for other skies */
+    uint64_t sky_version;       /* of the map in it */
+    double   sky_irradiance;    /* by half of it, on the average */
+    uint32_t (*volume_rows)[4]; /* volumes.h: of the state with this stamp; NULL: of none */
+    size_t   volume_count;
+    uint64_t volume_stamp;
+    Buffer   inputs; /* lights, then the rays of a list */
     /* The control block that shaders use, copied from and to `control`; none where shaders use
        `control` itself. */
     Buffer       device_control;

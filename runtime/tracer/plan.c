@@ -77,6 +77,7 @@ static uint32_t counter_of(ListId list)
     case LIST_OF_QUARTERS: return WORD_OF(quarters);
     case LIST_OF_PATHS: return WORD_OF(tiles);
     case LIST_OF_BAND:
+    case LIST_OF_PIXELS:
     case NO_LIST: return 0;
     default: return WORD_OF(of_march_group) + (list - LIST_OF_MARCH_GROUP);
     }
@@ -97,6 +98,8 @@ static Items items_of(const WorkBlock *work, ListId list)
 {
     if (list == LIST_OF_BAND)
         return ITEMS_KNOWN(tiles_of_band(work) * QUARTERS_OF_TILE);
+    if (list == LIST_OF_PIXELS)
+        return ITEMS_KNOWN(tiles_of_band(work) * TILE * TILE);
     return list == NO_LIST ? ITEMS_KNOWN(0) : (Items){1, counter_of(list), false};
 }
 

@@ -16,6 +16,7 @@ typedef uint32_t ListId;
 enum {
     LIST_OF_QUARTERS = 1 + LIST_SHARED, /* the quarters of tiles in which something is hit */
     LIST_OF_BAND,                       /* all quarters of tiles of the band */
+    LIST_OF_PIXELS,                     /* all slots of pixels of tiles of the band */
     LIST_OF_PATHS,                      /* pixels whose paths go on */
     NO_LIST
 };

@@ -162,6 +162,7 @@ static void drop_scene(Gpu *gpu, KrsRendering *dropped)
     buffer_destroy(gpu, &dropped->table_rows);
     buffer_destroy(gpu, &dropped->table_cells);
     gpu_release(gpu, dropped->table_inputs);
+    gpu_release(gpu, dropped->volume_rows);
     lane_fields_free(&dropped->lane_fields);
 }
 
@@ -171,6 +172,8 @@ static bool change_scene(KrsRendering *rendering, const KrsScene *scene, bool st
 {
     rendering->parameters = rendering->table_rows = rendering->table_cells = (Buffer){0};
     rendering->table_inputs                                                = NULL;
+    rendering->volume_rows                                                 = NULL;
+    rendering->volume_count                                                = 0;
     rendering->lane_fields                                                 = (LaneFields){0};
     rendering->zone_slots = rendering->max_zone_slots = 0;
     rendering->camera_relative                        = false;
@@ -254,6 +257,7 @@ void krs_rendering_free(KrsRendering *rendering)
     if (!gpu->stuck)
         sets_destroy(gpu, rendering->pool);
     gpu_release(gpu, rendering->table_inputs);
+    gpu_release(gpu, rendering->volume_rows);
     lane_fields_free(&rendering->lane_fields);
     gpu_release(gpu, rendering);
 }

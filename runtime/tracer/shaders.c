@@ -187,11 +187,18 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
                                               variant_of_scatter(rendering, options->methods.starts,
                                                                  options->integrator))
                                 : rendering_shade(rendering);
-    shaders->shadows    = find_shader(
-           rendering, "secondary.comp",
-           variant_of_rays(rendering, options->methods.schedule, roots, options->integrator, planes));
+    const bool volumes  = paths && rendering->program->volumes > 0;
+    if (volumes)
+        shaders->collide = find_shader(rendering, "collide.comp",
+                                       variant_of_collide(rendering, options->integrator));
+    shaders->shadows = find_shader(
+        rendering, "secondary.comp",
+        variant_of_rays(rendering, options->methods.schedule, roots, options->integrator, planes));
     rendering->rays = rays;
-    return shaders->march && shaders->normals && shaders->scatter && shaders->shadows;
+    if (volumes)
+        shaders->track = find_shader(rendering, "track.comp", variant_of_track(rendering));
+    return shaders->march && shaders->normals && shaders->scatter && shaders->shadows &&
+           (!volumes || (shaders->track && shaders->collide));
 }
 
 /* ---- shaders that are made at the same time ---- */
@@ -271,6 +278,11 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
                 variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
                                 KRS_INTEGRATOR_PATH,
                                 rendering_light_meets_planes(rendering, KRS_INTEGRATOR_PATH)));
+    }
+    if (paths && rendering->program->volumes > 0) {
+        request(requests, "collide.comp", variant_of_collide(rendering, KRS_INTEGRATOR_PATH));
+        rendering->rays = rays;
+        request(requests, "track.comp", variant_of_track(rendering));
     }
     rendering->rays = rays;
 }

@@ -39,7 +39,8 @@ Shader *rendering_point_query(KrsRendering *rendering);
    march. */
 typedef struct PathShaders {
     Shader *march, *normals, *shadows;
-    Shader *scatter; /* scatter.comp, or for previews shade.comp */
+    Shader *scatter;         /* scatter.comp, or for previews shade.comp */
+    Shader *track, *collide; /* NULL: there are no media */
 } PathShaders;
 bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
                      bool planes, PathShaders *shaders);

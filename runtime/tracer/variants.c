@@ -333,6 +333,49 @@ ShaderVariant variant_of_occluders(const KrsRendering *rendering)
     return to;
 }
 
+/* Sets what shaders need that go through media. */
+static void want_volumes(ShaderVariant *to, const KrsRendering *rendering)
+{
+    if (rendering->program->volumes == 0)
+        return;
+    define(to, "#define VOLUMES %zuu\n", rendering->program->volumes);
+    want(to, KRS_FUNCTION_DENSITY);
+}
+
+/* It is for rays of cameras and of paths; the medium of the former is that at the eye. */
+ShaderVariant variant_of_track(const KrsRendering *rendering)
+{
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    if (rendering->rays != RAYS_OF_PATHS)
+        define(&to, MIXED_RAYS);
+    want(&to, KRS_FUNCTION_SINES);
+    want_volumes(&to, rendering);
+    want_media(&to, rendering);
+    if (rendering->program->media)
+        want(&to, KRS_FUNCTION_MEDIUM_AT);
+    define_choices(&to);
+    return to;
+}
+
+/* What glass absorbs on the way is known by its surface. */
+ShaderVariant variant_of_collide(const KrsRendering *rendering, KrsIntegrator integrator)
+{
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    want(&to, KRS_FUNCTION_SINES);
+    if (rendering->program->media)
+        want(&to, KRS_FUNCTION_SURFACE);
+    if (integrator == KRS_INTEGRATOR_DIRECT)
+        define(&to, "#define DIRECT\n");
+    want_volumes(&to, rendering);
+    want(&to, KRS_FUNCTION_ALBEDO);
+    want(&to, KRS_FUNCTION_ANISOTROPY);
+    want(&to, KRS_FUNCTION_EMISSION);
+    want_media(&to, rendering);
+    want_sky(&to, rendering);
+    define_choices(&to);
+    return to;
+}
+
 /* The random directions of paths need sines. */
 ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
                                  KrsIntegrator integrator)
@@ -349,6 +392,7 @@ ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
     }
     if (rendering->program->subsurface)
         want(&to, KRS_FUNCTION_SUBSURFACE);
+    want_volumes(&to, rendering);
     want_materials(&to, rendering);
     want_plate(&to, rendering);
     want_media(&to, rendering);

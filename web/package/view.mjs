@@ -19,6 +19,8 @@ function notes({ about, image, camera, name }) {
         missing.push('no shader is made of so large a scene');
     if (shaders.media && image.integrator !== 'path')
         missing.push('what is inside of glass, and light through it');
+    if (shaders.volumes && image.integrator !== 'path' && image.integrator !== 'direct')
+        missing.push('media');
     if (image.integrator === 'path' || image.integrator === 'direct')
         missing.push(`the light of the integrator "${image.integrator}"`);
     if (shaders.sky_map)

@@ -143,7 +143,8 @@ static void add_zone(Elaboration *e, const Environment *env, const Syntax *synta
 /* A scene has one sky, one fog, one image, and one camera without a name. */
 static void check_single(Elaboration *e, const Syntax *syntax)
 {
-    if (syntax->kind == SYNTAX_LIGHT || syntax->kind == SYNTAX_ZONE || syntax->name)
+    if (syntax->kind == SYNTAX_LIGHT || syntax->kind == SYNTAX_ZONE ||
+        syntax->kind == SYNTAX_MEDIUM || syntax->name)
         return;
     for (size_t i = 0; i < e->single.count; i++) {
         if (e->single.items[i]->kind != syntax->kind)
@@ -170,6 +171,10 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
         break;
     case SYNTAX_SKY: elaborate_sky(e, env, syntax); break;
     case SYNTAX_FOG: set_fog(e, env, syntax); break;
+    case SYNTAX_MEDIUM:
+        if (known)
+            elaborate_medium(e, env, syntax);
+        break;
     case SYNTAX_ZONE: add_zone(e, env, syntax); break;
     default: set_image(e, env, syntax); break;
     }
@@ -179,13 +184,15 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
 
 static const Syntax silent = {.kind = SYNTAX_SKY}; /* a block that says nothing */
 
-/* Frames the bounded components, from above and to the right. */
+/* Frames the bounded components and media, from above and to the right. */
 static void default_camera(Elaboration *e)
 {
     Box box = box_empty;
     for (size_t i = 0; i < e->scene->components.count; i++)
         if (box_is_finite(e->scene->components.items[i].shape->box))
             box = box_hull(box, e->scene->components.items[i].shape->box);
+    for (size_t i = 0; i < e->scene->volumes.count; i++)
+        box = box_hull(box, e->scene->volumes.items[i].within->box);
     double              target[3] = {0, 0, 0}, eye[3], radius = 2, fov = 35 * M_PI / 180;
     static const double towards[3] = {0.53, 0.37, 0.76};
     if (!box_is_empty(box)) {

@@ -32,6 +32,10 @@ void elaborate_camera(Elaboration *e, const Environment *env, const Syntax *synt
 /* Reads a camera with the properties of a block, the others as camera.def says. */
 SceneCamera read_camera(Elaboration *e, const Environment *env, const Syntax *syntax);
 
+/* ---- medium.c ---- */
+/* Adds a medium to the scene. */
+void elaborate_medium(Elaboration *e, const Environment *env, const Syntax *syntax);
+
 /* ---- sky.c ---- */
 void elaborate_sky(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Finds the light that is the sun of daylight, once all lights are known. */

@@ -113,6 +113,15 @@ RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena 
     return task;
 }
 
+void range_task_set(const RangeTask *task, const double (*parameters)[4])
+{
+    Analysis analysis = {.graph      = task->tape.graph,
+                         .tape       = task->tape,
+                         .facts      = task->facts,
+                         .parameters = parameters};
+    analysis_run(&analysis, (Box){0}, 0, task->tape.frame_count);
+}
+
 void range_task_run(const RangeTask *task, Box box)
 {
     Analysis analysis = {.graph = task->tape.graph, .tape = task->tape, .facts = task->facts};

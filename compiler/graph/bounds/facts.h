@@ -56,7 +56,9 @@ typedef struct RangeTask {
 
 /* Makes a task, with its facts, in the arena; the graph must live as long. */
 RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena);
-void      range_task_run(const RangeTask *task, Box box);
+/* Parameters have these very values from now on, as in graph_facts. */
+void range_task_set(const RangeTask *task, const double (*parameters)[4]);
+void range_task_run(const RangeTask *task, Box box);
 /* Return the values of a FLOAT that a root needs, over the box of the last run, and how fast it changes there. */
 Range  range_task_value(const RangeTask *task, Node node);
 double range_task_slope(const RangeTask *task, Node node);
