@@ -59,8 +59,9 @@ typedef struct Tet {
     float    deviation, slope; /* smooth.h */
     MarkBox  needs;            /* where its proof uses the mesh of other tetrahedra */
     float    steep;            /* pieces.h; 0: it is bounded by smooth.h */
-    uint32_t origin;           /* of the function that is bounded; 0: not known */
-    uint32_t growth;           /* 1 + the number of its cell's (around.h); 0: not known */
+    float    room;   /* the way to another part that faces the surface; 0: there is none */
+    uint32_t origin; /* of the function that is bounded; 0: not known */
+    uint32_t growth; /* 1 + the number of its cell's (around.h); 0: not known */
 } Tet;
 
 typedef struct Tets {

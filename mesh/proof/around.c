@@ -153,7 +153,8 @@ void sure_find(const Arounds *arounds, const Tets *tets, const Tet *tet, double 
     for (int k = 0; k < 4; k++) {
         const Around *around = &arounds->items[tet->points[k]];
         double        path   = ROUNDING * path_length(arounds, tets, tet->points[k], tet, error);
-        good[k]              = path <= error && path < around->width;
+        good[k]              = path <= error && path < around->width &&
+                  (tet->room == 0 || path + around->distance < tet->room);
         if (!good[k])
             continue;
         longest = max2(longest, path);

@@ -166,7 +166,7 @@ static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed 
 {
     PieceCell cell;
     pieces_bound(verifier->field, box, &cell);
-    if (cell.known && cell.pieces.side == 0)
+    if (cell.known && cell.pieces.side == 0 && cell.facing.operand_count == 0)
         note_growth(m, placed, count, room, &cell.growth);
     for (size_t i = 0; i < count && cell.known; i++) {
         Tet *tet = &m->tets.list.items[placed[i].tet];

@@ -10,57 +10,13 @@ static const double ROUNDING = 1 + 1e-9;
 
 /* ---- cells ---- */
 
-/* Returns the least that a piece grows along a direction. */
-static double growth(const FieldPieces *pieces, size_t i, const double direction[3])
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        Range  by   = pieces->slopes[i].by[k];
-        double step = pieces->signs[i] * direction[k];
-        sum += min2(step * by.low, step * by.high);
-    }
-    return sum;
-}
-
-/* Searches for a direction in which all pieces grow, from that of their mean, step by step towards
-   the one that grows least; returns by how much all grow at least along the best one found. */
-static double find_slope(const FieldPieces *pieces, float found[3])
-{
-    enum { ROUNDS = 24 };
-    double direction[3] = {0, 0, 0}, own[MAX_PIECES][3], best = 0;
-    for (size_t i = 0; i < pieces->count; i++) {
-        for (int k = 0; k < 3; k++)
-            own[i][k] = pieces->signs[i] * 0.5 *
-                        (pieces->slopes[i].by[k].low + pieces->slopes[i].by[k].high);
-        if (!normalize3(own[i]))
-            return 0;
-        add_scaled3(direction, direction, 1, own[i]);
-    }
-    for (int round = 0; round < ROUNDS && normalize3(direction); round++) {
-        double least = INFINITY;
-        size_t worst = 0;
-        for (size_t i = 0; i < pieces->count; i++) {
-            double grows = growth(pieces, i, direction);
-            if (grows < least) {
-                least = grows;
-                worst = i;
-            }
-        }
-        for (int k = 0; k < 3 && least > best; k++)
-            found[k] = (float)direction[k];
-        best = max2(best, least);
-        add_scaled3(direction, direction, 0.5 / (round + 1), own[worst]);
-    }
-    return best / ROUNDING;
-}
-
 void pieces_bound(MeshField *field, Box box, PieceCell *cell)
 {
     cell->known = field_pieces(field, box, &cell->pieces);
     if (!cell->known || cell->pieces.side != 0)
         return;
     cell->growth = (Growth){.count = 0};
-    cell->slope  = find_slope(&cell->pieces, cell->growth.direction);
+    cell->slope  = facing_find(&cell->pieces, cell->growth.direction, &cell->facing);
     cell->known  = cell->slope > 0;
     cell->steep  = 0;
     for (size_t i = 0; i < cell->pieces.count && cell->known; i++) {
@@ -71,7 +27,8 @@ void pieces_bound(MeshField *field, Box box, PieceCell *cell)
             square += most * most;
         }
         cell->steep = max2(cell->steep, ROUNDING * sqrt(square));
-        growth_add(&cell->growth, cell->pieces.slopes[i].by, cell->pieces.signs[i]);
+        if (cell->facing.operand_count == 0)
+            growth_add(&cell->growth, cell->pieces.slopes[i].by, cell->pieces.signs[i]);
         smooth_forms(&cell->pieces.hessians[i], negated ? cell->below[i] : cell->above[i],
                      negated ? cell->above[i] : cell->below[i]);
     }
@@ -157,21 +114,15 @@ static double max_of_piece(const Measure *m, size_t piece, const Part *part)
     return least;
 }
 
-/* Bounds a part.  A piece that is low enough by far in the whole is not bounded again in parts of
-   it. */
-static double max_of_part(const Measure *m, Part *part)
+/* Returns what choices make of bounds from above of the pieces, in some of the steps. */
+static double choose(const Measure *m, size_t begin, size_t end, const double most[MAX_PIECES])
 {
-    static const double FAR    = 0.3;
-    const FieldPieces  *pieces = &m->cell->pieces;
-    double              stack[MAX_PIECE_STEPS];
-    int                 depth = 0;
-    for (size_t i = 0; i < pieces->count; i++)
-        if (part->most[i] > FAR * m->enough)
-            part->most[i] = min2(part->most[i], max_of_piece(m, i, part));
-    for (size_t i = 0; i < pieces->step_count; i++) {
-        int step = pieces->steps[i];
+    double stack[MAX_PIECE_STEPS];
+    int    depth = 0;
+    for (size_t i = begin; i < end; i++) {
+        int step = m->cell->pieces.steps[i];
         if (step >= 0) {
-            stack[depth++] = part->most[step];
+            stack[depth++] = most[step];
             continue;
         }
         double b = stack[--depth], a = stack[depth - 1];
@@ -179,6 +130,18 @@ static double max_of_part(const Measure *m, Part *part)
         stack[depth - 1] = greater ? max2(a, b) : min2(a, b);
     }
     return stack[0];
+}
+
+/* Bounds a part.  A piece that is low enough by far in the whole is not bounded again in parts of
+   it. */
+static double max_of_part(const Measure *m, Part *part)
+{
+    static const double FAR    = 0.3;
+    const FieldPieces  *pieces = &m->cell->pieces;
+    for (size_t i = 0; i < pieces->count; i++)
+        if (part->most[i] > FAR * m->enough)
+            part->most[i] = min2(part->most[i], max_of_piece(m, i, part));
+    return choose(m, 0, pieces->step_count, part->most);
 }
 
 /* Sets what forms permit between the middle of corners a and b, which takes the place of b, and the
@@ -372,6 +335,66 @@ static double deviation_of_side(const Contour *contour, const Tet *tet, const Po
     return c.most;
 }
 
+/* ---- parts that face each other ---- */
+
+/* Bounds the sum of two pieces in a tetrahedron, times the side of the measure. */
+static double max_of_sum(Measure *m, const Points *points, size_t i, size_t k)
+{
+    const double(*forms)[6] = m->side > 0 ? m->cell->below : m->cell->above;
+    double form[6], most = 0;
+    Part   sum;
+    for (int j = 0; j < 6; j++)
+        form[j] = forms[i][j] + forms[k][j];
+    for (int a = 0; a < 4; a++) {
+        sum.values[0][a] = m->side * (points->values[a][i] + points->values[a][k]);
+        for (int b = 0; b < a; b++) {
+            double between           = smooth_form(form, points->at[a], points->at[b]);
+            sum.forms[0][PAIR[a][b]] = between;
+            most                     = max2(most, fabs(between));
+        }
+    }
+    m->slack[0] = 1e-12 * most;
+    return max_of_piece(m, 0, &sum);
+}
+
+/* Bounds the sum of two operands, from bounds of sums of pieces, times the side of the measure. */
+static double max_of_operands(const Measure *m, const double sums[MAX_PIECES][MAX_PIECES], size_t a,
+                              size_t b)
+{
+    const Facing *facing = &m->cell->facing;
+    double        most[MAX_PIECES];
+    for (size_t i = 0; i < m->cell->pieces.count; i++)
+        most[i] = choose(m, facing->begins[b], facing->ends[b], sums[i]);
+    return choose(m, facing->begins[a], facing->ends[a], most);
+}
+
+/* Returns a bound of how far parts are apart: where one is 0, the others are as much above it, or
+   below it at a wall. */
+static double find_gap(const PieceCell *cell, const Points *points)
+{
+    const Facing *facing = &cell->facing;
+    Measure       m      = {.cell = cell, .side = facing->choice == PIECE_MIN ? -1 : 1};
+    double        sums[MAX_PIECES][MAX_PIECES], least = INFINITY;
+    for (size_t i = 0; i < cell->pieces.count; i++)
+        for (size_t k = 0; k < cell->pieces.count; k++)
+            sums[i][k] = k < i ? sums[k][i] : max_of_sum(&m, points, i, k);
+    for (size_t a = 0; a < facing->operand_count; a++)
+        for (size_t b = 0; b < a; b++)
+            if (facing->parts[a] != facing->parts[b])
+                least = min2(least, -max_of_operands(&m, (const double(*)[MAX_PIECES])sums, a, b));
+    return least;
+}
+
+/* Finds how far ways may lead from a part before they come to the next one; false: what is on the
+   wrong side may be near to no surface. */
+static bool find_room(const PieceCell *cell, const Points *points, Tet *tet)
+{
+    if (cell->facing.operand_count == 0 || tet->deviation == INFINITY)
+        return true;
+    tet->room = (float)(find_gap(cell, points) / cell->steep * (1 - 1e-6));
+    return tet->room > tet->deviation / tet->slope * (1 + 1e-6);
+}
+
 bool pieces_measure(const Contour *contour, const MeshField *field, const PieceCell *cell,
                     double error, Tet *tet)
 {
@@ -380,6 +403,7 @@ bool pieces_measure(const Contour *contour, const MeshField *field, const PieceC
     tet->slope  = (float)(cell->slope * (1 - 1e-6));
     tet->steep  = (float)(cell->steep * (1 + 1e-6));
     tet->origin = cell->pieces.origin;
+    tet->room   = 0;
     find_points(contour, field, cell, tet, &points);
     Measure m         = {.cell = cell, .budget = BUDGET, .enough = tet->slope * error};
     double  deviation = -INFINITY;
@@ -394,5 +418,7 @@ bool pieces_measure(const Contour *contour, const MeshField *field, const PieceC
     /* A larger deviation was not bounded to the end. */
     tet->deviation = deviation > m.enough ? INFINITY
                                           : (float)(deviation * (1 + copysign(1e-6, deviation)));
+    if (deviation >= 0 && !find_room(cell, &points, tet))
+        tet->deviation = INFINITY;
     return deviation < 0;
 }

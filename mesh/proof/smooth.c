@@ -430,6 +430,7 @@ bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
     double   corners[4][3], values[4];
     tet->deviation = INFINITY;
     tet->steep     = 0;
+    tet->room      = 0;
     tet->origin    = cell->origin;
     tet->slope     = (float)(cell->slope * (1 - 1e-6));
     if (!cell->known)

@@ -161,6 +161,33 @@ static void functions_are_told_apart(void **context)
     arena_free(&arena);
 }
 
+/* A path, and what is wrong around its end, must leave room before a part that faces the surface. */
+static void paths_end_before_facing_parts(void **context)
+{
+    static const double ROOMS[] = {1.15, 1.25}; /* path and distance are 0.8 and 0.4 */
+    Memory              memory  = {0};
+    Arena               arena   = {.memory = &memory};
+    Arounds             arounds = {0};
+    Tets                tets;
+    Sure                sure;
+    (void)context;
+    open_tets(&tets, &arena, 0);
+    for (int roomy = 0; roomy < 2; roomy++) {
+        for (size_t i = 0; i < tets.list.count; i++) {
+            tets.list.items[i].steep     = 1;
+            tets.list.items[i].slope     = 0.5F;
+            tets.list.items[i].deviation = (float)(0.2 * ERROR);
+            tets.list.items[i].room      = (float)(ROOMS[roomy] * ERROR);
+        }
+        arounds_find(&arounds, &tets, &arena);
+        for (size_t i = 0; i < tets.list.count; i++) {
+            sure_find(&arounds, &tets, &tets.list.items[i], ERROR, &sure);
+            assert_int_equal(sure.anywhere, roomy);
+        }
+    }
+    arena_free(&arena);
+}
+
 /* Returns a growth along the first axis, of one piece with this derivative there. */
 static Growth growth_of(double least, double most)
 {
@@ -234,6 +261,7 @@ int main(void)
         cmocka_unit_test(no_way_ends_in_a_bad_one),
         cmocka_unit_test(functions_are_told_apart),
         cmocka_unit_test(functions_grow_along_paths),
+        cmocka_unit_test(paths_end_before_facing_parts),
         cmocka_unit_test(growths_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -419,6 +419,132 @@ static void try_pieces(Trial *t, Box wide, Tet *tet, Bounds *bounds)
     }
 }
 
+static bool is_near_focus(const Trial *t, const Tet *tet)
+{
+    double corners[4][3];
+    tets_corners(&t->tets, tet, corners);
+    return distance3(corners[0], t->focus) < 2 * t->length;
+}
+
+/* ---- parts that face each other ---- */
+
+typedef struct Rooms {
+    Shares ways;
+    size_t found;
+    double nearest; /* to the true one: the largest share */
+} Rooms;
+
+/* Finds a point of the surface between two of a tetrahedron; false: both are on one side. */
+static bool surface_point_in(const Trial *t, const double corners[4][3], double p[3])
+{
+    double weights[4], ends[2][3];
+    for (int i = 0; i < 2; i++) {
+        random_weights(weights);
+        mean_of(corners, weights, 4, ends[i]);
+    }
+    bool inside = subject_value(t->subject, ends[0]) < 0;
+    if (inside == (subject_value(t->subject, ends[1]) < 0))
+        return false;
+    for (int i = 0; i < 50; i++) {
+        for (int k = 0; k < 3; k++)
+            p[k] = 0.5 * (ends[0][k] + ends[1][k]);
+        memcpy(ends[(subject_value(t->subject, p) < 0) != inside], p, sizeof ends[0]);
+    }
+    return true;
+}
+
+/* From a point of one body's surface, the other one is no nearer than the room. */
+static void check_room(const Trial *t, const Tet *tet, Rooms *rooms)
+{
+    enum { TRIES = 20 };
+    Subject bodies[2] = {*t->subject, *t->subject};
+    double  corners[4][3], p[3], nearest = INFINITY;
+    bodies[1].bodies[0] = bodies[1].bodies[1];
+    bodies[0].csg_node = bodies[1].csg_node = ALONE;
+    tets_corners(&t->tets, tet, corners);
+    for (int i = 0; i < TRIES; i++)
+        if (surface_point_in(t, (const double(*)[3])corners, p))
+            nearest = fmin(nearest, fmax(fabs(subject_value(&bodies[0], p)),
+                                         fabs(subject_value(&bodies[1], p))));
+    if (tet->room > nearest + 1e-9)
+        fail_msg("the other body is %g away, not %g", nearest, tet->room);
+    rooms->found++;
+    if (nearest < INFINITY)
+        rooms->nearest = fmax(rooms->nearest, tet->room / nearest);
+}
+
+static void try_room(Trial *t, size_t number, Rooms *rooms)
+{
+    Tet       tet = t->tets.list.items[number];
+    double    corners[4][3];
+    PieceCell cell;
+    tets_corners(&t->tets, &tet, corners);
+    Box wide = corners_box((const double(*)[3])corners, 4, 2 * t->error);
+    if (!field_enter(&t->fields[0], wide))
+        return;
+    pieces_bound(&t->fields[0], wide, &cell);
+    if (cell.known && cell.facing.operand_count > 0 &&
+        !pieces_measure(&t->contour, &t->fields[0], &cell, t->error, &tet) &&
+        tet.deviation < INFINITY) {
+        check_tet(t, &tet, false, false, &rooms->ways);
+        check_room(t, &tet, rooms);
+    }
+    field_leave(&t->fields[0]);
+}
+
+/* Two balls beside each other, or one within the other, at most so far apart. */
+static Subject balls_apart(double gap, bool within)
+{
+    static const Form    forms[]     = {BALL};
+    static const CsgNode csg_nodes[] = {UNION};
+    const Kind           kind        = {forms, 1, csg_nodes, 1};
+    Subject              subject     = random_subject(&chance, &kind);
+    Body                *balls       = subject.bodies;
+    double               way[3];
+    random_vector(&chance, 1, way);
+    normalize3(way);
+    if (within) {
+        subject.csg_node = DIFFERENCE;
+        balls[1].size[0] = balls[0].size[0] - gap;
+        add_scaled3(balls[1].move, balls[0].move, 0.7 * gap, way);
+    } else
+        add_scaled3(balls[1].move, balls[0].move, balls[0].size[0] + balls[1].size[0] + gap, way);
+    return subject;
+}
+
+/* A point between both, where they are nearest to each other. */
+static void point_between(const Subject *subject, double p[3])
+{
+    const Body *balls = subject->bodies;
+    double      way[3];
+    add_scaled3(way, balls[1].move, -1, balls[0].move);
+    normalize3(way);
+    add_scaled3(p, balls[0].move, balls[0].size[0], way);
+}
+
+static void parts_stay_apart(void **context)
+{
+    enum { SHAPES = 24 };
+    Rooms rooms[2] = {0};
+    (void)context;
+    for (int i = 0; i < SHAPES; i++) {
+        Trial   t;
+        double  focus[3];
+        Subject subject = balls_apart(exp(uniform(log(1e-3), log(0.05))), i % 2);
+        point_between(&subject, focus);
+        open_trial(&t, &subject, focus, false);
+        for (size_t k = 0; k < t.tets.list.count; k++)
+            if (is_near_focus(&t, &t.tets.list.items[k]))
+                try_room(&t, k, &rooms[i % 2]);
+        close_trial(&t);
+    }
+    for (int i = 0; i < 2; i++) {
+        print_message("# %s: %zu of them, nearest room %.3f, nearest way %.3f\n",
+                      i ? "walls" : "gaps", rooms[i].found, rooms[i].nearest, rooms[i].ways.way);
+        assert_true(rooms[i].found > 100 && rooms[i].nearest > 0.9 && rooms[i].ways.way > 0.5);
+    }
+}
+
 static void try_tet(Trial *t, size_t number, Bounds *bounds)
 {
     Tet        tet = t->tets.list.items[number];
@@ -439,13 +565,6 @@ static void try_tet(Trial *t, size_t number, Bounds *bounds)
     else
         assert_true(tet.triangle_count == 0 && worst_in(t, &tet) == 0);
     field_leave(&t->fields[0]);
-}
-
-static bool is_near_focus(const Trial *t, const Tet *tet)
-{
-    double corners[4][3];
-    tets_corners(&t->tets, tet, corners);
-    return distance3(corners[0], t->focus) < 2 * t->length;
 }
 
 static void try_kind(const Kind *kind, int shapes, Bounds *bounds)
@@ -509,6 +628,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(smooth_bounds_hold),
         cmocka_unit_test(bounds_of_pieces_hold),
+        cmocka_unit_test(parts_stay_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
