@@ -38,6 +38,31 @@ static void add_items(const Paths *paths, KrsPhase phase, const Shader *shader, 
                                  .constants = constants});
 }
 
+static void add_rays_to_lights(const Paths *paths)
+{
+    plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
+                                 .phase     = KRS_PHASE_SHADOWS,
+                                 .weight    = 0.3f * paths->weight,
+                                 .shader    = paths->shaders.shadows,
+                                 .in        = LIST_TO_LIGHTS,
+                                 .out       = NO_LIST,
+                                 .constants = {.phase = RAYS_AS_CHOSEN}});
+}
+
+/* Adds the light of lamps that media scatter into the rays of a camera. */
+static void add_beams(const Paths *paths)
+{
+    const KrsView *view  = &paths->job->view;
+    bool           lamps = false;
+    for (size_t i = 0; i < view->light_count; i++)
+        lamps = lamps || view->lights[i].positional;
+    if (!lamps)
+        return;
+    add_items(paths, KRS_PHASE_BOUNCES, paths->shaders.beam, LIST_OF_PIXELS, LIST_TO_LIGHTS,
+              (PassConstants){0});
+    add_rays_to_lights(paths);
+}
+
 /* Adds what happens where the rays of paths end: at surface `number`, from 0, or at none. */
 static void add_surface(const Paths *paths, uint32_t number)
 {
@@ -46,6 +71,8 @@ static void add_surface(const Paths *paths, uint32_t number)
     const RayKind      rays      = paths->job->rendering->rays;
     const bool         ends      = number == paths->bounces;
     PassConstants      constants = {.phase = ends ? PATHS_END : PATHS_GO_ON, .value = number};
+    if (volumes && number == 0)
+        add_beams(paths);
     if (volumes)
         add_items(paths, KRS_PHASE_BOUNCES, paths->shaders.track,
                   number == 0 ? LIST_OF_PIXELS : LIST_OF_PATHS, LIST_IN_VOLUMES,
@@ -63,13 +90,7 @@ static void add_surface(const Paths *paths, uint32_t number)
         add_items(paths, KRS_PHASE_SHADING, paths->shaders.collide, LIST_IN_VOLUMES, NO_LIST,
                   constants);
     if (!ends && (paths->job->view.light_count > 0 || paths->job->view.sky.map))
-        plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
-                                     .phase     = KRS_PHASE_SHADOWS,
-                                     .weight    = 0.3f * paths->weight,
-                                     .shader    = paths->shaders.shadows,
-                                     .in        = LIST_TO_LIGHTS,
-                                     .out       = NO_LIST,
-                                     .constants = {.phase = RAYS_AS_CHOSEN}});
+        add_rays_to_lights(paths);
 }
 
 static bool add_paths(Job *job, Plan *plan, uint32_t bounces)

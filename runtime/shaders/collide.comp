@@ -10,6 +10,8 @@
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "results.glsl"
+#include "sines.glsl"
+#include "arcs.glsl"
 #include "light.glsl"
 #ifdef SKY_MAP
 #include "sky_map.glsl"
@@ -23,6 +25,8 @@
 #define VOLUMES 1u
 #endif
 #include "volumes.glsl"
+#include "phase.glsl"
+#include "beams.glsl"
 
 const uint CHOICES = 3u; // as in scatter.comp
 // From this event on paths may end, and so likely go on at most.
@@ -35,13 +39,6 @@ vec2 choose(uvec2 pixel, uint choice)
 {
     return sample_choice(work.corner + pixel, control.ray, CHOICES * control.value + choice,
                          control.seed);
-}
-
-// Returns how much light is scattered into a direction, in solid angle; `cosine`: of the angle by which.
-float find_phase(float anisotropy, float cosine)
-{
-    float base = 1.0 + anisotropy * (anisotropy - 2.0 * cosine);
-    return (1.0 - anisotropy * anisotropy) / (4.0 * PI * max(base * sqrt(base), 1e-9));
 }
 
 // Chooses a direction with that density.
@@ -62,6 +59,7 @@ struct Event {
     vec3  place, direction; // the direction that the path came by
     vec3  weight;
     float anisotropy, code;
+    Beam  beam; // of the camera's ray
 };
 
 // Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it, and the row of
@@ -75,6 +73,11 @@ vec3 choose_light(uvec2 pixel, uint index, uint slot, Event event, out uint row)
     float phase = find_phase(event.anisotropy, dot(event.direction, point.toward));
     float by_rays = phase / max(point.density, 1e-30);
     float share = point.density > 0.0 ? 1.0 / (1.0 + by_rays * by_rays) : 1.0; // as in scatter.comp
+    Light light = find_light(number);
+    if (control.value == 0u && !is_sky && is_positional(light)) { // beam.comp asks it, too
+        float ratio = find_beam_ratio(light, event.place, sum_beam_importance(event.beam));
+        share /= 1.0 + ratio * ratio;
+    }
     vec3  added = all > 0.0 ? event.weight * phase * point.light * share : vec3(0.0);
     float end = largest(added) > 0.0 ? point.end : 0.0;
     added = finite_or_black(added * find_left_by_volumes(event.place, point.toward, end));
@@ -145,6 +148,7 @@ void do_item(uint number)
     begin_chances(work.corner + pixel, 0x80000u);
     event.weight *= left * krs_volume_albedo(volume, event.place);
     event.anisotropy = krs_volume_anisotropy(volume, event.place);
+    event.beam = find_beam(start.xyz, ahead.xyz, end_of_way(find_end(index)));
     uint  row;
     vec3  toward = choose_light(pixel, index, slot, event, row);
     float width = start.w + way * ahead.w;

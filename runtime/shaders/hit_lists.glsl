@@ -62,6 +62,15 @@ uint find_existing(uvec2 corner)
     return ((1u << size.x) - 1u) * (0x1111u & (1u << 4u * size.y) - 1u);
 }
 
+// Tells whether a pixel of the band, in a slot, has a ray.
+bool slot_has_ray(uint slot)
+{
+    uvec2 pixel = pixel_of(slot), within = pixel & 3u;
+    uint  quarter = 4u * (slot / 64u) + (slot >> 2u & 1u) + 2u * (slot >> 5u & 1u);
+    bool  exists = pixel.x < work.extent.x && pixel.y < work.extent.y;
+    return exists && (find_sampled(quarter) >> 4u * within.y + within.x & 1u) != 0u;
+}
+
 // Returns the slot of the lowest bit in a quarter whose first slot is `first`.
 uint slot_of_bit(uint first, uint bit)
 {

@@ -22,20 +22,11 @@
 
 void begin_group() { krs_prepare(); }
 
-// Tells whether a pixel of the band, in a slot, has a ray.
-bool has_ray(uint slot)
-{
-    uvec2 pixel = pixel_of(slot), within = pixel & 3u;
-    uint  quarter = 4u * (slot / 64u) + (slot >> 2u & 1u) + 2u * (slot >> 5u & 1u);
-    bool  exists = pixel.x < work.extent.x && pixel.y < work.extent.y;
-    return exists && (find_sampled(quarter) >> 4u * within.y + within.x & 1u) != 0u;
-}
-
 void do_item(uint number)
 {
     bool  of_paths = are_of_paths();
     uint  slot = of_paths ? load_tile_word(number) : number;
-    if (!of_paths && !has_ray(slot))
+    if (!of_paths && !slot_has_ray(slot))
         return;
     uvec2  pixel = pixel_of(slot);
     uint   index = index_of(pixel);
@@ -53,7 +44,7 @@ void do_item(uint number)
         krs_medium = krs_medium_at(origin);
 #endif
     begin_chances(work.corner + pixel, 0x60000u);
-    float end = ray.state == STATE_HIT || ray.unresolved ? ray.t : frame.farthest, nearest = end;
+    float nearest = end_of_way(ray);
     uint  volume = VOLUMES;
     for (uint i = 0u; i < VOLUMES; i++) {
         float t = find_scattering(i, origin, direction, nearest);

@@ -13,6 +13,12 @@
 // The most walls of cells on a way, and points where something may be scattered.
 const uint MAX_WALLS = 256u, MAX_POINTS = 1024u;
 
+// Returns where a ray ends, of which media may scatter light before.
+float end_of_way(RayEnd ray)
+{
+    return ray.state == STATE_HIT || ray.unresolved ? ray.t : frame.farthest;
+}
+
 struct Volume {
     vec3  low, high, cell;
     uvec3 cells;

@@ -197,8 +197,10 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
     rendering->rays = rays;
     if (volumes)
         shaders->track = find_shader(rendering, "track.comp", variant_of_track(rendering));
+    if (volumes)
+        shaders->beam = find_shader(rendering, "beam.comp", variant_of_beam(rendering));
     return shaders->march && shaders->normals && shaders->scatter && shaders->shadows &&
-           (!volumes || (shaders->track && shaders->collide));
+           (!volumes || (shaders->track && shaders->collide && shaders->beam));
 }
 
 /* ---- shaders that are made at the same time ---- */
@@ -283,6 +285,7 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
         request(requests, "collide.comp", variant_of_collide(rendering, KRS_INTEGRATOR_PATH));
         rendering->rays = rays;
         request(requests, "track.comp", variant_of_track(rendering));
+        request(requests, "beam.comp", variant_of_beam(rendering));
     }
     rendering->rays = rays;
 }

@@ -39,8 +39,8 @@ Shader *rendering_point_query(KrsRendering *rendering);
    march. */
 typedef struct PathShaders {
     Shader *march, *normals, *shadows;
-    Shader *scatter;         /* scatter.comp, or for previews shade.comp */
-    Shader *track, *collide; /* NULL: there are no media */
+    Shader *scatter;                /* scatter.comp, or for previews shade.comp */
+    Shader *track, *collide, *beam; /* NULL: there are no media; of lamps in them */
 } PathShaders;
 bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
                      bool planes, PathShaders *shaders);

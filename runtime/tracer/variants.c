@@ -357,6 +357,21 @@ ShaderVariant variant_of_track(const KrsRendering *rendering)
     return to;
 }
 
+ShaderVariant variant_of_beam(const KrsRendering *rendering)
+{
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    want(&to, KRS_FUNCTION_SINES);
+    want(&to, KRS_FUNCTION_ARCS);
+    want_volumes(&to, rendering);
+    want(&to, KRS_FUNCTION_ALBEDO);
+    want(&to, KRS_FUNCTION_ANISOTROPY);
+    want_media(&to, rendering);
+    if (rendering->program->media)
+        want(&to, KRS_FUNCTION_MEDIUM_AT);
+    define_choices(&to);
+    return to;
+}
+
 /* What glass absorbs on the way is known by its surface. */
 ShaderVariant variant_of_collide(const KrsRendering *rendering, KrsIntegrator integrator)
 {
@@ -372,6 +387,8 @@ ShaderVariant variant_of_collide(const KrsRendering *rendering, KrsIntegrator in
     want(&to, KRS_FUNCTION_EMISSION);
     want_media(&to, rendering);
     want_sky(&to, rendering);
+    if (!wants(&to, KRS_FUNCTION_ARCS))
+        want(&to, KRS_FUNCTION_ARCS);
     define_choices(&to);
     return to;
 }

@@ -48,6 +48,7 @@ ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
                                  KrsIntegrator integrator);
 /* Of media that scatter light: where they do, and what comes of it. */
 ShaderVariant variant_of_track(const KrsRendering *rendering);
+ShaderVariant variant_of_beam(const KrsRendering *rendering);
 ShaderVariant variant_of_collide(const KrsRendering *rendering, KrsIntegrator integrator);
 ShaderVariant variant_of_research(const KrsRendering *rendering, const ResearchPass *pass);
 ShaderVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);

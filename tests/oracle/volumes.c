@@ -141,6 +141,73 @@ static void slabs_scatter_once(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* ---- Lamps ---- */
+
+/* Mist around a lamp: below the plane of the lamp the camera looks past it, at this distance.  A ball shades
+   what is behind it. */
+static const char lamps[] =
+    "param past = 0.3 in [0, 3]; param size = 0 in [0, 1]; param g = 0 in [-0.9, 0.9];\n"
+    "param other = 0 in [0, 9]; param dense = 0.5 in [0, 9];\n"
+    "camera { eye: [past, 0, 6], target: [past, 0, 0], projection: \"orthographic\", height: 0.01 "
+    "}\n"
+    "sky { zenith: black, horizon: black, ground: black }\n"
+    "light lamp { position: [0, 0, 0], intensity: 2, radius: size }\n"
+    "light second { position: [0, 2, 0], intensity: other }\n"
+    "medium { within: box([8, 8, 4]), density: dense, anisotropy: g, scatter: 0.7 }\n"
+    "show sphere(1).move([0, -90, 0]);\n";
+
+/* Returns the light of a lamp at a height that a ray past it gets, scattered once.  Light of a ball comes
+   from the side of it that is near: two thirds of the radius before the middle, on average. */
+static double scattered_past(double past, double height, double dense, double g, double radius)
+{
+    enum { STEPS = 100000 };
+    double sum = 0;
+    for (int i = 0; i < STEPS; i++) {
+        const double z   = 2 - 4 * (i + 0.5) / STEPS; /* where the ray is, which goes to -z */
+        const double way = sqrt(past * past + height * height + z * z);
+        sum += exp(-dense * (2 - z + way - 2 * radius / 3)) * phase(g, z / way) / (way * way) * 4 /
+               STEPS;
+    }
+    return 0.7 * dense * sum;
+}
+
+static void lamps_shine_through_mist(void **state)
+{
+    (void)state;
+    static const struct {
+        double past, dense, g, other, size;
+    } rows[]                 = {{0.3, 0.05, 0, 0, 0},
+                                {0.05, 1, 0.6, 0, 0},
+                                {1, 4, -0.5, 3, 0},
+                                {0.5, 0.5, 0.3, 0, 0.1},
+                                {0.3, 3, 0.8, 1, 0.02}};
+    PathFixture      fixture = path_fixture_open(lamps);
+    KrsRenderOptions options = paths;
+    KrsLight         lamp, second;
+    size_t           wrong = 0;
+    options.bounces        = 1;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char name[100];
+        snprintf(name, sizeof name, "lamp %zu", i);
+        path_fixture_set(&fixture, "past", rows[i].past);
+        path_fixture_set(&fixture, "dense", rows[i].dense);
+        path_fixture_set(&fixture, "g", rows[i].g);
+        path_fixture_set(&fixture, "other", rows[i].other);
+        path_fixture_set(&fixture, "size", rows[i].size);
+        assert_int_equal(krs_state_light(fixture.product.state, 0, &lamp), KRS_OK);
+        assert_int_equal(krs_state_light(fixture.product.state, 1, &second), KRS_OK);
+        const double expected = lamp.color[1] * scattered_past(rows[i].past, 0, rows[i].dense,
+                                                               rows[i].g, rows[i].size) +
+                                second.color[1] *
+                                    scattered_past(rows[i].past, 2, rows[i].dense, rows[i].g, 0);
+        Estimate found = look(&fixture, options);
+        wrong += !must_be_near(found, expected, rows[i].size > 0 ? 0.012 : 0.003, name);
+        assert_true(found.error < 0.02 * expected); /* by chance alone it is many times that */
+    }
+    path_fixture_close(&fixture);
+    assert_int_equal(wrong, 0);
+}
+
 /* ---- Glass ---- */
 
 /* Glass without an index of its own reflects next to nothing.  What counts of a medium and glass in one place
@@ -360,6 +427,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slabs_absorb_and_send),
         cmocka_unit_test(slabs_scatter_once),
+        cmocka_unit_test(lamps_shine_through_mist),
         cmocka_unit_test(glass_has_what_stands_behind_it),
         cmocka_unit_test(media_that_absorb_nothing_are_not_seen),
         cmocka_unit_test(waves_are_as_walks_in_small_steps),
