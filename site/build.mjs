@@ -4,6 +4,7 @@
 //
 // ROOT is the repository, BUILD has the command, the playground and kept pictures.  For tests --small makes pictures of few
 // pixels, and of those that are rendered only such whose names match.  Pages are those of pages.mjs and those that they link to.
+import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import { pack } from '../web/playground/share.mjs';
@@ -194,6 +195,10 @@ for (const font of ['inter', 'jetbrains-mono']) {
 }
 fs.writeFileSync(path.join(out, 'licenses.txt'), licenses);
 copy('playground', 'playground');
+const playground = path.join(out, 'playground/index.html');
+fs.writeFileSync(playground, fs.readFileSync(playground, 'utf8').replaceAll('data-site=', 'href='));
+const ofPlayground = name => path.resolve(root, 'web/playground', name);
+execFileSync(process.execPath, [ofPlayground('build.mjs'), 'service', path.resolve(path.dirname(playground)), ofPlayground('service.mjs')], { cwd: path.join(build, 'npm') });
 fs.writeFileSync(path.join(out, 'search.js'), `krsSearch(${JSON.stringify(index).replaceAll('</', '<\\/')});\n`);
 
 const made = await pictures.make();

@@ -434,6 +434,84 @@ const parts = {
         quiet('that is done');
     },
 
+    // What a finger does on phones, upright and not.
+    async phones() {
+        const phone = (width, height) => page.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: true });
+        await page.send('Emulation.setTouchEmulationEnabled', { enabled: true });
+        await start();
+        await write(`${BALL}param turn = 3deg in [0deg, 9deg];\nparam place = [0, 0, 0];\nparam shown = 1 in 0..2;\n${'// more\n'.repeat(20)}`);
+        // Wells in the text and links in sentences are as high as lines.
+        const small = () => page.evaluate(() => [...document.querySelectorAll('button, select, label:has(input), input')].filter(element => {
+            const { width, height } = element.getBoundingClientRect(), dialog = document.querySelector('dialog[open]');
+            return width > 1 && (width < 44 || height < 44) && element.checkVisibility({ visibilityProperty: true }) && !element.matches('.swatch, label input') &&
+                (!dialog || dialog.contains(element));
+        }).map(element => `${element.tagName} ${element.id || element.name || element.textContent.slice(0, 20)} ${element.className}`));
+        const fits = selector => page.evaluate(selector => {
+            const element = document.querySelector(selector), { left, top, right, bottom } = element.getBoundingClientRect();
+            return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight && element.scrollWidth <= element.clientWidth;
+        }, selector);
+        // What is at the middle of an element, where it is scrolled into view.
+        const reached = selector => page.evaluate(async selector => {
+            const element = document.querySelector(selector);
+            element.scrollIntoView({ block: 'nearest' });
+            await new Promise(resolve => setTimeout(resolve, 60));
+            const { left, top, width, height } = element.getBoundingClientRect();
+            return element.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+        }, selector);
+        const caretSeen = () => page.evaluate(() => {
+            const { left, bottom } = document.querySelector('.cm-cursor-primary').getBoundingClientRect();
+            return Boolean(document.elementFromPoint(left + 1, bottom - 2)?.closest('.cm-editor')) && bottom <= innerHeight;
+        });
+        for (const [width, height] of [[360, 740], [390, 844], [740, 360], [844, 390]]) {
+            const at = `${width} by ${height}`;
+            await page.evaluate(() => document.activeElement.blur()); // browsers scroll to it when the size changes
+            await phone(width, height);
+            await wait(100);
+            report(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `nothing is wider than ${at}`);
+            const few = await small();
+            report(few.length === 0, `fingers meet all: ${at}`, few.join('\n'));
+            for (const [button, dialog, last] of [['open-examples', 'examples', 'li:last-child button'], ['share', 'shared', '#copy'], ['open-help', 'help', 'a:last-of-type'], ['open-download', 'download', '#save']]) {
+                await click(`#${button}`);
+                await page.until(`document.getElementById('${dialog}').open`);
+                const kinds = dialog === 'download' ? ['krs', 'png', 'stl', 'glb'] : [''];
+                for (const kind of kinds) {
+                    await page.evaluate(kind => kind && document.querySelector(`#download [value=${kind}]`).click(), kind);
+                    const tooSmall = await small();
+                    report(await fits(`#${dialog}`) && await reached(`#${dialog} ${last}`) && tooSmall.length === 0, `${dialog} ${kind} is all there: ${at}`, tooSmall.join('\n'));
+                    await shot(`phone-${dialog}${kind}-${width}`);
+                }
+                await page.evaluate(dialog => document.getElementById(dialog).close(), dialog);
+            }
+            await page.evaluate(() => document.querySelector('.cm-content').focus());
+            await key('Home', 2);
+            for (let i = 0; i < 24; i++)
+                await key('ArrowDown');
+            await wait(200);
+            report(await caretSeen(), `the cursor is seen at the end: ${at}`);
+            for (let i = 0; i < 24; i++)
+                await key('ArrowUp');
+            await wait(200);
+            report(await caretSeen(), `and at the beginning: ${at}`);
+        }
+        // A keyboard leaves so much of an upright phone.
+        await phone(360, 400);
+        await wait(200);
+        report(await page.evaluate(() => document.activeElement.matches('.cm-content')), 'the text is still written in when a phone is turned');
+        await write('');
+        await page.type('show sph');
+        await page.until('document.querySelector(".cm-tooltip-autocomplete li")?.getBoundingClientRect().top >= 0');
+        report(await caretSeen(), 'beside a keyboard the cursor is seen');
+        report(await page.evaluate(() => {
+            const { left, top, right, bottom } = document.querySelector('.cm-tooltip-autocomplete').getBoundingClientRect();
+            return left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
+        }), 'so are words');
+        await shot('phone-keyboard');
+        report(await page.evaluate(() => document.querySelector('.cm-tooltip-autocomplete li').getBoundingClientRect().height >= 43), 'fingers meet words');
+        await page.send('Emulation.setTouchEmulationEnabled', { enabled: false });
+        await page.send('Emulation.setDeviceMetricsOverride', { width: 1280, height: 800, deviceScaleFactor: 1, mobile: false });
+        quiet('phones are used');
+    },
+
     // Nothing answers any more.
     async offline() {
         await start();

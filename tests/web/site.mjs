@@ -63,7 +63,9 @@ function sceneOf(fragment) {
 const foreign = (file, text) => [...text.matchAll(/<(?!a\b)[^>]*(?:https?:)?\/\/[\w-]+\.[^>]*>|(?:url|import)\(["']?https?:[^)]*|\bfetch\(["'`]https?:/g)]
     .map(match => match[0]).filter(tag => !/xmlns|^<\/?(?:code|pre|span)/.test(tag)).map(tag => `${file}: ${tag}`);
 
-none(own.flatMap(([file, html]) => brokenLinks(file, html)), 'every link leads to a page, to a heading in it, or to a scene');
+const ways = ['index', 'docs/tutorial', 'docs/language', 'reference/shapes', 'gallery'].map(name => `href="../${name}.html"`);
+none(ways.filter(way => !read('playground/index.html').includes(way)), 'the playground leads back to the site');
+none([...own, ['playground/index.html', read('playground/index.html')]].flatMap(([file, html]) => brokenLinks(file, html)), 'every link leads to a page, to a heading in it, or to a scene');
 report(brokenLinks('index.html', '<a href="docs/none.html"><a href="docs/tutorial.html#none"><img src="none.png"><a href="playground/index.html#example=none">').length === 4,
        'a link that leads nowhere would be found');
 none([...own, ...['style.css', 'site.js', 'theme.js'].map(file => [file, read(file)])].flatMap(([file, text]) => foreign(file, text)), 'no page names a file of another host');

@@ -162,7 +162,7 @@ const examples = new Examples($('examples'), {
         editor.focus();
     },
 });
-new Layout({ theme: $('theme'), divider: $('divider'), main: document.querySelector('main'), text: $('text'), picture: $('picture') });
+new Layout({ theme: $('theme'), divider: $('divider'), main: document.querySelector('main'), text: $('text'), below: $('below') });
 
 // ---- buttons and keys ----
 

@@ -5,7 +5,7 @@ import { bracketMatching, indentOnInput, indentUnit } from '@codemirror/language
 import { forEachDiagnostic, lintGutter, nextDiagnostic, setDiagnostics } from '@codemirror/lint';
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search';
 import { EditorState, Prec } from '@codemirror/state';
-import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers } from '@codemirror/view';
+import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers, tooltips } from '@codemirror/view';
 import { closeCall, goToDefinition, knowledge, offsetOf } from './complete.mjs';
 import { language } from './language.mjs';
 import { swatches } from './swatches.mjs';
@@ -21,6 +21,12 @@ function fixOf({ range, data }, text) {
         to: offsetOf(text, range.end),
         insert: data.replacement,
     }];
+}
+
+// Where tips may be: below what is above the text, and not behind a keyboard on the screen.
+function seen({ dom }) {
+    const { offsetLeft: left, offsetTop, width, height } = visualViewport, { top } = dom.closest('#below, main').getBoundingClientRect();
+    return { left, top: Math.max(top, offsetTop), right: left + width, bottom: offsetTop + height };
 }
 
 export class Editor {
@@ -43,7 +49,7 @@ export class Editor {
             lineNumbers(), lintGutter(), history(), drawSelection(), dropCursor(), indentOnInput(), indentUnit.of('    '),
             bracketMatching(), closeBrackets(), highlightActiveLine(), highlightActiveLineGutter(),
             highlightSelectionMatches(), search({ top: true }), knowledge(ask), language, swatches, EditorView.lineWrapping,
-            EditorState.tabSize.of(4),
+            EditorState.tabSize.of(4), tooltips({ tooltipSpace: seen }),
             EditorView.contentAttributes.of({ 'aria-label': 'Text of the scene', 'spellcheck': 'false', 'autocapitalize': 'off' }),
             Prec.high(keymap.of([
                 { key: 'Mod-Enter', run: () => (run(), true) },

@@ -1,7 +1,6 @@
 // layout.mjs: light or dark, how wide the text is, and what is above on phones.
 const THEME = 'krs-theme', WIDTH = 'krs-width';
 const themes = ['', 'light', 'dark'], titles = { '': 'as the system', light: 'light', dark: 'dark' };
-const phone = matchMedia('(max-width: 760px)');
 
 const stored = name => {
     try {
@@ -27,7 +26,7 @@ export class Layout {
         this.divider.addEventListener('pointerdown', event => this.divider.setPointerCapture(event.pointerId));
         this.divider.addEventListener('pointermove', event => this.#drag(event));
         this.divider.addEventListener('keydown', event => this.#key(event));
-        phone.addEventListener('change', () => this.#order());
+        addEventListener('resize', () => this.#order());
         this.#order();
     }
 
@@ -60,11 +59,16 @@ export class Layout {
         this.#setWidth(this.width + step);
     }
 
-    // What is first for the eye is first for keys: the text at the left, on phones the picture above it.
+    // What is first for the eye is first for keys: the text at the left, or below the picture (style.css).
     #order() {
-        if (phone.matches)
-            this.main.append(this.divider, this.text);
+        const below = getComputedStyle(this.main).display === 'flex';
+        if (below === (this.text.parentElement === this.below))
+            return;
+        const focus = this.text.contains(document.activeElement) ? document.activeElement : null;
+        if (below)
+            this.below.append(this.text);
         else
-            this.main.prepend(this.text, this.divider);
+            this.main.prepend(this.text);
+        focus?.focus();
     }
 }
