@@ -62,7 +62,7 @@ API      := $(call sources,api)
 IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
 LIVE     := $(foreach room,profile live/text live/pictures live/window live,$(call sources,$(room)))
 LIVE_BRIDGE := live/window/gui.cpp
-CLI      := $(foreach room,cli/options cli/pack cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/lsp cli,$(call sources,$(room)))
+CLI      := $(foreach room,cli/options cli/pack cli/sandbox cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/lsp cli,$(call sources,$(room)))
 CLI_BRIDGE := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cpp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
 VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
@@ -123,7 +123,7 @@ SHARED   := libkrs.so.$(VERSION)
 all: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
 $(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BRIDGE:%.cpp=$(B)/%.o) $(B)/live.a $(B)/import.a $(INTERNAL)
 	@echo "link   $@"
-	@$(CC_LINK) $(HARDENED) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(JSON_LIBS) $(LIBS)
+	@$(CC_LINK) $(HARDENED) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(JSON_LIBS) $(SECCOMP_LIBS) $(LIBS)
 # Its headers take a minute to compile, and twice that with names for a debugger.
 $(B)/cli/grid/openvdb.o: CXXFLAGS += -O1 -g0
 $(B)/krs-vdb.so: $(B)/cli/grid/openvdb.o

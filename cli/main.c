@@ -17,6 +17,7 @@
 #include <vulkan/vulkan.h>
 
 #include "cli/shell/commands.h"
+#include "cli/shell/confine.h"
 #include "cli/shell/console.h"
 #include "cli/help.h"
 #include "cli/shell/input.h"
@@ -95,8 +96,15 @@ static KrsStatus work_with_memory(Options *options)
         return KRS_OUT_OF_MEMORY;
     }
     options->arena->memory->exhausted = &exhausted;
-    KrsStatus status                  = packs_open(options);
-    return status == KRS_OK ? works[options->command](options) : status;
+    KrsStatus status                  = confine_enter(options);
+    if (status == KRS_OK)
+        status = packs_open(options);
+    if (status == KRS_OK)
+        status = works[options->command](options);
+    if (status == KRS_NO_DEVICE && options->needs)
+        say("cards are not reached from the sandbox of untrusted scenes: install a device of the "
+            "processor (mesa-vulkan-drivers), or give --untrusted=limits");
+    return status;
 }
 
 static int run(Options *options, int argc, char **argv)
@@ -117,6 +125,8 @@ static int run(Options *options, int argc, char **argv)
     if (options->untrusted)
         output_forbid_links();
     status = input_open(options);
+    if (status == KRS_OK)
+        status = confine_prepare(options);
     return status == KRS_OK ? supervise(options, work_with_memory) : (int)status;
 }
 

@@ -204,11 +204,12 @@ static KrsStatus take_command(Options *options, const char *word)
 /* Sets the limits of an untrusted scene, unless options do. */
 static void limit_untrusted(Limits *limits)
 {
-    static const Limits most = {60, (uint64_t)2 << 30, (uint64_t)1 << 26, 4096};
+    static const Limits most = {60, (uint64_t)2 << 30, (uint64_t)1 << 26, 4096, (uint64_t)4 << 30};
     limits->time             = limits->time > 0 ? limits->time : most.time;
     limits->memory           = limits->memory ? limits->memory : most.memory;
     limits->pixels           = limits->pixels ? limits->pixels : most.pixels;
     limits->samples          = limits->samples ? limits->samples : most.samples;
+    limits->file             = limits->file ? limits->file : most.file;
 }
 
 /* Refuses options that exclude each other. */

@@ -5,7 +5,10 @@
 
 #include <png.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <unistd.h>
+
+#include "runtime/writer/atomic.h"
 
 /* Chooses the first name of a kind that is free, without its ending. */
 static void choose_name(const char *kind, const char *ending, char name[200])
@@ -18,6 +21,19 @@ static void choose_name(const char *kind, const char *ending, char name[200])
     } while (access(path, F_OK) == 0 && number < 10000);
 }
 
+/* Writes what is seen as every output is written: whole, and through no link where those are forbidden. */
+static bool write_png(png_image *image, const uint8_t *pixels, const char *path)
+{
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(*image);
+    char            *text = malloc(size);
+    OutputError      error;
+    const bool       written = text &&
+                         png_image_write_to_memory(image, text, &size, 0, pixels, 0, NULL) &&
+                         output_text(path, text, size, NULL, &error) == KRS_OK;
+    free(text);
+    return written;
+}
+
 void saving_keep_shot(Viewing *viewing)
 {
     const Shot *shot = &viewing->shot;
@@ -28,7 +44,7 @@ void saving_keep_shot(Viewing *viewing)
                          .format  = PNG_FORMAT_RGBA};
     choose_name("view", ".png", name);
     snprintf(path, sizeof path, "%s.png", name);
-    if (viewing->pixels && png_image_write_to_file(&image, path, 0, viewing->pixels, 0, NULL))
+    if (viewing->pixels && write_png(&image, viewing->pixels, path))
         viewing_notice(viewing, "saved %s", path);
     else
         viewing_notice(viewing, "%s cannot be written", path);

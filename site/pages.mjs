@@ -43,6 +43,7 @@ export const chapters = [
         { place: 'docs/how-it-works.html', title: 'How krs works', document: 'docs/how-it-works.md' },
         { place: 'docs/math.html', title: 'The mathematics', document: 'docs/math.md' },
         { place: 'docs/figures.html', title: 'How fast it is', document: 'docs/figures.md' },
+        { place: 'docs/reliability.html', title: 'Reliability', document: 'docs/reliability.md' },
         { place: 'docs/architecture.html', title: 'Architecture', document: 'docs/architecture.md' },
         { place: 'docs/code.html', title: 'The code', document: 'docs/code.md' },
         { place: 'docs/glossary.html', title: 'Glossary', document: 'docs/glossary.md' },

@@ -12,7 +12,7 @@ layers="compiler/base compiler/image compiler/outline compiler/graph compiler/gr
         mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays export
         platform/linux platform/web web/letters web/core
         runtime/device runtime/shared runtime/tracer/research runtime/tracer runtime/integrators runtime/film runtime/display
-        runtime/writer runtime api import/common import/csg import/surfer import/pov import profile live/text live/pictures live/window live cli/options cli/pack cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/lsp cli site"
+        runtime/writer runtime api import/common import/csg import/surfer import/pov import profile live/text live/pictures live/window live cli/options cli/pack cli/sandbox cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/lsp cli site"
 public="include/krs/krs.h include/krs/camera.h include/krs/mesh.h include/krs/slice.h include/krs/grid.h
         include/krs/measure.h include/krs/light.h include/krs/surface.def include/krs/choices.def include/krs/camera.def include/krs/lights.def
         include/krs/light_types.def include/krs/targets.def"

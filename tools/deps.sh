@@ -6,7 +6,7 @@
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
 building="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev libopenexr-dev libdeflate-dev libpng-dev libxxhash-dev
           libqhull-dev libfreetype-dev libharfbuzz-dev libfontconfig-dev libexpat1-dev libglfw3-dev libimgui-dev libgl-dev
-          libchafa-dev libx11-dev libtinygltf-dev libzip-dev libmeshoptimizer-dev libjansson-dev pkgconf"
+          libchafa-dev libx11-dev libtinygltf-dev libzip-dev libmeshoptimizer-dev libjansson-dev libseccomp-dev pkgconf"
 rendering="mesa-vulkan-drivers libgl1-mesa-dri fonts-dejavu-core"
 testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang clang-format libclang-rt-dev lld
          shellcheck strace procps openexr patch chromium-common admesh assimp-utils python3-numpy libcgal-dev

@@ -32,10 +32,11 @@ window     = $(call described,--libs,$(has_chafa)) $(call linked,imgui,imgui) $(
              $(call linked,gl,GL) $(call linked,x11,X11)
 mesh_libs  = $(call linked,tinygltf,tinygltf) $(call linked,libzip,zip)
 json_libs  = $(call linked,jansson,jansson)
+seccomp    = $(call linked,libseccomp,seccomp)
 vdb_libs   = $(if $(call found,openvdb),$(call found,openvdb tbb))
 # Their warnings are not ours.
 headers    = $(patsubst -I%,-isystem %,$(call described,--cflags,$(has_chafa) freetype2 harfbuzz fontconfig \
-             expat OpenEXR libpng qhull_r libdeflate libxxhash vulkan glfw3 imgui x11 libzip tinygltf jansson))
+             expat OpenEXR libpng qhull_r libdeflate libxxhash vulkan glfw3 imgui x11 libzip tinygltf jansson libseccomp))
 
 # What the compiler needs but for glslang, which the fuzzers leave out.
 FRONT_LIBS  = $(call once,FRONT_LIBS,front_libs)
@@ -45,6 +46,7 @@ CHAFA       = $(call once,CHAFA,has_chafa)
 WINDOW_LIBS = $(call once,WINDOW_LIBS,window)
 MESH_LIBS   = $(call once,MESH_LIBS,mesh_libs)
 JSON_LIBS   = $(call once,JSON_LIBS,json_libs)
+SECCOMP_LIBS = $(call once,SECCOMP_LIBS,seccomp)
 # The module for OpenVDB needs it; without the library `krs grid` says so.
 VDB_LIBS    = $(call once,VDB_LIBS,vdb_libs)
 HEADERS     = $(call once,HEADERS,headers)

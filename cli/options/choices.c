@@ -93,9 +93,10 @@ const Choice split_choices[]  = {{"none", "one mesh of all"},
 const Choice unit_choices[]   = {{"mm", ""}, {"um", ""}, {"cm", ""}, {"m", ""},
                                  {"in", ""}, {"ft", ""}, LAST};
 const Choice axis_choices[]   = {{"x", ""}, {"y", ""}, {"z", ""}, LAST};
-const Choice exposure_choices[] = {{"binary", ""}, {"gray", ""}, LAST};
-const Choice json_choices[]     = {{"json", ""}, LAST};
-const Choice pass_choices[]     = {
+const Choice exposure_choices[]  = {{"binary", ""}, {"gray", ""}, LAST};
+const Choice untrusted_choices[] = {{"limits", ""}, LAST};
+const Choice json_choices[]      = {{"json", ""}, LAST};
+const Choice pass_choices[]      = {
 #define PASS(name, validate, meaning)          {#name, ""},
 #define PASS_TO(form, name, validate, meaning) {form, ""}, {#name, ""},
 #include "compiler/passes/passes.def"

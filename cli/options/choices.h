@@ -14,8 +14,9 @@ extern const Choice integrator_choices[], trace_choices[], schedule_choices[], c
     executor_choices[], normals_choices[], shadows_choices[], starts_choices[], catcher_choices[],
     pixel_filter_choices[], stereo_choices[], specialize_choices[], early_outs_choices[],
     plane_choices[], tone_map_choices[], pass_choices[], on_off_choices[], on_choices[],
-    when_choices[], diagnostics_choices[], json_choices[], split_choices[], copies_choices[],
-    language_choices[], export_choices[], unit_choices[], axis_choices[], exposure_choices[];
+    when_choices[], diagnostics_choices[], json_choices[], untrusted_choices[], split_choices[],
+    copies_choices[], language_choices[], export_choices[], unit_choices[], axis_choices[],
+    exposure_choices[];
 
 /* Returns the number of a word among the choices; -1: it is none of them. */
 int find_choice(const char *word, const Choice *choices);

@@ -90,6 +90,7 @@ bool group_belongs(OptionGroup group, CommandId command);
 bool option_changes_pictures(OptionId id);
 
 typedef enum When { WHEN_AUTO, WHEN_ALWAYS, WHEN_NEVER } When;
+typedef enum Trust { TRUSTED, UNTRUSTED, UNTRUSTED_LIMITS } Trust;
 typedef enum StatsForm { STATS_NONE, STATS_TEXT, STATS_JSON } StatsForm;
 
 /* --set */
@@ -114,6 +115,7 @@ typedef struct Limits {
     double   time;   /* seconds, of the whole command */
     uint64_t memory; /* bytes */
     uint64_t pixels, samples;
+    uint64_t file; /* bytes of one that is written */
 } Limits;
 
 /* --within */
@@ -175,6 +177,8 @@ typedef struct Options {
     const char  *input; /* the scene that standard input has, or NULL */
     size_t       input_length;
     struct Pack *packs; /* that are open */
+
+    struct SandboxNeeds *needs; /* what the child may do; NULL: whatever the user may */
 
     Arena *arena; /* for whatever a command needs until the process ends */
 } Options;

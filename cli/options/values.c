@@ -276,6 +276,8 @@ static bool read_limit(char *word, Limits *limits)
         return read_whole(value, 1, UINT64_MAX, &limits->pixels);
     if (strcmp(word, "samples") == 0)
         return read_whole(value, 1, UINT64_MAX, &limits->samples);
+    if (strcmp(word, "file") == 0)
+        return read_bytes(value, &limits->file);
     return false;
 }
 

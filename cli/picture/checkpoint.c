@@ -189,7 +189,7 @@ static bool is_whole(FILE *file)
 static FILE *open_regular(const char *path)
 {
     struct stat about;
-    const int   fd   = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    const int   fd   = output_read(path);
     FILE       *file = NULL;
     if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode))
         file = fdopen(fd, "rb");
@@ -322,7 +322,7 @@ KrsStatus checkpoint_advance(Checkpoint *checkpoint, uint32_t frame)
     if (frame < checkpoint->options->last_frame)
         return write_checkpoint(checkpoint, frame + 1, NULL, NULL);
     stage_resumable(false);
-    if (unlink(checkpoint->path) != 0 && errno != ENOENT)
+    if (output_remove(checkpoint->path) != 0 && errno != ENOENT)
         say("warning: cannot remove `%s`: %s", checkpoint->path, strerror(errno));
     return KRS_OK;
 }

@@ -22,6 +22,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/sandbox/sandbox.h"
 #include "cli/shell/console.h"
 #include "cli/shell/crash_report.h"
 #include "compiler/base/watchdog.h"
@@ -107,6 +108,13 @@ void stage_size(const char *format, ...)
     va_start(arguments, format);
     vsnprintf(shared->size, sizeof shared->size, format, arguments);
     va_end(arguments);
+}
+
+/* Returns the stage of the child, which may have written anything there. */
+static const StageInfo *stage_now(void)
+{
+    const int stage = atomic_load(&shared->stage);
+    return &stage_info[stage >= 0 && stage < STAGE_COUNT ? stage : STAGE_START];
 }
 
 static double time_of(const struct timespec *time)
@@ -219,6 +227,16 @@ static void limit_memory(uint64_t bytes)
     setrlimit(RLIMIT_DATA, &limit);
 }
 
+/* Limits how long files may be that are written; SIGXFSZ is ignored, so that writing fails. */
+static void limit_files(uint64_t bytes)
+{
+    struct rlimit limit;
+    if (bytes == 0 || getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur <= bytes)
+        return;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+}
+
 /* Libraries in C may use what they could not allocate.  Where nothing has failed since, that has left its mark;
    where they run on for long, they crash at an address near 0. */
 static void note_crash(int number, siginfo_t *info, void *context)
@@ -243,9 +261,13 @@ static void note_crashes(void)
             sigaction(numbers[i], &action, NULL);
 }
 
-static _Noreturn void run_child(Options *options, Work *work, const sigset_t *mask)
+static _Noreturn void run_child(Options *options, Work *work, Outputs *outputs,
+                                const sigset_t *mask)
 {
+    if (outputs)
+        outputs_ask(outputs);
     limit_memory(options->limits.memory);
+    limit_files(options->limits.file);
     atomic_store(&shared->unchecked, 0);
     unchecked_count_at(&shared->unchecked);
     note_crashes();
@@ -263,12 +285,13 @@ static _Noreturn void run_child(Options *options, Work *work, const sigset_t *ma
 /* The parent. */
 
 typedef struct Watch {
-    pid_t    child;
-    bool     interrupted, late, over; /* why we stopped the child; over: the limit of time */
-    bool     exited;                  /* the child ended by itself */
-    bool     warned;                  /* SIGUSR1 has come: the child is stopped at a checkpoint */
-    Watchdog watchdog;
-    double   interrupted_after; /* seconds of work */
+    pid_t       child;
+    bool        interrupted, late, over; /* why we stopped the child; over: the limit of time */
+    bool        exited;                  /* the child ended by itself */
+    bool        warned; /* SIGUSR1 has come: the child is stopped at a checkpoint */
+    const char *excess; /* what it has too much of, for which it was stopped */
+    Watchdog    watchdog;
+    double      interrupted_after; /* seconds of work */
 } Watch;
 
 static const char *signal_name(int signal_number)
@@ -330,7 +353,7 @@ static int report_late(const Options *options, const StageInfo *stage)
 static int judge_death(const Options *options, const Watch *watch, int signal_number)
 {
     char             story[256];
-    const StageInfo *stage = &stage_info[atomic_load(&shared->stage)];
+    const StageInfo *stage = stage_now();
     const char      *doing = stage->doing;
     if (watch->interrupted)
         return KRS_INTERRUPTED;
@@ -338,8 +361,17 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
         say("stopped while %s: --limit time=%g allows no longer", doing, options->limits.time);
         return KRS_BAD_SCENE;
     }
+    if (watch->excess) {
+        say("stopped while %s: %s", doing, watch->excess);
+        return KRS_BAD_SCENE;
+    }
     if (watch->late)
         return report_late(options, stage);
+    if (signal_number == SIGSYS && options->needs) {
+        snprintf(story, sizeof story,
+                 "stopped while %s: a system call was tried that the sandbox forbids", doing);
+        return report_bug(options, story);
+    }
     if (is_out_of_time(watch, signal_number)) {
         say("stopped while %s: the processor time that `ulimit -t` allows is used up", doing);
         return KRS_INTERRUPTED;
@@ -369,7 +401,7 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
 static const StageInfo *observe(Watch *watch)
 {
     /* The stage comes first: a new one with the steps of the old would be late. */
-    const StageInfo *stage  = &stage_info[atomic_load(&shared->stage)];
+    const StageInfo *stage  = stage_now();
     ProcessSample    sample = {.idle     = stage->idle && !watch->interrupted,
                                .progress = atomic_load(&shared->progress)};
     watchdog_sample(watch->child, &watch->watchdog.last, &sample);
@@ -385,12 +417,13 @@ static void check_time(const Options *options, Watch *watch, const StageInfo *st
     const double force = 10; /* seconds from an interrupt on: a slice and a file */
     if (watch->interrupted && watch->watchdog.worked - watch->interrupted_after > force)
         kill(watch->child, SIGKILL);
-    if (watch->interrupted || watch->late || watch->over)
+    if (watch->interrupted || watch->late || watch->over || watch->excess)
         return;
-    watch->over = options->limits.time > 0 && watch->watchdog.worked > options->limits.time;
-    watch->late = !watch->over && stage->deadlines > 0 &&
+    watch->excess = options->needs ? sandbox_excess(watch->child, options->needs) : NULL;
+    watch->over   = options->limits.time > 0 && watch->watchdog.worked > options->limits.time;
+    watch->late   = !watch->over && stage->deadlines > 0 &&
                   watch->watchdog.fruitless > stage->deadlines * options->deadline;
-    if (watch->over || watch->late)
+    if (watch->over || watch->late || watch->excess)
         kill(watch->child, SIGKILL);
 }
 
@@ -459,34 +492,49 @@ static void choose_signals(sigset_t *signals)
     signal(SIGCHLD, SIG_DFL); /* ignored, children could not be waited for */
 }
 
+/* Removes what a child has left that is no output.  A child in a sandbox has made no file. */
+static void remove_temporaries(const Options *options)
+{
+    for (int i = 0; !options->needs && i < atomic_load(&shared->open) && i < MAX_OPEN; i++)
+        unlink(shared->temporary[i]);
+    atomic_store(&shared->open, 0);
+}
+
+static KrsStatus say_no_process(void)
+{
+    say("cannot start a process: %s", strerror(errno));
+    return KRS_OUT_OF_MEMORY; /* or as many processes as the user may have */
+}
+
 /* Runs one child; returns its status. */
 static int run(Options *options, Work *work, const sigset_t *signals, const sigset_t *before,
                Watch *watch)
 {
-    *watch = (Watch){.child = fork()};
-    if (watch->child < 0) {
-        say("cannot start a process: %s", strerror(errno));
-        return KRS_OUT_OF_MEMORY; /* or as many processes as the user may have */
-    }
+    Outputs *outputs = options->needs ? outputs_new(options->needs) : NULL;
+    *watch           = (Watch){.child = options->needs && !outputs ? -1 : fork()};
     if (watch->child == 0)
-        run_child(options, work, before);
-    const int ended  = wait_for_child(options, watch, signals);
+        run_child(options, work, outputs, before);
+    if (watch->child > 0 && outputs && !outputs_serve(outputs))
+        kill(watch->child, SIGKILL);
+    if (watch->child < 0) {
+        const KrsStatus status = say_no_process();
+        outputs_free(outputs);
+        return status;
+    }
+    const int ended = wait_for_child(options, watch, signals);
+    outputs_free(outputs);
     watch->exited    = WIFEXITED(ended);
     const int status = watch->exited ? WEXITSTATUS(ended)
                                      : judge_death(options, watch, WTERMSIG(ended));
-    for (int i = 0; i < atomic_load(&shared->open) && i < MAX_OPEN; i++)
-        unlink(shared->temporary[i]);
-    atomic_store(&shared->open, 0);
+    remove_temporaries(options);
     return status;
 }
 
 /* Tells whether what took too long is one text of many: the next one may be better. */
 static bool runs_again(const Options *options, const Watch *watch)
 {
-    const RunStage stage = (RunStage)atomic_load(&shared->stage);
-    shared->again        = options->command == COMMAND_WATCH && !watch->interrupted &&
-                    (watch->over || (watch->late && stage_info[stage].slow)) &&
-                    shared->read_length > 0;
+    shared->again = options->command == COMMAND_WATCH && !watch->interrupted &&
+                    (watch->over || (watch->late && stage_now()->slow)) && shared->read_length > 0;
     return shared->again;
 }
 

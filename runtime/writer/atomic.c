@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -37,6 +38,8 @@ struct OutputFile {
        TMPDIR. */
     bool direct;
     bool fleeting; /* it is not flushed */
+    bool asked;    /* another process has made it, and ends it */
+    int  number;   /* what it is called there */
     /* The target exists; the new file takes over owner and permissions from `before`. */
     bool        exists;
     struct stat before;
@@ -49,6 +52,11 @@ struct OutputFile {
 
 /* Set once, when the process begins. */
 static atomic_bool links_are_forbidden;
+
+/* Who makes outputs in place of this process, or NULL; set once, when the process begins. */
+static _Atomic(OutputAsk *) other;
+
+void output_ask(OutputAsk *ask) { atomic_store(&other, ask); }
 
 void output_forbid_links(void) { atomic_store(&links_are_forbidden, true); }
 
@@ -215,6 +223,31 @@ static bool create_temporary(OutputFile *file)
     return true;
 }
 
+/* Writes what goes to standard output into memory first: this process may make no file. */
+static bool make_in_memory(OutputFile *file)
+{
+    file->direct = true;
+    file->target = strdup(file->shown);
+    file->fd     = file->target ? memfd_create("output", MFD_CLOEXEC) : -1;
+    return file->fd >= 0 || fail_create(file);
+}
+
+static bool ask_for(OutputFile *file, OutputAsk *ask)
+{
+    file->asked = true;
+    file->fd    = ask(OUTPUT_BEGIN, file->shown, &file->number, file->error);
+    return file->fd >= 0 && file->error->status == KRS_OK;
+}
+
+static bool begin(OutputFile *file)
+{
+    OutputAsk *ask = atomic_load(&other);
+    if (!ask)
+        return find_target(file) && create_temporary(file);
+    return is_standard_output(file->shown) ? check_standard_output(file) && make_in_memory(file)
+                                           : ask_for(file, ask);
+}
+
 OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled,
                         OutputError *error)
 {
@@ -231,16 +264,18 @@ OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled
         output_free(file);
         return NULL;
     }
-    if (!find_target(file) || !create_temporary(file)) {
+    if (!begin(file)) {
         output_free(file);
         return NULL;
     }
     return file;
 }
 
+int output_descriptor(const OutputFile *file) { return file->fd; }
+
 const char *output_temporary(const OutputFile *file)
 {
-    return file->known_as ? file->known_as : file->temporary;
+    return file->known_as ? file->known_as : file->temporary ? file->temporary : "";
 }
 
 /* Writes all bytes, in as many calls as that takes.  `offset` < 0: the target has no offsets. */
@@ -375,10 +410,22 @@ static bool put_in_place(OutputFile *file)
 
 void output_is_fleeting(OutputFile *file) { file->fleeting = true; }
 
+/* Lets the other process put a file in place. */
+static KrsStatus commit_there(OutputFile *file)
+{
+    OutputError *error = file->error;
+    OutputAsk   *ask   = atomic_load(&other);
+    ask(file->fleeting ? OUTPUT_COMMIT_FLEETING : OUTPUT_COMMIT, "", &file->number, error);
+    output_free(file);
+    return error->status;
+}
+
 KrsStatus output_commit(OutputFile *file)
 {
     OutputError *error = file->error;
     if (error->status == KRS_OK && flush_buffer(file)) {
+        if (file->asked)
+            return commit_there(file);
         if (file->direct) {
             copy_to_target(file);
         } else if (put_in_place(file)) {
@@ -394,7 +441,12 @@ KrsStatus output_commit(OutputFile *file)
 
 void output_abandon(OutputFile *file)
 {
-    unlink(file->temporary);
+    OutputAsk  *ask = atomic_load(&other);
+    OutputError ignored;
+    if (file->asked)
+        ask(OUTPUT_ABANDON, "", &file->number, &ignored);
+    if (file->temporary)
+        unlink(file->temporary);
     output_free(file);
 }
 
@@ -408,11 +460,23 @@ KrsStatus output_text(const char *path, const char *text, size_t length,
     return output_commit(file);
 }
 
+/* Asks another process for what has no descriptor. */
+static KrsStatus ask_status(OutputVerb verb, const char *path, OutputError *error)
+{
+    OutputAsk *ask  = atomic_load(&other);
+    int        none = -1;
+    ask(verb, path, &none, error);
+    return error->status;
+}
+
 KrsStatus output_check(const char *path, OutputError *error)
 {
+    if (atomic_load(&other) && !is_standard_output(path))
+        return ask_status(OUTPUT_CHECK, path, error);
     OutputFile *file = output_open(path, NULL, error);
     if (file) {
-        temporary_clean(file->folder);
+        if (file->folder)
+            temporary_clean(file->folder);
         output_abandon(file);
     }
     return error->status;
@@ -437,6 +501,8 @@ KrsStatus output_make_folder(const char *path, OutputError *error)
 {
     struct stat info;
     *error = (OutputError){0};
+    if (atomic_load(&other))
+        return ask_status(OUTPUT_FOLDER, path, error);
     if (make_folder(path))
         return KRS_OK;
     int reason = errno;
@@ -447,4 +513,58 @@ KrsStatus output_make_folder(const char *path, OutputError *error)
     }
     output_fail(error, KRS_CANNOT_CREATE, path, reason);
     return error->status;
+}
+
+/* Asks another process for what can fail with errno alone. */
+static int ask_errno(OutputVerb verb, const char *path)
+{
+    OutputAsk  *ask  = atomic_load(&other);
+    int         none = -1;
+    OutputError ignored;
+    errno = 0;
+    return ask(verb, path, &none, &ignored);
+}
+
+/* Opens the folder of a path, as the rules for links want it. */
+static int hold_folder_of(const char *path)
+{
+    if (atomic_load(&links_are_forbidden))
+        return hold_folder(path);
+    char *folder = path_folder(path);
+    int   held   = folder ? open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC) : -1;
+    free(folder);
+    return held;
+}
+
+int output_read(const char *path)
+{
+    if (atomic_load(&other))
+        return ask_errno(OUTPUT_READ, path);
+    const char *slash  = strrchr(path, '/');
+    const int   held   = hold_folder_of(path);
+    const int   links  = atomic_load(&links_are_forbidden) ? O_NOFOLLOW : 0;
+    const int   file   = held < 0 ? -1
+                                  : openat(held, slash ? slash + 1 : path,
+                                           O_RDONLY | O_CLOEXEC | O_NONBLOCK | links);
+    const int   reason = errno;
+    if (held >= 0)
+        close(held);
+    errno = reason;
+    return file;
+}
+
+int output_remove(const char *path)
+{
+    if (atomic_load(&other)) {
+        ask_errno(OUTPUT_REMOVE, path);
+        return errno == 0 ? 0 : -1;
+    }
+    const char *slash  = strrchr(path, '/');
+    const int   held   = hold_folder_of(path);
+    const int   failed = held < 0 ? -1 : unlinkat(held, slash ? slash + 1 : path, 0);
+    const int   reason = errno;
+    if (held >= 0)
+        close(held);
+    errno = reason;
+    return failed;
 }

@@ -67,6 +67,31 @@ KrsStatus output_text(const char *path, const char *text, size_t length,
    whole process, so that no writer can forget it. */
 void output_forbid_links(void);
 
+/* A process that may write no file asks another one, which does what a verb says and returns a descriptor or -1: the child of
+   the command in its sandbox (cli/sandbox).  *number is that of a file between OUTPUT_BEGIN and its end. */
+typedef enum OutputVerb {
+    OUTPUT_BEGIN, /* opens a temporary file */
+    OUTPUT_COMMIT,
+    OUTPUT_COMMIT_FLEETING,
+    OUTPUT_ABANDON,
+    OUTPUT_CHECK,
+    OUTPUT_FOLDER,
+    OUTPUT_READ,
+    OUTPUT_REMOVE
+} OutputVerb;
+typedef int OutputAsk(OutputVerb verb, const char *path, int *number, OutputError *error);
+
+/* Asks for outputs from now on, except for standard output; set once, when the process begins. */
+void output_ask(OutputAsk *ask);
+
+/* Returns the descriptor that the temporary file is written by. */
+int output_descriptor(const OutputFile *file);
+
+/* Opens an output of before for reading, by the same rules; -1 and errno. */
+int output_read(const char *path);
+/* Removes one; 0, or -1 and errno. */
+int output_remove(const char *path);
+
 /* Makes a folder if it is missing, but not the folders above it, by the same rules. */
 KrsStatus output_make_folder(const char *path, OutputError *error);
 

@@ -19,6 +19,7 @@ class Krs < Formula
   depends_on "jansson"
   depends_on "libdeflate"
   depends_on "libpng"
+  depends_on "libseccomp"
   depends_on "libx11"
   depends_on "libzip"
   depends_on :linux

@@ -6,7 +6,7 @@ pkgs.stdenv.mkDerivation {
   src = ../../..;
   nativeBuildInputs = with pkgs; [ pkg-config glslang spirv-tools ];
   buildInputs = with pkgs; [
-    chafa expat fontconfig freetype glfw glslang harfbuzz imgui jansson libdeflate libpng libzip meshoptimizer openexr
+    chafa expat fontconfig freetype glfw glslang harfbuzz imgui jansson libdeflate libpng libseccomp libzip meshoptimizer openexr
     qhull spirv-tools tinygltf vulkan-headers vulkan-loader libGL xorg.libX11 xxHash
   ];
   enableParallelBuilding = true;

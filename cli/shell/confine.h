@@ -1,0 +1,17 @@
+/*
+ * confine.h: what a command needs that works on a stranger's scene.
+ */
+#ifndef KRS_CONFINE_H
+#define KRS_CONFINE_H
+
+#include "cli/options/options.h"
+#include "cli/sandbox/sandbox.h"
+
+/* Prepares for the sandbox, if the command line asks for one: options->needs says then what the child may do.  KRS_NO_DEVICE,
+   with a line: this system has none. */
+KrsStatus confine_prepare(Options *options);
+
+/* Opens what lies outside of the sandbox and is needed inside, and enters it.  For the child. */
+KrsStatus confine_enter(const Options *options);
+
+#endif
