@@ -362,8 +362,11 @@ KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bo
  * mean of all is what is read, so equal ones refine the picture, and others blur it.  The AOVs
  * other than colour, and the matrices, are those of the first sample.  As many samples as
  * `options->samples` says, added in whatever portions, give the picture of krs_render bit by bit;
- * more may be added.  Samples stay on the device until the film is read, or until another film of
- * the rendering needs the room.
+ * more may be added.  The host has them when a call returns, and every few seconds meanwhile.
+ *
+ * Where the device is lost, or its memory or the host's does not suffice for work, it is opened anew with shorter slices
+ * and smaller bands, and the film goes on from what the host has of it, to the same picture.  KRS_INTERNAL or
+ * KRS_OUT_OF_MEMORY: that has helped nothing three times in a row.  Samples that end by noise with mattes begin anew.
  *
  * Arguments that are refused change nothing; if adding fails otherwise, or is interrupted, the film
  * is as new.

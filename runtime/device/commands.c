@@ -36,10 +36,25 @@ static void barrier(VkCommandBuffer commands)
 
 void gpu_barrier(Gpu *gpu) { barrier(gpu->driver->commands); }
 
+/* After this nothing of the device runs, and nothing is submitted to it: a fence may have been left as it was. */
+static void give_up(Gpu *gpu)
+{
+    gpu->lost = true;
+    vkDeviceWaitIdle(gpu->driver->device);
+}
+
+/* Tells whether work can be submitted; false with the failure noted. */
+static bool takes_work(Gpu *gpu)
+{
+    if (gpu->lost && gpu->status == KRS_OK)
+        gpu_fail(gpu, VK_ERROR_DEVICE_LOST, "submit work");
+    return !gpu->stuck && !gpu->lost; /* why it is stuck has been said */
+}
+
 bool gpu_begin(Gpu *gpu)
 {
-    if (gpu->stuck)
-        return false; /* and why has been said */
+    if (!takes_work(gpu))
+        return false;
     TRY(gpu, "record work", vkResetCommandPool(gpu->driver->device, gpu->driver->pool, 0));
     TRY(gpu, "record work",
         vkBeginCommandBuffer(gpu->driver->commands,
@@ -57,6 +72,7 @@ bool gpu_begin(Gpu *gpu)
     return true;
 
 failed:
+    give_up(gpu);
     return false;
 }
 
@@ -78,6 +94,7 @@ static bool read_clock(Gpu *gpu, uint32_t query, uint64_t *ticks)
     return true;
 
 failed:
+    give_up(gpu);
     return false;
 }
 
@@ -178,6 +195,7 @@ static bool wait_for_fence(Gpu *gpu)
     return true;
 
 failed:
+    give_up(gpu);
     return false;
 }
 
@@ -207,6 +225,7 @@ bool gpu_finish(Gpu *gpu, double *ms)
     return true;
 
 failed:
+    give_up(gpu);
     return false;
 }
 
@@ -271,16 +290,21 @@ bool gpu_prewarm(Gpu *gpu, const Run *run, uint32_t *number)
     return true;
 
 failed:
+    give_up(gpu);
     return false;
 }
 
 bool gpu_wait(Gpu *gpu)
 {
-    if (gpu->stuck)
+    if (!takes_work(gpu)) {
+        if (!gpu->stuck && gpu_is_open(gpu))
+            give_up(gpu);
         return false;
+    }
     TRY(gpu, "wait for the device", vkQueueSubmit(gpu->driver->queue, 0, NULL, gpu->driver->fence));
     return wait_for_fence(gpu);
 
 failed:
+    give_up(gpu);
     return false;
 }

@@ -35,6 +35,7 @@ void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
         gpu_refuse(gpu, KRS_NO_DEVICE, "cannot %s: the Vulkan driver does not start", attempt);
         break;
     case VK_ERROR_DEVICE_LOST:
+        gpu->lost = true;
         gpu_refuse(gpu, KRS_INTERNAL,
                    "cannot %s: the device was lost (its driver gave up or was reset)", attempt);
         break;

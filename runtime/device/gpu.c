@@ -200,6 +200,37 @@ bool gpu_open_beside(Gpu *gpu, const Gpu *other)
     return false;
 }
 
+/* Destroys the device with what gpu_open and gpu_reopen made on it. */
+static void device_destroy(Gpu *gpu)
+{
+    Driver        *driver = gpu->driver;
+    const VkDevice device = driver->device;
+    pipelines_close(gpu);
+    vkDestroyQueryPool(device, driver->prewarm_times, NULL);
+    vkDestroyQueryPool(device, driver->times, NULL);
+    vkDestroyFence(device, driver->fence, NULL);
+    vkDestroyCommandPool(device, driver->prewarm_pool, NULL);
+    vkDestroyCommandPool(device, driver->pool, NULL);
+    vkDestroyDevice(device, NULL);
+    driver->prewarm_times = driver->times = VK_NULL_HANDLE;
+    driver->prewarm_pool = driver->pool = VK_NULL_HANDLE;
+    driver->fence                       = VK_NULL_HANDLE;
+    driver->device                      = VK_NULL_HANDLE;
+}
+
+bool gpu_reopen(Gpu *gpu)
+{
+    shared_shaders_destroy(gpu);
+    if (gpu_is_open(gpu))
+        device_destroy(gpu);
+    gpu->prewarms = 0;
+    gpu->lost     = false;
+    gpu->lost     = !make_device(gpu) || !make_commands(gpu);
+    if (!gpu->lost)
+        pipelines_open(gpu);
+    return !gpu->lost;
+}
+
 void gpu_close(Gpu *gpu)
 {
     if (gpu->stuck) { /* its driver would wait for it, too: all of it stays until the process ends */
@@ -209,15 +240,8 @@ void gpu_close(Gpu *gpu)
         return;
     }
     shared_shaders_destroy(gpu);
-    if (gpu_is_open(gpu)) {
-        pipelines_close(gpu);
-        vkDestroyQueryPool(gpu->driver->device, gpu->driver->prewarm_times, NULL);
-        vkDestroyQueryPool(gpu->driver->device, gpu->driver->times, NULL);
-        vkDestroyFence(gpu->driver->device, gpu->driver->fence, NULL);
-        vkDestroyCommandPool(gpu->driver->device, gpu->driver->prewarm_pool, NULL);
-        vkDestroyCommandPool(gpu->driver->device, gpu->driver->pool, NULL);
-        vkDestroyDevice(gpu->driver->device, NULL);
-    }
+    if (gpu_is_open(gpu))
+        device_destroy(gpu);
     instance_destroy(gpu);
     cache_close(&gpu->cache);
 }

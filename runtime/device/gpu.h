@@ -21,6 +21,9 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options, unsigned emulation);
 /* Opens a second device of the kind of `other`, which must stay longer; it has no caches. */
 bool gpu_open_beside(Gpu *gpu, const Gpu *other);
 void gpu_close(Gpu *gpu);
+/* Opens anew a device that is lost, when all that was made on it has been destroyed.  False, with the failure
+   noted: it stays lost. */
+bool gpu_reopen(Gpu *gpu);
 
 /* ---- commands.c ---- */
 

@@ -59,6 +59,7 @@ typedef struct Gpu {
 
     double timeout; /* seconds that a submission may take */
     bool   stuck;   /* one took longer */
+    bool   lost;    /* work was not done: nothing is submitted until gpu_reopen */
 
     KrsStatus status; /* of the last call that failed */
     char      message[512];

@@ -35,6 +35,12 @@ static IntegratorPlan *const integrators[KRS_INTEGRATOR_COUNT] = {
 
 /* ---- films ---- */
 
+/* Returns the rows of tiles of a film. */
+static uint32_t tile_rows(const KrsFilm *film)
+{
+    return (resident_cover(&film->options).height + TILE - 1) / TILE;
+}
+
 /* Makes room for the sums of all samples; false with the failure noted. */
 static bool make_sums(KrsFilm *film)
 {
@@ -47,7 +53,8 @@ static bool make_sums(KrsFilm *film)
         return false;
     if (noise)
         film->kept = gpu_alloc(gpu, resident_kept(o), sizeof *film->kept, "make a film");
-    return (film->kept || !noise) && lights_make(film);
+    film->more = gpu_alloc(gpu, tile_rows(film), sizeof *film->more, "make a film");
+    return film->more && (film->kept || !noise) && lights_make(film);
 }
 
 KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options, KrsFilm **out)
@@ -66,6 +73,7 @@ KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
     if (!settings_complete(rendering, o, &film->asked_schedule) || !make_sums(film)) {
         krs_picture_free(film->sums);
         gpu_release(gpu, film->kept);
+        gpu_release(gpu, film->more);
         gpu_release(gpu, film);
         return gpu->status;
     }
@@ -88,6 +96,7 @@ void krs_film_free(KrsFilm *film)
     krs_picture_free(film->sums);
     blocks_free(film);
     gpu_release(&film->rendering->renderer->gpu, film->kept);
+    gpu_release(&film->rendering->renderer->gpu, film->more);
     gpu_release(&film->rendering->renderer->gpu, film->lights);
     gpu_release(&film->rendering->renderer->gpu, film);
 }
@@ -97,6 +106,7 @@ void krs_film_clear(KrsFilm *film)
     const uint64_t bytes = film->sums->stats.peak_memory_bytes;
     release_band(film);
     film->samples = film->first;
+    memset(film->more, 0, tile_rows(film) * sizeof *film->more);
     blocks_clear(film);
     mattes_clear(film->sums);
     film->sums->stats = (KrsRenderStats){.peak_memory_bytes = bytes};
@@ -179,6 +189,22 @@ static bool keep_aovs(KrsRendering *rendering)
     return true;
 }
 
+/* Tells whether a film cannot go on from what the host has: rays that mattes have counted meanwhile are not taken back where
+   samples end by noise. */
+static bool begins_anew(const KrsFilm *film) { return film->options.mattes && film->kept; }
+
+/* Samples that take longer are copied to the host in between: no more is lost with the device. */
+#define MS_AT_RISK 1000
+
+/* Tells whether what is on the device is to be copied, `begun` at which time more was added.  Rays that mattes count are
+   copied one by one; but where their samples end by noise, together. */
+static bool is_due(const KrsFilm *film, double begun)
+{
+    if (film->options.mattes)
+        return !begins_anew(film);
+    return clock_ms() - begun > MS_AT_RISK;
+}
+
 /* Traces ray `index` of each pixel, and adds it to what the buffers hold. */
 static bool add_ray(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
 {
@@ -192,10 +218,14 @@ static bool add_ray(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
     return !mattes || resident_take_mattes(rendering);
 }
 
-/* Adds samples to the band that the buffers hold; `share` is its fraction of all progress. */
-static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_t samples,
+/* Adds samples to the band that the buffers hold, *samples at most, and tells how many; `share` is its fraction of all
+   progress. */
+static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_t *samples,
                         double share)
 {
+    const uint32_t   had     = resident_samples(film, job->rendering->resident.from);
+    const double     begun   = clock_ms();
+    uint32_t         added   = 0;
     const KrsWindow *traced  = &job->rendering->resident.traced;
     const double     done    = job->progress_done;
     ControlBlock    *control = job->rendering->control.bytes;
@@ -217,35 +247,63 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
     job->first_rows = (picture_rows(film->sums) & ~(1u << ROW_NOISE)) | job->later_rows;
     inputs_upload(job, traced);
     const bool spares = spares_first(job);
-    if (spares && film->samples == 0 && !find_aovs(job, plan, &work))
+    if (spares && had == 0 && !find_aovs(job, plan, &work))
         return false;
     const bool noise      = film->kept != NULL;
     bool       unfinished = true;
-    if (noise && !noise_resume(job, plan, &work, film->samples, &unfinished))
+    if (noise && !noise_resume(job, plan, &work, had, &unfinished))
         return false;
-    for (uint32_t i = 0; i < samples && unfinished; i++) {
-        const uint32_t before = film->samples + i;
-        job->progress_share   = share / samples;
-        job->progress_done    = done + job->progress_share * i;
+    for (; added < *samples && unfinished && !(added > 0 && is_due(film, begun)); added++) {
+        const uint32_t before = had + added;
+        job->progress_share   = share / *samples;
+        job->progress_done    = done + job->progress_share * added;
         if (!add_ray(job, plan, &work, before + spares) ||
             (noise && !noise_take(job, plan, &work, before + 1, &unfinished)))
             return false;
     }
-    return !noise || noise_restore(job, &work, film->samples + samples);
+    *samples = unfinished ? added : *samples;
+    return !noise || noise_restore(job, &work, had + *samples);
+}
+
+/* Notes that the host has more samples of a band. */
+static void note_stored(Job *job, KrsFilm *film, const ResidentBand *band, uint32_t samples)
+{
+    for (uint32_t row = band->from / TILE; row * TILE < band->from + band->rows; row++)
+        film->more[row] += samples;
+    film->stats = *job->stats;
+}
+
+/* Adds samples to a band, up to `samples` more than the film has. */
+static bool complete_band(Job *job, const Plan *plan, KrsFilm *film, ResidentBand *band,
+                          uint32_t samples)
+{
+    const double    height = job->cover.height, part = job->part * band->rows / height / samples;
+    const uint32_t *more = &film->more[band->from / TILE];
+    while (*more < samples) {
+        uint32_t added     = samples - *more;
+        band->has_aovs     = resident_samples(film, band->from) == 0;
+        job->progress_done = job->part_begun + job->part * band->from / height + part * *more;
+        if (!resident_change(film, band) || !add_to_band(job, plan, film, &added, part * added) ||
+            !resident_store(film->rendering))
+            return false;
+        note_stored(job, film, band, added);
+    }
+    return true;
 }
 
 static bool add_to_bands(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
 {
     const KrsWindow *cover = &job->cover;
-    for (uint32_t from = 0; from < cover->height; from += film->rows) {
-        const uint32_t left = cover->height - from, rows = left < film->rows ? left : film->rows;
-        const double   height     = cover->height;
-        KrsWindow      band       = {cover->x, cover->y + from, cover->width, rows};
-        const ResidentBand wanted = {
-            film, from, rows, with_halo(job, plan->halo, band), film->samples == 0, true};
-        job->progress_done = job->part_begun + job->part * from / height;
-        if (!resident_change(film, &wanted) ||
-            !add_to_band(job, plan, film, samples, job->part * rows / height))
+    for (uint32_t from = 0, rows; from < cover->height; from += rows) {
+        const uint32_t left = cover->height - from;
+        rows                = TILE; /* and as many as the host has as many samples of */
+        while (rows < left && rows < film->rows &&
+               film->more[(from + rows) / TILE] == film->more[from / TILE])
+            rows += TILE;
+        rows                   = rows < left ? rows : left;
+        const KrsWindow window = {cover->x, cover->y + from, cover->width, rows};
+        ResidentBand    band = {film, from, rows, with_halo(job, plan->halo, window), false, true};
+        if (!complete_band(job, plan, film, &band, samples))
             return false;
     }
     return true;
@@ -317,35 +375,89 @@ typedef struct Addition {
 
 static Job job_of(KrsFilm *film, const Addition *a)
 {
-    return (Job){.rendering      = film->rendering,
-                 .gpu            = &film->rendering->renderer->gpu,
-                 .options        = film->options,
-                 .asked_schedule = film->asked_schedule,
-                 .schedule       = film->options.methods.schedule,
-                 .rays           = a->rays,
-                 .cover          = resident_cover(&film->options),
-                 .part_begun     = a->part_begun,
-                 .part           = a->part,
-                 .stats          = &film->sums->stats};
+    Job job              = {.rendering      = film->rendering,
+                            .gpu            = &film->rendering->renderer->gpu,
+                            .options        = film->options,
+                            .asked_schedule = film->asked_schedule,
+                            .schedule       = film->options.methods.schedule,
+                            .rays           = a->rays,
+                            .cover          = resident_cover(&film->options),
+                            .part_begun     = a->part_begun,
+                            .part           = a->part,
+                            .stats          = &film->sums->stats};
+    job.options.slice_ms = ldexp(job.options.slice_ms,
+                                 -(int)renderer_halvings(film->rendering->renderer));
+    return job;
 }
 
-static KrsStatus add_moment(KrsFilm *film, const Addition *a)
+/* Adds what the host does not have already.  *begun: samples may have been added, so the film can no longer stay as it
+   was. */
+static bool try_moment(KrsFilm *film, const Addition *a, bool *begun)
 {
     Job job = job_of(film, a);
-    if (!job_read_frame(&job, a->state, a->camera) || !volumes_find(&job) ||
-        !executor_choose(&job, a->samples))
-        return job.gpu->status;
+    if (!rendering_ready(film->rendering->renderer) || !job_read_frame(&job, a->state, a->camera) ||
+        !volumes_find(&job) || !executor_choose(&job, a->samples))
+        return false;
+    *begun                     = true;
     film->sums->stats.executor = job.options.methods.executor;
     film->rendering->catches   = plate_catches(film);
     Plan plan                  = {.gpu = job.gpu};
     bool good                  = integrators[job.options.integrator](&job, &plan) &&
                 run(&job, &plan, film, a->samples);
     plan_free(&plan);
-    if (!good) {
+    return good;
+}
+
+/* Tells how many samples of rows of tiles the host has of those that are added. */
+static uint64_t count_stored(const KrsFilm *film)
+{
+    uint64_t count = 0;
+    for (uint32_t row = 0; row < tile_rows(film); row++)
+        count += film->more[row];
+    return count;
+}
+
+/* Prepares a film for going on after its device was lost; false: it cannot. */
+static bool go_back(KrsFilm *film)
+{
+    if (!begins_anew(film)) {
+        film->sums->stats = film->stats;
+        return true;
+    }
+    if (film->samples == film->first)
         krs_film_clear(film);
-        return job.gpu->status;
+    return film->samples == film->first;
+}
+
+static void say_losses(Gpu *gpu, int losses)
+{
+    char message[sizeof gpu->message];
+    memcpy(message, gpu->message, sizeof message);
+    gpu_refuse(gpu, gpu->status, "%.400s, %d times in a row", message, losses);
+}
+
+static KrsStatus add_moment(KrsFilm *film, const Addition *a)
+{
+    Gpu     *gpu    = &film->rendering->renderer->gpu;
+    uint64_t stored = 0;
+    int      losses = 0;
+    bool     begun  = false;
+    memset(film->more, 0, tile_rows(film) * sizeof *film->more);
+    film->stats = film->sums->stats;
+    while (!try_moment(film, a, &begun)) {
+        const uint64_t now = count_stored(film);
+        losses             = now > stored ? 1 : losses + 1;
+        stored             = now > stored ? now : stored;
+        if (gpu->lost && losses <= MAX_LOSSES && go_back(film))
+            continue;
+        if (losses > MAX_LOSSES)
+            say_losses(gpu, losses);
+        if (begun)
+            krs_film_clear(film);
+        return gpu->status;
     }
     film->samples += a->samples;
+    memset(film->more, 0, tile_rows(film) * sizeof *film->more);
     return KRS_OK;
 }
 
@@ -430,8 +542,7 @@ KrsStatus krs_film_try_lanes(KrsFilm *film, KrsState *state, const KrsCamera *ca
                              double *lanes_ms, double *compiler_ms)
 {
     Gpu *gpu = &film->rendering->renderer->gpu;
-    renderer_clear(film->rendering->renderer);
-    if (!follow_rendering(film))
+    if (!rendering_ready(film->rendering->renderer) || !follow_rendering(film))
         return gpu->status;
     Job        job  = job_of(film, &(Addition){state, camera, NULL, 1, 0, 1});
     const bool good = job_read_frame(&job, state, camera) &&
@@ -526,6 +637,9 @@ KrsStatus krs_render(KrsRendering *rendering, KrsState *state, const KrsRenderOp
     KrsStatus status = krs_film_new(rendering, options, &film);
     *picture         = NULL;
     if (status == KRS_OK)
+        status = krs_film_add(film, state, NULL, film->options.samples);
+    for (int i = 0; i < MAX_LOSSES && film && begins_anew(film) && rendering->renderer->gpu.lost;
+         i++)
         status = krs_film_add(film, state, NULL, film->options.samples);
     if (status == KRS_OK && !(store_all(film) && finish(film, film->sums)))
         status = rendering->renderer->gpu.status;

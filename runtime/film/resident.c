@@ -26,6 +26,11 @@ size_t resident_kept(const KrsRenderOptions *options)
     return (size_t)KEPT_ROWS * cover.width * cover.height;
 }
 
+uint32_t resident_samples(const KrsFilm *film, uint32_t from)
+{
+    return film->samples + film->more[from / TILE];
+}
+
 /* Returns the rows for the light of lights in the buffers.  They go along with the row of colours. */
 static uint32_t rows_of_lights(const ResidentBand *resident, uint32_t rows)
 {
@@ -158,19 +163,20 @@ static void copy_lights(const KrsFilm *film, float *results, size_t band, size_t
     }
 }
 
-bool resident_store(KrsRendering *rendering)
+/* Returns the rows of results that the film lacks. */
+static uint32_t rows_to_store(const ResidentBand *resident)
 {
-    ResidentBand *resident = &rendering->resident;
-    KrsFilm      *film     = resident->film;
-    if (!film || !(resident->has_colors || resident->has_aovs))
-        return true;
+    const KrsFilm *film = resident->film;
+    return rows_of_sums(film) | (resident->has_aovs ? picture_rows(film->sums) : 0);
+}
+
+/* Copies rows that the host can read. */
+static void store(ResidentBand *resident, float *results)
+{
+    KrsFilm       *film = resident->film;
     const uint32_t aovs = resident->has_aovs ? KRS_AOV_ALL : KRS_AOV_COLOR | KRS_AOV_NOISE;
-    const uint32_t rows = rows_of_sums(film) | (resident->has_aovs ? picture_rows(film->sums) : 0);
     const size_t   band = (size_t)resident->traced.height * resident->traced.width;
-    float         *results = fetch(rendering, rows);
     uint32_t       y, end;
-    if (!results)
-        return false;
     for (rows_of_resident(film, resident, &y, &end); y < end; y++) {
         size_t in_band, in_film;
         if (!find_row(film, resident, y, &in_band, &in_film))
@@ -185,14 +191,24 @@ bool resident_store(KrsRendering *rendering)
     if (film->kept)
         copy_kept(film, resident, results, false);
     resident->has_colors = resident->has_aovs = false;
-    return true;
+}
+
+bool resident_store(KrsRendering *rendering)
+{
+    ResidentBand *resident = &rendering->resident;
+    if (!resident->film || !(resident->has_colors || resident->has_aovs))
+        return true;
+    float *results = fetch(rendering, rows_to_store(resident));
+    if (results)
+        store(resident, results);
+    return results != NULL;
 }
 
 bool resident_take_mattes(KrsRendering *rendering)
 {
     ResidentBand *resident = &rendering->resident;
     KrsFilm      *film     = resident->film;
-    const float  *results  = fetch(rendering, MATTE_ROWS | (film->kept ? 1u << ROW_NOISE : 0));
+    float        *results  = fetch(rendering, MATTE_ROWS | rows_to_store(resident));
     const size_t  band     = (size_t)resident->traced.height * resident->traced.width;
     uint32_t      y, end;
     if (!results)
@@ -203,6 +219,7 @@ bool resident_take_mattes(KrsRendering *rendering)
             mattes_take(film->sums, results + in_band * RESULT_NUMBERS, band, in_film,
                         film->options.crop.width);
     }
+    store(resident, results);
     return true;
 }
 
@@ -246,15 +263,15 @@ bool resident_change(KrsFilm *film, const ResidentBand *wanted)
 {
     KrsRendering *rendering = film->rendering;
     ResidentBand *resident  = &rendering->resident;
+    const bool    empty     = resident_samples(film, wanted->from) == 0;
     if (resident->film == film && resident->from == wanted->from &&
-        resident->rows == wanted->rows && film->samples > 0) {
+        resident->rows == wanted->rows && !empty) {
         resident->has_colors = true;
         return true;
     }
     if (!resident_store(rendering))
         return false;
-    uint32_t rows = film->samples == 0 ? picture_rows(film->sums) : rows_of_sums(film);
+    uint32_t rows = empty ? picture_rows(film->sums) : rows_of_sums(film);
     *resident     = *wanted;
-    return clear_results(rendering, rows, row_bytes_of(resident)) &&
-           (film->samples == 0 || load_sums(film));
+    return clear_results(rendering, rows, row_bytes_of(resident)) && (empty || load_sums(film));
 }

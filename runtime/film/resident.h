@@ -27,6 +27,10 @@ struct KrsFilm {
     Doubling *doublings; /* NULL: no block is closed, or no error is estimated */
     uint32_t  rows;      /* of a band; 0: no band has been made */
     double    rebase_origin[3]; /* positions of the first sample are relative to it */
+    /* While samples are added: how many the host has beyond those before, of each row of tiles, and
+       what statistics were then. */
+    uint32_t      *more;
+    KrsRenderStats stats;
 };
 
 /* Returns the crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels
@@ -37,14 +41,16 @@ KrsWindow resident_cover(const KrsRenderOptions *options);
 enum { KEPT_COLORS, KEPT_NOISE, KEPT_EARLIER, KEPT_ROWS };
 size_t resident_kept(const KrsRenderOptions *options);
 
+/* Tells how many samples the host has of a band that begins at this row of the tiles. */
+uint32_t resident_samples(const KrsFilm *film, uint32_t from);
 /* Copies the samples in the buffers to their film, unless it has them. */
 bool resident_store(KrsRendering *rendering);
-/* Makes the buffers hold a band of the film, with the samples that it has so far. */
+/* Makes the buffers hold a band of the film, with the samples that the host has of it. */
 bool resident_change(KrsFilm *film, const ResidentBand *wanted);
 
 /* Makes some rows of the results in the buffers as they are without a hit: bits ROW_... of each. */
 bool resident_clear(KrsRendering *rendering, uint32_t rows);
-/* Counts the rays in the buffers for the mattes of their film. */
+/* Copies the samples as well, and counts the rays in the buffers for the mattes of their film: both, or neither. */
 bool resident_take_mattes(KrsRendering *rendering);
 
 #endif

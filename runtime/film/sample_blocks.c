@@ -86,7 +86,8 @@ static bool clear_block(KrsFilm *film)
     if (film->kept)
         memset(film->kept, 0, (size_t)cover.width * cover.height * sizeof *film->kept);
     return film->rendering->resident.film != film ||
-           resident_clear(film->rendering, 1u << ROW_COLORS);
+           resident_clear(film->rendering, 1u << ROW_COLORS) ||
+           film->rendering->renderer->gpu.lost; /* then the device has none */
 }
 
 bool blocks_close(KrsFilm *film)

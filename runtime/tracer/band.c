@@ -113,7 +113,7 @@ static uint64_t larger(uint64_t a, uint64_t b) { return a > b ? a : b; }
 /* Returns the most pixels that a band may have on this device.  All of its buffers must fit into
    the device's memory, and none may be longer than shaders can read. */
 static uint64_t max_pixels(const Gpu *gpu, uint32_t path_rows, uint32_t lights,
-                           uint32_t surface_rows)
+                           uint32_t surface_rows, uint32_t halvings)
 {
     const uint64_t   rows     = RESULT_ROWS + lights;
     const uint64_t   hit      = HIT_BYTES + path_rows * PATH_ROW_BYTES;
@@ -130,7 +130,7 @@ static uint64_t max_pixels(const Gpu *gpu, uint32_t path_rows, uint32_t lights,
     const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / (BAND_BYTES(hit, rows) + surface);
     uint64_t       most      = in_range < in_memory ? in_range : in_memory;
     most                     = gpu->texels && in_texels < most ? in_texels : most;
-    most                     = most < usual ? most : usual;
+    most                     = (most < usual ? most : usual) >> halvings;
     return most > BAND_PIXELS_MIN ? most : BAND_PIXELS_MIN;
 }
 
@@ -139,7 +139,8 @@ uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t
 {
     Gpu           *gpu    = &rendering->renderer->gpu;
     const uint64_t across = round_to_tiles(cover->width) + 2 * halo;
-    for (uint64_t pixels = max_pixels(gpu, path_rows, lights, surface_rows);
+    for (uint64_t pixels = max_pixels(gpu, path_rows, lights, surface_rows,
+                                      renderer_halvings(rendering->renderer));
          pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within((uint32_t)across, pixels);
         rows          = rows > 2 * halo + TILE ? rows - 2 * halo : TILE;

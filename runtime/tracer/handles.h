@@ -57,11 +57,13 @@ typedef struct PrewarmThread PrewarmThread;
 struct KrsRenderer {
     Gpu            gpu;
     PrewarmThread *prewarm; /* NULL: none are made at the moment */
-    bool           compiler_started;
-    bool           early_outs;   /* shaders skip far shapes by branches */
-    SetLayout      scene_layout; /* set 0: the scene's parameters and tables */
-    SetLayout      frame_layout; /* set 1: what frame.glsl declares */
-    Handle         layout;       /* shared by all shaders */
+    KrsRendering  *first;   /* of its renderings */
+    uint32_t  losses; /* how often the device was opened anew: its slices are halved as often */
+    bool      compiler_started;
+    bool      early_outs;   /* shaders skip far shapes by branches */
+    SetLayout scene_layout; /* set 0: the scene's parameters and tables */
+    SetLayout frame_layout; /* set 1: what frame.glsl declares */
+    Handle    layout;       /* shared by all shaders */
     /* Each is made when it is needed, with the shaders of the first scene that needs it. */
     Shader pixels[RAY_KINDS][PIXEL_SHADERS];
     /* aim.comp and arrive.comp; [1]: paths have such rays, too. */
@@ -121,6 +123,7 @@ typedef struct ResidentBand {
 
 struct KrsRendering {
     KrsRenderer      *renderer;
+    KrsRendering     *next; /* of the renderer */
     const KrsScene   *scene;
     const KrsProgram *program;
     uint32_t          updates; /* how often it was taken over to another scene */

@@ -162,10 +162,12 @@ void layouts_destroy(KrsRenderer *renderer)
     if (!gpu_is_open(gpu) || gpu->stuck)
         return;
     sets_destroy(gpu, renderer->idle_pool);
+    renderer->idle_pool = 0;
     for (TexelKind kind = NO_TEXELS; kind < TEXEL_KINDS; kind++)
         buffer_destroy(gpu, &renderer->idle[kind]);
     buffer_destroy(gpu, &renderer->work);
     run_layout_destroy(gpu, renderer->layout);
+    renderer->layout = 0;
     set_layout_destroy(gpu, &renderer->frame_layout);
     set_layout_destroy(gpu, &renderer->scene_layout);
 }

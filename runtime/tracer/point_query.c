@@ -70,7 +70,8 @@ bool point_query_run(KrsRendering *rendering, uint32_t count, double step)
 KrsStatus point_query_sample(KrsRendering *rendering, KrsState *state, const float (*points)[3],
                              size_t count, float *distances, SurfacePoint *surfaces)
 {
-    renderer_clear(rendering->renderer);
+    if (!rendering_ready(rendering->renderer))
+        return rendering->renderer->gpu.status;
     if (!points && count > 0) {
         gpu_refuse(&rendering->renderer->gpu, KRS_BAD_ARGUMENT, "there are no points");
         return KRS_BAD_ARGUMENT;

@@ -126,6 +126,7 @@ void prewarm_end(KrsRenderer *renderer)
         *prewarm->requests[i].shader = prewarm->shaders[i];
     renderer->gpu.prewarms = prewarm->renderer.gpu.prewarms;
     renderer->gpu.stuck    = prewarm->renderer.gpu.stuck;
+    renderer->gpu.lost     = renderer->gpu.lost || prewarm->renderer.gpu.lost;
     renderer->gpu.shaders_made += prewarm->made;
     renderer->prewarm = NULL;
     prewarm_free(renderer, prewarm);

@@ -140,7 +140,8 @@ KrsStatus krs_device_probe(KrsRendering *rendering, KrsState *state, const doubl
                            size_t count, KrsHit *hits)
 {
     Asker asker = {rendering, state, {0}, POINT_QUERY_STEP};
-    renderer_clear(rendering->renderer);
+    if (!rendering_ready(rendering->renderer))
+        return rendering->renderer->gpu.status;
     if (!is_in_reach(points, count))
         return refuse(rendering, "a coordinate is not a number below 1e18");
     if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, state, NULL))
@@ -337,7 +338,8 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsState *state, const dou
                              double tolerance, KrsHit *hits)
 {
     Asker asker = {rendering, state, {0}, POINT_QUERY_STEP};
-    renderer_clear(rendering->renderer);
+    if (!rendering_ready(rendering->renderer))
+        return rendering->renderer->gpu.status;
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance) ||
         !is_in_reach(origins, count) || tolerance > KRS_MAX_COORDINATE)
         return refuse(rendering, "rays have finite origins below 1e18, directions that are not 0, "

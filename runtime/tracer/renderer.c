@@ -132,6 +132,16 @@ static bool open_device(KrsRenderer *renderer, const KrsRendererOptions *options
     return opened;
 }
 
+bool renderer_prepare(KrsRenderer *renderer)
+{
+    const ShaderRequest shaders[] = {
+        {&renderer->next_dispatch, {.file = "next_dispatch.comp"}},
+        request_shader(renderer, &renderer->clear_shared, "clear_shared.comp", RAYS_OF_CAMERAS)};
+    const size_t count = gpu_is_cpu(&renderer->gpu) ? 0 : sizeof shaders / sizeof *shaders;
+    return layouts_create(renderer) &&
+           shaders_make(renderer, 0, shaders, count, &renderer->spirv_ms, &renderer->pipeline_ms);
+}
+
 KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emulation,
                                  KrsRenderer **out)
 {
@@ -148,12 +158,7 @@ KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emu
     KrsEarlyOuts early_outs = options ? options->early_outs : KRS_EARLY_OUTS_DEFAULT;
     renderer->early_outs    = early_outs == KRS_EARLY_OUTS_DEFAULT ? !gpu_is_cpu(&renderer->gpu)
                                                                    : early_outs == KRS_EARLY_OUTS_ON;
-    const ShaderRequest shaders[] = {
-        {&renderer->next_dispatch, {.file = "next_dispatch.comp"}},
-        request_shader(renderer, &renderer->clear_shared, "clear_shared.comp", RAYS_OF_CAMERAS)};
-    const size_t count = gpu_is_cpu(&renderer->gpu) ? 0 : sizeof shaders / sizeof *shaders;
-    if (!layouts_create(renderer) ||
-        !shaders_make(renderer, 0, shaders, count, &renderer->spirv_ms, &renderer->pipeline_ms))
+    if (!renderer_prepare(renderer))
         return renderer->gpu.status;
     if (options && options->prewarm)
         start_prewarming(renderer);
@@ -165,6 +170,33 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **rend
     return renderer_new_emulating(options, 0, renderer);
 }
 
+void renderer_release(KrsRenderer *renderer)
+{
+    Gpu *gpu = &renderer->gpu;
+    for (int kind = 0; kind < RAY_KINDS; kind++) {
+        for (int i = 0; i < PIXEL_SHADERS; i++)
+            shader_destroy(gpu, &renderer->pixels[kind][i]);
+        shader_destroy(gpu, &renderer->limits[kind]);
+        shader_destroy(gpu, &renderer->escapes[kind]);
+    }
+    for (int i = 0; i < 2 * RAYS_OF_LISTS; i++)
+        shader_destroy(gpu, &renderer->aims[i / 2][i % 2]);
+    for (int i = 0; i < 2; i++)
+        shader_destroy(gpu, &renderer->arrivals[i]);
+    shader_destroy(gpu, &renderer->escapes_to_plate);
+    shader_destroy(gpu, &renderer->noise);
+    shader_destroy(gpu, &renderer->plate);
+    shader_destroy(gpu, &renderer->next_dispatch);
+    shader_destroy(gpu, &renderer->clear_shared);
+    layouts_destroy(renderer);
+}
+
+uint32_t renderer_halvings(const KrsRenderer *renderer)
+{
+    const uint32_t most = 6;
+    return renderer->losses < most ? renderer->losses : most;
+}
+
 void krs_renderer_free(KrsRenderer *renderer)
 {
     if (!renderer)
@@ -173,22 +205,7 @@ void krs_renderer_free(KrsRenderer *renderer)
     prewarm_end(renderer);
     if (gpu_is_open(gpu)) {
         gpu_wait(gpu);
-        for (int kind = 0; kind < RAY_KINDS; kind++) {
-            for (int i = 0; i < PIXEL_SHADERS; i++)
-                shader_destroy(gpu, &renderer->pixels[kind][i]);
-            shader_destroy(gpu, &renderer->limits[kind]);
-            shader_destroy(gpu, &renderer->escapes[kind]);
-        }
-        for (int i = 0; i < 2 * RAYS_OF_LISTS; i++)
-            shader_destroy(gpu, &renderer->aims[i / 2][i % 2]);
-        for (int i = 0; i < 2; i++)
-            shader_destroy(gpu, &renderer->arrivals[i]);
-        shader_destroy(gpu, &renderer->escapes_to_plate);
-        shader_destroy(gpu, &renderer->noise);
-        shader_destroy(gpu, &renderer->plate);
-        shader_destroy(gpu, &renderer->next_dispatch);
-        shader_destroy(gpu, &renderer->clear_shared);
-        layouts_destroy(renderer);
+        renderer_release(renderer);
     }
     gpu_close(gpu);
     if (renderer->compiler_started)

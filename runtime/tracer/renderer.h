@@ -42,5 +42,13 @@ const Shader *renderer_plate(KrsRenderer *renderer, double *spirv_ms, double *pi
 const Shader *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms);
 /* Clears the status and the message of the last failure. */
 void renderer_clear(KrsRenderer *renderer);
+/* Makes what all scenes need; false with the failure noted. */
+bool renderer_prepare(KrsRenderer *renderer);
+/* Destroys that; nothing of it runs any more. */
+void renderer_release(KrsRenderer *renderer);
+/* A device that is lost so often, while nothing is gained, is given up. */
+enum { MAX_LOSSES = 3 };
+/* Returns the halvings of slices after losses; there is an end to them. */
+uint32_t renderer_halvings(const KrsRenderer *renderer);
 
 #endif

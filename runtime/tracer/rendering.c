@@ -110,7 +110,8 @@ static double guess_slice(const KrsRendering *rendering, int phase, bool has_sce
     double     flops = has_scene ? rendering->program->flops * distances_of_item[phase]
                                  : FLOPS_WITHOUT_SCENE;
     double     items = slow[gpu_describe(gpu).kind] / fmax(flops, 1);
-    return gpu_is_cpu(gpu) ? 8192 : fmax(items, 1);
+    items            = gpu_is_cpu(gpu) ? 8192 : items;
+    return fmax(ldexp(items, -(int)renderer_halvings(rendering->renderer)), 1);
 }
 
 static void set_scene(KrsRendering *rendering, const KrsScene *scene)
@@ -123,11 +124,101 @@ static void set_scene(KrsRendering *rendering, const KrsScene *scene)
     rendering->rays       = rendering->scene_rays;
 }
 
+/* Makes what the rendering's scene has on the device; false with the failure noted. */
+static bool prepare(KrsRendering *rendering)
+{
+    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
+        for (int has_scene = 0; has_scene < 2; has_scene++)
+            rendering->items_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
+    return rendering_sets_create(rendering) && buffers_create(rendering) &&
+           shaders_create(rendering, rendering->purpose);
+}
+
+/* Destroys that, and what pictures have made. */
+static void release(KrsRendering *rendering)
+{
+    Gpu    *gpu       = &rendering->renderer->gpu;
+    Band   *band      = &rendering->band;
+    Buffer *buffers[] = {&rendering->parameters,
+                         &rendering->table_rows,
+                         &rendering->table_cells,
+                         &rendering->sky_table,
+                         &rendering->frame,
+                         &rendering->control,
+                         &rendering->device_control,
+                         &rendering->inputs,
+                         &rendering->points,
+                         &rendering->answers,
+                         &rendering->query_rays,
+                         &rendering->ray_hits,
+                         &rendering->taken,
+                         &band->ends,
+                         &band->hits,
+                         &band->results,
+                         &band->fetched,
+                         &band->queue,
+                         &band->taken,
+                         &band->tiles,
+                         &band->surfaces};
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
+        buffer_destroy(gpu, buffers[i]);
+    shaders_destroy(gpu, &rendering->shaders);
+    if (gpu_is_open(gpu) && !gpu->stuck)
+        sets_destroy(gpu, rendering->pool);
+    gpu_release(gpu, rendering->table_inputs);
+    rendering->table_inputs = NULL;
+    rendering->pool         = 0;
+    rendering->band         = (Band){0};
+    rendering->resident     = (ResidentBand){0};
+    rendering->zone_slots = rendering->max_zone_slots = 0;
+}
+
+/* Opens a lost device anew, and makes all anew that it had; false with the failure noted. */
+static bool reopen(KrsRenderer *renderer)
+{
+    Gpu *gpu = &renderer->gpu;
+    prewarm_end(renderer);
+    gpu_wait(gpu); /* what was prewarmed may still run, unless the device is gone */
+    for (KrsRendering *r = renderer->first; r; r = r->next)
+        release(r);
+    renderer_release(renderer);
+    renderer->losses++;
+    renderer_clear(renderer);
+    bool ready = gpu_reopen(gpu) && renderer_prepare(renderer);
+    for (KrsRendering *r = renderer->first; r && ready; r = r->next)
+        ready = prepare(r);
+    gpu->lost = !ready;
+    return ready;
+}
+
+bool rendering_ready(KrsRenderer *renderer)
+{
+    renderer_clear(renderer);
+    return !renderer->gpu.lost || reopen(renderer);
+}
+
+/* A renderer keeps a list of its renderings: all are made anew with its device. */
+static void add_to_list(KrsRendering *rendering)
+{
+    rendering->next            = rendering->renderer->first;
+    rendering->renderer->first = rendering;
+}
+
+static void remove_from_list(const KrsRendering *rendering)
+{
+    KrsRendering **link = &rendering->renderer->first;
+    while (*link && *link != rendering)
+        link = &(*link)->next;
+    if (*link)
+        *link = rendering->next;
+}
+
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
                             KrsRendering **out)
 {
     *out = NULL;
-    renderer_clear(renderer);
+    if (!rendering_ready(renderer))
+        return renderer->gpu.status;
     KrsRendering *rendering = gpu_alloc(&renderer->gpu, 1, sizeof *rendering, "prepare the scene");
     if (!rendering)
         return renderer->gpu.status;
@@ -139,11 +230,12 @@ KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPur
     rendering->spirv_ms    = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
     set_scene(rendering, scene);
-    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
-        for (int has_scene = 0; has_scene < 2; has_scene++)
-            rendering->items_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
-    if (!rendering_sets_create(rendering) || !buffers_create(rendering) ||
-        !shaders_create(rendering, rendering->purpose)) {
+    bool ready = prepare(rendering);
+    for (int i = 0; i < MAX_LOSSES && !ready && renderer->gpu.lost; i++) {
+        release(rendering);
+        ready = reopen(renderer) && prepare(rendering);
+    }
+    if (!ready) {
         KrsStatus status = renderer->gpu.status;
         prewarm_end(renderer); /* it may still use the queue */
         krs_rendering_free(rendering);
@@ -151,6 +243,7 @@ KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsPur
     }
     if (rendering->deferred)
         prewarm_end(renderer); /* pictures use the queue before shaders are made */
+    add_to_list(rendering);
     *out = rendering;
     return KRS_OK;
 }
@@ -194,12 +287,12 @@ static void drop_shaders(Gpu *gpu, KrsRendering *dropped)
 
 KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
 {
-    Gpu         *gpu    = &rendering->renderer->gpu;
+    Gpu *gpu = &rendering->renderer->gpu;
+    if (!rendering_ready(rendering->renderer) ||
+        !gpu_wait(gpu)) /* shaders may still be prewarming */
+        return gpu->status;
     KrsRendering before = *rendering;
     const bool   stay   = before.program->shaders == krs_scene_program(scene)->shaders;
-    renderer_clear(rendering->renderer);
-    if (!gpu_wait(gpu)) /* shaders may still be prewarming */
-        return gpu->status;
     if (stay)
         shaders_adopt(&rendering->shaders, scene);
     else
@@ -227,36 +320,10 @@ void krs_rendering_free(KrsRendering *rendering)
 {
     if (!rendering)
         return;
-    Gpu    *gpu       = &rendering->renderer->gpu;
-    Band   *band      = &rendering->band;
-    Buffer *buffers[] = {&rendering->parameters,
-                         &rendering->table_rows,
-                         &rendering->table_cells,
-                         &rendering->sky_table,
-                         &rendering->frame,
-                         &rendering->control,
-                         &rendering->device_control,
-                         &rendering->inputs,
-                         &rendering->points,
-                         &rendering->answers,
-                         &rendering->query_rays,
-                         &rendering->ray_hits,
-                         &rendering->taken,
-                         &band->ends,
-                         &band->hits,
-                         &band->results,
-                         &band->fetched,
-                         &band->queue,
-                         &band->taken,
-                         &band->tiles,
-                         &band->surfaces};
+    Gpu *gpu = &rendering->renderer->gpu;
+    remove_from_list(rendering);
     gpu_wait(gpu); /* shaders may still be prewarming, unless the device is lost */
-    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
-        buffer_destroy(gpu, buffers[i]);
-    shaders_destroy(gpu, &rendering->shaders);
-    if (!gpu->stuck)
-        sets_destroy(gpu, rendering->pool);
-    gpu_release(gpu, rendering->table_inputs);
+    release(rendering);
     gpu_release(gpu, rendering->volume_rows);
     lane_fields_free(&rendering->lane_fields);
     gpu_release(gpu, rendering);

@@ -6,6 +6,9 @@
 
 #include "runtime/tracer/handles.h"
 
+/* Begins a call of the caller: clears the last failure, and opens a lost device anew, with all that it had; slices and bands are
+   half as large then, and films keep what the host has of them.  False with the failure noted. */
+bool rendering_ready(KrsRenderer *renderer);
 /* Copies the state's parameters and zones to the device.  Chooses the shaders for these zones, and
    for the scene's own cameras. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsState *state,
