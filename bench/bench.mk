@@ -13,7 +13,7 @@ bench: deps
 bench-quick: $(B)/bench/bench $(B)/krs
 	@$(B)/bench/bench --krs $(B)/krs --revision $(REVISION) --quick --folder $(B)/bench/results
 
-# How well one sample shows what is finer than a pixel (bench/README.md).
+# How well one sample shows what is finer than a pixel (bench/minify/README.md).
 FIXTURE := $(addprefix $(B)/bench/, fixture.o sheet.o measure.o)
 MINIFY := $(addprefix $(B)/bench/, minify/minify.o minify/pixel_filter.o)
 $(B)/bench/minify/minify: $(MINIFY) $(FIXTURE) $(INTERNAL)

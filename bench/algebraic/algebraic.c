@@ -3,7 +3,7 @@
  * beside POV-Ray and surf; a tree of 2^28 branches beside one that is written out; a Julia set.
  *
  * Everything in turns, medians.  What pictures show is held against first roots (judge.c).  The
- * tables are printed, and written to bench/results/ when they are whole.  bench/README.md says what
+ * tables are printed, and written to bench/results/ when they are whole.  bench/algebraic/README.md says what
  * the columns mean.
  */
 #include <ctype.h>
@@ -256,7 +256,8 @@ static void write_results(const char *path, const char *text)
 static void print_heads(size_t repeats, const char *device, double load)
 {
     say("# Algebraic surfaces on %s\n\n%dx%d, medians of %zu in turns, without shadows and "
-        "occlusion; %ld processors, load %.1f at the start. bench/README.md says what the columns "
+        "occlusion; %ld processors, load %.1f at the start. bench/algebraic/README.md says what "
+        "the columns "
         "mean.\n\n",
         device, WIDTH, HEIGHT, repeats, sysconf(_SC_NPROCESSORS_ONLN), load);
     for (size_t i = 0; i < program_count; i++)

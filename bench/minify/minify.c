@@ -4,7 +4,7 @@
  * Pictures of one and four samples, as they are and without the filtering of surfaces, are held
  * against pictures of many samples without filtering: errors in what a screen shows, and flicker
  * over a short flight; what filtering costs; and what a wider filter of pixels would do.
- * bench/README.md says what the columns mean.
+ * bench/minify/README.md says what the columns mean.
  */
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
  * First the table of Ban and Valasek (2023, figure 5) in single precision on the device: the angle
  * between the true normal and what each stencil finds with steps of length r, and what derivatives
  * find, at points of a picture of each surface.  Then pictures: what the phase of normals takes by
- * each, and how far from those by derivatives they are.  bench/README.md says what columns mean.
+ * each, and how far from those by derivatives they are.  bench/normals/README.md says what columns mean.
  */
 #include <math.h>
 #include <stdio.h>
