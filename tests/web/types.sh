@@ -20,7 +20,7 @@ report $? 1 "a program is accepted"
 report $? 2 "a wrong use is refused, where it is"
 
 # What is declared, exported and used has the same names.
-declared=$(sed -n 's/^export \(function\|class\) \([A-Za-z]*\).*/\2/p' web/package/krs.d.ts | sort)
+declared=$(sed -n 's/^export \(function\|class\|const\) \([A-Za-z]*\).*/\2/p' web/package/krs.d.ts | sort)
 exported=$(sed -n 's/^export {\(.*\)}.*/\1/p' web/package/index.mjs | tr ', ' '\n' | sed '/^$/d' | sort)
 members=$(sed -n '/^export \(interface Scene \|class\)/,/^}/ s/^    \(readonly \|get \|set \)*\([a-z][A-Za-z]*\)[?:(].*/\2/p' web/package/krs.d.ts | sort -u)
 for name in $declared $members; do

@@ -54,10 +54,12 @@ static KrsOptions options_of(uint32_t bits)
                         .font       = font};
 }
 
-KrsScene *core_compile(const char *text, size_t length, const char *name, uint32_t options)
+KrsScene *core_compile(const char *text, size_t length, const char *name, uint32_t options,
+                       size_t memory)
 {
-    const KrsOptions chosen = options_of(options);
-    KrsScene        *scene;
+    KrsOptions chosen = options_of(options);
+    KrsScene  *scene;
+    chosen.memory_limit = memory;
     answer_begin_compilation();
     const KrsStatus status = krs_compile_text(text, length, name, &chosen, &scene);
     end_supply();

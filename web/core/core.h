@@ -22,9 +22,10 @@ typedef enum CoreOption {
 /* Returns the answer to the last call that has one, an object in JSON; it lives until the next. */
 const char *core_answer(void);
 
-/* These compile a text, or the edited text of a scene, which stays.  The answer has `status` and
-   `diagnostics`, and of an edit `changes`.  NULL: no scene came of it. */
-KrsScene *core_compile(const char *text, size_t length, const char *name, uint32_t options);
+/* These compile a text, or the edited text of a scene, which stays, within KrsOptions.memory_limit.
+   The answer has `status` and `diagnostics`, and of an edit `changes`.  NULL: no scene came of it. */
+KrsScene *core_compile(const char *text, size_t length, const char *name, uint32_t options,
+                       size_t memory);
 KrsScene *core_update(const KrsScene *scene, const char *text, size_t length);
 /* Returns the text in the canonical layout, for free(); the answer is that of a compilation. */
 char *core_format(const char *text, size_t length, const char *name);

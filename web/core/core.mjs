@@ -143,10 +143,11 @@ class Core extends Memory {
         return this.using([at], () => this.string(at));
     }
 
-    compile(text, { name = 'scene.krs', ...wanted } = {}) {
+    // `memory` is how many bytes it may use; 0: as many as usual.
+    compile(text, { name = 'scene.krs', memory = 0, ...wanted } = {}) {
         const [at, length] = this.putText(text);
         const [called] = this.putText(name);
-        const scene = this.using([at, called], () => this.m._core_compile(at, length, called, bitsOf(options, wanted)));
+        const scene = this.using([at, called], () => this.m._core_compile(at, length, called, bitsOf(options, wanted), memory));
         return { scene: scene ? new Scene(this, scene) : null, ...this.answer() };
     }
 

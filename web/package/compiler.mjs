@@ -26,13 +26,21 @@ export function startWorker(name) {
     return new Worker(starter, { type: 'module' });
 }
 
+// What a scene may take: seconds of a call, bytes of memory, bytes of a file.  Texts may come from strangers.
+export const limits = { seconds: 60, memory: 2 ** 31, bytes: 2 ** 26 };
+const longest = 2 ** 31 - 1; // milliseconds that a browser can wait
+
+// The work of others has ended the worker: this call can be asked again.
+class Interrupted extends Error {}
+
 class Calls {
     constructor() {
         this.worker = startWorker('worker.mjs');
         this.waiting = new Map();
         this.next = 1;
+        this.ended = false;
         this.worker.onmessage = ({ data }) => this.#take(data);
-        this.worker.onerror = event => this.#fail(new Error(event.message ?? 'the compiler cannot be loaded'));
+        this.worker.onerror = event => this.end(new Error(event.message ?? 'the compiler cannot be loaded'));
     }
 
     call(call, args, told) {
@@ -43,17 +51,32 @@ class Calls {
         });
     }
 
-    end(reason) {
+    // Ends all calls, or one with the reason: the others were not at fault.
+    end(reason, guilty) {
+        this.ended = true;
+        clearTimeout(this.timer);
         this.worker.terminate();
-        this.#fail(reason);
+        for (const [id, { reject }] of this.waiting)
+            reject(guilty === undefined || id === guilty ? reason : new Interrupted(reason.message));
+        this.waiting.clear();
     }
 
-    #take({ id, value, error, done }) {
+    // The worker begins with a call, tells how far it is, or has ended it.
+    #take({ id, value, error, done, begun, broken }) {
         const waiting = this.waiting.get(id);
         if (!waiting)
             return;
         if (done !== undefined) {
             waiting.told?.(done);
+            return;
+        }
+        clearTimeout(this.timer);
+        if (begun) {
+            this.#limit(id, waiting);
+            return;
+        }
+        if (broken) {
+            this.end(new Error(`the compiler has failed: ${error}`), id);
             return;
         }
         this.waiting.delete(id);
@@ -63,29 +86,41 @@ class Calls {
             waiting.reject(new Error(error));
     }
 
-    #fail(error) {
-        for (const { reject } of this.waiting.values())
-            reject(error);
-        this.waiting.clear();
+    // What tells its progress takes as long as it takes: it can be ended by whoever is told.
+    #limit(id, { told }) {
+        const { seconds } = limits;
+        if (!told && 1000 * seconds <= longest)
+            this.timer = setTimeout(() => this.end(new Error(`the scene takes more than ${seconds} s`), id), 1000 * seconds);
     }
 }
 
+// A worker is another when the last was ended.
 let shared, answering;
-const worker = () => (shared ??= new Calls());
+const worker = () => (shared = shared && !shared.ended ? shared : new Calls());
+
+// Asks again when others had the worker ended.
+async function patiently(call) {
+    for (;;) {
+        try {
+            return await call();
+        } catch (error) {
+            if (!(error instanceof Interrupted))
+                throw error;
+        }
+    }
+}
 const ask = (call, args) => worker().call(call, args);
+const askPatiently = (call, args) => patiently(() => ask(call, args));
 
 // Scenes find that their worker is another, and are compiled again.
-export function stop() {
-    shared?.end(new Error('the compilation was ended'));
-    shared = undefined;
-}
+export function stop() { shared?.end(new Error('the compilation was ended')); }
 
 // ---- scenes ----
 
 const flat = points => (Array.isArray(points[0]) ? points.flat() : Array.from(points));
 const absolute = place => (place === undefined ? undefined : new URL(place, globalThis.document?.baseURI ?? import.meta.url).href);
-const optionsOf = ({ name = 'scene.krs', files, base, fonts, studio } = {}) => ({
-    name, files, base: absolute(base), studio,
+const optionsOf = ({ name = 'scene.krs', files, base, root = base, fonts, studio } = {}) => ({
+    name, files, base: absolute(base), root: absolute(root), studio, memory: limits.memory, bytes: limits.bytes,
     fonts: fonts && Object.fromEntries(Object.entries(fonts).map(([key, font]) => [key, ArrayBuffer.isView(font) ? font : absolute(font)])),
 });
 
@@ -156,9 +191,10 @@ export class Scene extends EventTarget {
     }
 
     async #compile(text) {
-        await this.#ready();
-        const made = this.#number === undefined ? await ask('compile', { text, options: this.#options })
-                                                : await ask('update', { scene: this.#number, text });
+        const made = await patiently(async () => {
+            await this.#ready();
+            return this.#number === undefined ? ask('compile', { text, options: this.#options }) : ask('update', { scene: this.#number, text });
+        });
         this.#number ??= made.number;
         this.diagnostics = made.diagnostics;
         if (made.ok) {
@@ -208,11 +244,13 @@ export class Scene extends EventTarget {
     pictureText() { return this.#ask('shader', { target: 'essl', values: true, stateValues: true, earlyOuts: false }); }
 
     // What a picture reads at a time; of tables, what it has not seen.
-    async state(time, tables) {
-        await this.#ready();
-        const seen = this.#unseen ? undefined : tables;
-        this.#unseen = false;
-        return this.#ask('state', { time, tables: seen });
+    state(time, tables) {
+        return patiently(async () => {
+            await this.#ready();
+            const seen = this.#unseen ? undefined : tables;
+            this.#unseen = false;
+            return ask('state', { scene: this.#number, time, tables: seen });
+        });
     }
 
     camerasAt(time) { return this.#ask('cameras', { time }); }
@@ -220,11 +258,11 @@ export class Scene extends EventTarget {
     // A worker of its own can be ended at any time.
     async mesh({ signal, progress, time = 0, ...how } = {}) {
         signal?.throwIfAborted();
-        const calls = new Calls(), abort = () => calls.end(signal.reason);
+        const calls = new Calls(), abort = () => calls.end(signal.reason), tell = progress ?? (() => {});
         signal?.addEventListener('abort', abort);
         try {
             return await calls.call('mesh', { text: this.text, options: { ...this.#options, studio: false },
-                values: Array.from(this.#values), time, how }, progress);
+                values: Array.from(this.#values), time, how }, tell);
         } finally {
             signal?.removeEventListener('abort', abort);
             calls.end(new Error('ended'));
@@ -236,9 +274,11 @@ export class Scene extends EventTarget {
             ask('free', { scene: this.#number });
     }
 
-    async #ask(call, args) {
-        await this.#ready();
-        return ask(call, { scene: this.#number, ...args });
+    #ask(call, args) {
+        return patiently(async () => {
+            await this.#ready();
+            return ask(call, { scene: this.#number, ...args });
+        });
     }
 }
 
@@ -255,12 +295,14 @@ export async function compile(text, options) {
 }
 
 export const format = async (text, { name } = {}) => {
-    const { text: formatted, diagnostics } = await ask('format', { text, name });
+    const { text: formatted, diagnostics } = await askPatiently('format', { text, name });
     return { text: formatted, diagnostics };
 };
-export const check = (text, options) => ask('check', { text, options: optionsOf(options) });
+export const check = (text, options) => askPatiently('check', { text, options: optionsOf(options) });
 // Whoever writes does not wait for what is compiled.
-const askAbout = (question, text, params, options) =>
-    (answering ??= new Calls()).call('ask', { question, text, params, options: optionsOf(options) });
+const askAbout = (question, text, params, options) => patiently(() => {
+    answering = answering && !answering.ended ? answering : new Calls();
+    return answering.call('ask', { question, text, params, options: optionsOf(options) });
+});
 export { askAbout as ask };
-export const version = () => ask('version');
+export const version = () => askPatiently('version');

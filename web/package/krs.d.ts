@@ -150,6 +150,8 @@ export interface CompileOptions {
     files?: Record<string, FileContent>;
     /** The folder of files that are not in `files`; none: only those in `files` are there. */
     base?: string | URL;
+    /** Files are in this folder and below: that of `base`, where nothing is said. */
+    root?: string | URL;
     /** Fonts that scenes name, by name: places of TrueType or OpenType files, or their bytes.  "" is what texts have
         that name none. */
     fonts?: Record<string, string | URL | Uint8Array>;
@@ -246,6 +248,12 @@ export function ask(question: string, text: string, params: object, options?: Co
  */
 export function stop(): void;
 
+/**
+ * What a scene may take, which may come from a stranger: seconds of a call, bytes of memory, and bytes of a file that is
+ * fetched.  A call that takes longer is rejected.  60 s, 2 GiB, 64 MiB.  Meshes take as long as they take, until `signal`.
+ */
+export const limits: { seconds: number; memory: number; bytes: number };
+
 /** The version of the compiler. */
 export function version(): Promise<string>;
 
@@ -271,7 +279,7 @@ export interface Frame {
  *
  *     <krs-view src="gear.krs" controls autoplay></krs-view>
  *
- * Attributes: `src`, a scene's address; or the text stands in `<script type="text/krs">` inside of it.  `camera`, the
+ * Attributes: `src`, a scene's address, and `root`, the folder of its files where that is not its own; or the text stands in `<script type="text/krs">` inside of it.  `camera`, the
  * name of one of the scene's.  `controls`: the camera is turned by dragging, moved with the shift key or two fingers,
  * and comes nearer by the wheel.  `autoplay`: the time runs.  `samples`: of each pixel, 64 by default.
  *

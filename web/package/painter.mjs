@@ -17,16 +17,19 @@ const calls = {
     release() { picture.release(); },
     restore() { picture.restore(); },
 
-    async shoot({ id, width, height, samples, type }) {
-        const { bytes, rays } = await picture.shoot({ width, height, samples });
-        if (type === 'rays') {
-            tell({ kind: 'shot', id, rays }, [rays.buffer]);
-            return;
-        }
-        const canvas = new OffscreenCanvas(width, height);
-        canvas.getContext('2d').putImageData(new ImageData(bytes, width, height), 0, 0);
-        tell({ kind: 'shot', id, blob: await canvas.convertToBlob({ type }) });
-    },
+    shoot({ id, ...wanted }) { return shoot(id, wanted).catch(error => tell({ kind: 'shot', id, error: error.message })); },
 };
+
+async function shoot(id, { width, height, samples, type }) {
+    await picture.begun;
+    const { bytes, rays } = await picture.shoot({ width, height, samples });
+    if (type === 'rays') {
+        tell({ kind: 'shot', id, rays }, [rays.buffer]);
+        return;
+    }
+    const canvas = new OffscreenCanvas(width, height);
+    canvas.getContext('2d').putImageData(new ImageData(bytes, width, height), 0, 0);
+    tell({ kind: 'shot', id, blob: await canvas.convertToBlob({ type }) });
+}
 
 self.onmessage = ({ data }) => Promise.resolve(calls[data.call](data)).catch(failed);

@@ -13,6 +13,7 @@ const firstTiles = 4;                  // of a first level that goes on although
 const lightsAt = 5120, inputWidth = 64; // the row of the first light (blocks.h); the width of that texture
 const textureWidth = 4096;
 const mirroredSurfaces = [1, 5];          // that rays are followed to: while pixels are large, and then
+const mostLosses = 3;                     // of contexts, by a picture that is not finished meanwhile
 const toneMaps = ['neutral', 'aces', 'agx', 'none'];
 
 // ---- textures and what is drawn to ----
@@ -89,16 +90,28 @@ class Sums {
 export class Picture {
     constructor(canvas, tell) {
         Object.assign(this, { canvas, tell, scene: null, state: null, programs: null, width: 0, height: 0, wanted: 64,
-            costs: null, sums: new Map(), job: null, running: false, shots: [] });
+            costs: null, sums: new Map(), job: null, running: false, shots: [], losses: 0 });
         canvas.addEventListener('webglcontextlost', event => {
             event.preventDefault();
             this.lost = true;
             this.#dropJobs();
+            this.losses += this.ours ? 0 : 1;
             if (this.ours && !this.released) // it is wanted again already
                 setTimeout(() => this.losing.restoreContext());
         });
-        canvas.addEventListener('webglcontextrestored', () => this.#begin().then(() => this.scene && this.setScene(this.scene)));
+        canvas.addEventListener('webglcontextrestored', () => this.#begin().then(() => this.#resume(), error => this.tell({ kind: 'error', message: error.message })));
         this.begun = this.#begin();
+    }
+
+    // A scene by which contexts are lost again and again is not drawn any more: browsers would forbid all pictures.
+    #resume() {
+        if (this.losses < mostLosses)
+            return this.scene && this.setScene(this.scene);
+        const lost = { kind: 'error', message: 'the graphics card has given up on this scene' };
+        this.refused = this.scene?.text;
+        this.tell(lost);
+        for (const { reject } of this.shots.splice(0))
+            reject(new Error(lost.message));
     }
 
     async #begin() {
@@ -119,9 +132,14 @@ export class Picture {
 
     // { text, about }: a scene whose text has changed, and its state.
     async setScene(scene, state = this.state) {
+        if (scene.text !== this.scene?.text)
+            this.losses = 0;
+        this.refused = this.losses < mostLosses ? null : this.refused;
         this.scene = scene;
         this.setState(state);
         await this.begun;
+        if (this.refused === scene.text)
+            return;
         const { gl } = this, previous = this.programs;
         if (this.compiled !== scene.text || !this.programs) {
             if (scene.about.shaders.layers)
@@ -321,8 +339,10 @@ export class Picture {
             job.sample = 0;
             job.sums = null;
         }
-        if (done)
+        if (done) {
             this.job = null;
+            this.losses = 0;
+        }
         return done;
     }
 

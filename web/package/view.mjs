@@ -84,7 +84,7 @@ export class KrsViewElement extends HTMLElement {
         this.#resize();
         const inside = this.querySelector('script[type="text/krs"]');
         if (inside && !this.#scene)
-            this.update(inside.textContent, { name: this.getAttribute('name') ?? 'scene.krs', base: '.' });
+            this.#begin(inside.textContent, { name: this.getAttribute('name') ?? 'scene.krs', base: this.baseURI });
     }
 
     disconnectedCallback() {
@@ -124,8 +124,12 @@ export class KrsViewElement extends HTMLElement {
         if (message.kind === 'frame')
             this.#heardFrame(message);
         else if (message.kind === 'shot') {
-            this.#waiting.get(message.id)(message.blob ?? message.rays);
+            const { resolve, reject } = this.#waiting.get(message.id);
             this.#waiting.delete(message.id);
+            if (message.error === undefined)
+                resolve(message.blob ?? message.rays);
+            else
+                reject(new Error(message.error));
         } else if (message.kind === 'error')
             this.#fail(message.message);
     }
@@ -209,9 +213,15 @@ export class KrsViewElement extends HTMLElement {
         if (this.src !== src)
             return;
         if (response.ok)
-            await this.update(await response.text(), { name: decodeURIComponent(place.pathname.split('/').pop()), base: new URL('.', place) });
+            await this.#begin(await response.text(), { name: decodeURIComponent(place.pathname.split('/').pop()), base: place });
         else
             this.#fail(`${src}: ${response.statusText || response.status}`);
+    }
+
+    // Shows a text that stands in the page, or is named there.
+    async #begin(text, options) {
+        const root = this.getAttribute('root');
+        await this.update(text, { ...options, root: new URL(root ?? '.', root === null ? options.base : this.baseURI) }).catch(error => this.#fail(error.message));
     }
 
     async update(text, options) {
@@ -292,8 +302,10 @@ export class KrsViewElement extends HTMLElement {
 
     #shoot(width, height, samples, type) {
         const id = ++this.#shots;
-        return new Promise(resolve => {
-            this.#waiting.set(id, resolve);
+        return new Promise((resolve, reject) => {
+            if (!this.#painter)
+                throw new Error('the view is not in a page, or its browser cannot draw');
+            this.#waiting.set(id, { resolve, reject });
             this.#paint({ call: 'shoot', id, width, height, samples, type });
         });
     }

@@ -13,6 +13,8 @@ let core, version = null;
 const scenes = new Map();
 let nextScene = 1;
 
+const noMemory = 71; // KRS_OUT_OF_MEMORY
+
 // ---- files ----
 
 // What was fetched, by address: bytes, or null where there is nothing.
@@ -29,11 +31,13 @@ function bytesAt(address) {
     return fetched.get(address) ?? null;
 }
 
+// Files are those of the root's folder and below: a stranger's scene asks for no others.
 function load(path) {
     const given = current.files?.[path];
     if (given !== undefined || !current.base)
         return given ?? null;
-    return bytesAt(new URL(path, current.base).href);
+    const { href } = new URL(path, current.base);
+    return href.startsWith(new URL('.', current.root).href) ? bytesAt(href) : null;
 }
 
 function letters() {
@@ -49,23 +53,46 @@ function font(name) {
     return bytes && { bytes, face: 0 };
 }
 
+// The bytes at an address; null: there are none, or more than are permitted.
+async function fetchBytes(address) {
+    const response = await fetch(address).catch(() => null);
+    if (!response?.ok)
+        return null;
+    const pieces = [];
+    let length = 0;
+    for (const reader = response.body.getReader(); ;) {
+        const { done, value } = await reader.read();
+        if (done)
+            return new Uint8Array(await new Blob(pieces).arrayBuffer());
+        pieces.push(value);
+        if ((length += value.length) > current.bytes) {
+            await reader.cancel();
+            return null;
+        }
+    }
+}
+
 async function fetchMissing() {
     const files = Array.from(missing, async address => {
-        const response = await fetch(address).catch(() => null);
-        fetched.set(address, response?.ok ? new Uint8Array(await response.arrayBuffer()) : null);
+        fetched.set(address, await fetchBytes(address).catch(() => null));
     });
     if (wantsReader)
         reader = await loadLetters().catch(error => { throw new Error(`fonts cannot be read: ${error.message}`); });
     await Promise.all(files);
 }
 
-// Compiles, again as long as files have to be fetched for it.
+// Compiles, again as long as files have to be fetched for it.  What is not there may be there for the next text.
 async function withFiles(options, compile) {
+    for (const [address, bytes] of fetched)
+        if (bytes === null)
+            fetched.delete(address);
     for (;;) {
         current = options;
         missing.clear();
         wantsReader = false;
         const made = compile();
+        if (made.status === noMemory)
+            throw new Error(`the scene takes more than ${options.memory / 2 ** 20} MiB`);
         if (missing.size === 0 && !wantsReader)
             return made;
         made.scene?.free();
@@ -143,8 +170,8 @@ class Held {
     }
 
     #compileAs(text, numbers) {
-        const { name, studio } = this.options;
-        return core.compile(text, { name, studio: studio !== false, pictures: true, ...numbers });
+        const { name, studio, memory } = this.options;
+        return core.compile(text, { name, studio: studio !== false, pictures: true, memory, ...numbers });
     }
 
     // Numbers are not in shaders, so that an edit of one compiles none; but where they are more than drivers bear.
@@ -238,7 +265,7 @@ function whyNoMesh({ components, shaders }, { component = 0 }, status) {
     const wanted = component ? components.slice(component - 1, component) : components;
     const endless = wanted.find(({ low, high }) => !bounded(low) || !bounded(high));
     if (status !== 2)
-        return status === 71 ? 'there is no memory left, of which a larger error takes less' : `krs failed (status ${status})`;
+        return status === noMemory ? 'there is no memory left, of which a larger error takes less' : `krs failed (status ${status})`;
     if (component && !wanted.length)
         return `there is no component ${component}: the scene has ${components.length}`;
     if (shaders.open_surfaces)
@@ -314,7 +341,7 @@ const calls = {
 
     // In a worker of its own: the scene is compiled here.
     async mesh({ text, options, values, time, how }, tell) {
-        const { scene } = await withFiles(options, () => core.compile(text, { name: options.name, pictures: true }));
+        const { scene } = await withFiles(options, () => core.compile(text, { name: options.name, memory: options.memory, pictures: true }));
         if (!scene)
             throw new Error('there is no scene: its text has mistakes');
         const state = scene.state();
@@ -339,7 +366,7 @@ const calls = {
     },
 
     async check({ text, options }) {
-        const { scene, diagnostics } = await withFiles(options, () => core.compile(text, { name: options.name }));
+        const { scene, diagnostics } = await withFiles(options, () => core.compile(text, { name: options.name, memory: options.memory }));
         scene?.free();
         return diagnostics;
     },
@@ -359,15 +386,20 @@ let report = () => {};
 const buffersOf = value => Object.values(value ?? {}).flatMap(part =>
     ArrayBuffer.isView(part) ? [part.buffer] : part?.rows || part?.cells ? buffersOf(part) : []);
 
+// What the compiler is after one of these nobody knows.
+const isBroken = error => error instanceof WebAssembly.RuntimeError || error instanceof RangeError && /call stack/.test(error.message);
+
 async function answer({ id, call, args }) {
     try {
+        core ??= await loadCore({ load, font, letters, progress: done => (report(done), true) });
+        postMessage({ id, begun: true });
         const value = await calls[call](args ?? {}, done => postMessage({ id, done }));
         postMessage({ id, value }, ArrayBuffer.isView(value) ? [value.buffer] : buffersOf(value));
     } catch (error) {
-        postMessage({ id, error: error.message });
+        postMessage({ id, error: error.message, broken: isBroken(error) });
     }
 }
 
 // Calls are answered one after the other: a text that waits for files keeps what follows waiting.
-let last = loadCore({ load, font, letters, progress: done => (report(done), true) }).then(made => { core = made; });
-self.onmessage = ({ data }) => { last = last.then(() => answer(data), error => postMessage({ id: data.id, error: error.message })); };
+let last = Promise.resolve();
+self.onmessage = ({ data }) => { last = last.then(() => answer(data)); };

@@ -35,6 +35,7 @@ async function use(): Promise<void> {
     console.log(mistakes.map(tell), formatted.text ?? formatted.diagnostics.length, completion, await krs.version(), change, kind, up, width, exposure,
         kelvins, components[0]?.flops, scene.ok, scene.diagnostics, scene.text, scene.animated, scene.tooLarge?.length, hits[0]?.normal, rays[0]?.t,
         distances[0], normals[0], corners, mesh.error, mesh.steps, text.length);
+    krs.limits.seconds = Math.min(krs.limits.seconds, 10);
     krs.stop();
     scene.free();
 }
