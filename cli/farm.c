@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/farm/job.h"
+#include "cli/farm/kubernetes.h"
 #include "cli/farm/pieces.h"
 #include "cli/farm/probe.h"
 #include "cli/farm/report.h"
@@ -172,6 +173,8 @@ static KrsStatus submit(const Options *options, const char *path)
         status = pack_scene(options, path, job_path(&job, options->arena, "scene.krsz"));
     if (status == KRS_OK)
         status = job_write(&job, options->arena);
+    if (status == KRS_OK && options->kubernetes)
+        status = kubernetes_write(&job, options, options->kubernetes);
     if (status == KRS_OK && options->slurm)
         status = slurm_submit(&job, options, options->slurm);
     if (status == KRS_OK && !options->quiet)
@@ -205,11 +208,22 @@ static bool is_cancelled(const FarmJob *job, const Options *options)
     return access(job_path(job, options->arena, "cancelled"), F_OK) == 0;
 }
 
+/* A crash is no reason to run the same command again, as an interruption is. */
+static KrsStatus settle(KrsStatus status)
+{
+    if (status == KRS_INTERNAL && !*interrupted())
+        stage_resumable(false);
+    return status;
+}
+
 static KrsStatus begin(const FarmJob *job, const Options *options)
 {
+    const KrsStatus status = check_output(options, job_picture(job, options, job->first));
+    if (status != KRS_OK)
+        return status; /* pieces would fail on this machine alone */
     stage_enter(STAGE_RENDER);
     stage_resumable(true);
-    return probe(job, options);
+    return settle(probe(job, options));
 }
 
 static KrsStatus run(const FarmJob *job, const Options *options)
@@ -222,7 +236,7 @@ static KrsStatus run(const FarmJob *job, const Options *options)
     const FarmPiece piece  = job_piece(job, number);
     KrsStatus       status = is_cancelled(job, options) ? KRS_OK : begin(job, options);
     return status == KRS_OK && !is_cancelled(job, options)
-               ? (KrsStatus)piece_render(job, options, &piece)
+               ? settle((KrsStatus)piece_render(job, options, &piece))
                : status;
 }
 
@@ -239,13 +253,18 @@ static KrsStatus work(const FarmJob *job, const Options *options)
                 return KRS_OK;
             if (piece_state(job, options, &piece) != PIECE_WAITS)
                 continue;
-            const int ended = piece_render(job, options, &piece);
+            const unsigned failures = piece_failures(job, options->arena, number);
+            const int      ended    = piece_render(job, options, &piece);
             stage_enter(STAGE_RENDER);
             more = true;
             if (*interrupted())
                 status = KRS_INTERRUPTED;
             else if (ended != KRS_OK)
                 say("piece %u has failed with status %d", number, ended);
+            /* Where a failure cannot be noted, as on a full disk, the piece would be tried for ever. */
+            if (status == KRS_OK && ended != KRS_OK &&
+                piece_failures(job, options->arena, number) == failures)
+                status = settle((KrsStatus)ended);
         }
         more = more && status == KRS_OK;
     }

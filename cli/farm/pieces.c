@@ -3,6 +3,7 @@
  */
 #include "cli/farm/pieces.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,16 +49,22 @@ unsigned piece_failures(const FarmJob *job, Arena *arena, uint32_t piece)
     return failures;
 }
 
-/* Opens a file that is locked as long as this process, or one that it starts, lives.  -1: somebody else has it. */
+enum { TAKEN = -1, REFUSED = -2 };
+
+/* Opens a file that is locked as long as this process, or one that it starts, lives.  TAKEN: somebody else has it;
+   REFUSED: there is none, for a reason that is told. */
 static int lock(const char *path)
 {
     struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     const int    file  = open(path, O_RDWR | O_CREAT, 0666); /* children keep it */
     if (file >= 0 && fcntl(file, F_OFD_SETLK, &whole) == 0)
         return file;
+    const bool taken = file >= 0 && (errno == EAGAIN || errno == EACCES);
+    if (!taken)
+        say("cannot %s `%s`: %s", file < 0 ? "create" : "lock", path, strerror(errno));
     if (file >= 0)
         close(file);
-    return -1;
+    return taken ? TAKEN : REFUSED;
 }
 
 static bool is_locked(const char *path)
@@ -114,7 +121,7 @@ KrsStatus frame_finish(const FarmJob *job, const Options *options, uint32_t fram
     text_format(&path, "%s/parts/%06u.lock", job->folder, frame);
     const int held = lock(path.bytes);
     if (held < 0)
-        return KRS_OK; /* somebody else is writing it */
+        return held == TAKEN ? KRS_OK : KRS_CANNOT_CREATE; /* somebody else is writing it */
     KrsStatus status = frame_is_done(job, options, frame) ? KRS_OK
                                                           : merge(job, options, parts, frame);
     unlink(path.bytes);
@@ -179,7 +186,7 @@ int piece_render(const FarmJob *job, const Options *options, const FarmPiece *pi
         return finish_frames(job, options, piece);
     const int held = lock(job_file(job, options->arena, piece->number, "lock"));
     if (held < 0)
-        return KRS_OK;
+        return held == TAKEN ? KRS_OK : KRS_CANNOT_CREATE;
     int status = is_done(job, options, piece) ? KRS_OK : run_render(job, options, piece);
     if (status != KRS_OK && status != RESUMABLE && status != KRS_INTERRUPTED)
         note_failure(job, options->arena, piece->number, status);

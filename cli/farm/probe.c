@@ -4,9 +4,12 @@
 #include "cli/farm/probe.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#define XXH_STATIC_LINKING_ONLY /* for the size of a state */
+#include <xxhash.h>
 
 #include "cli/farm/spawn.h"
 #include "cli/shell/console.h"
@@ -53,12 +56,45 @@ static bool same_bytes(const char *a, const char *b)
     return same;
 }
 
+/* Adds a text of one line that a file has, if there is one. */
+static void hash_line(XXH64_state_t *hash, const char *path)
+{
+    char  line[256] = "";
+    FILE *file      = fopen(path, "r");
+    if (file && fgets(line, sizeof line, file))
+        XXH64_update(hash, line, strlen(line));
+    if (file)
+        fclose(file);
+}
+
+/* Returns the name of this machine, as it is since it was started, with its devices: containers may share the name
+   of a host, and drivers change. */
+static const char *name_machine(Arena *arena)
+{
+    char          host[256] = "";
+    size_t        count     = 0;
+    Text          name      = {.arena = arena};
+    XXH64_state_t hash;
+    XXH64_reset(&hash, 0);
+    gethostname(host, sizeof host - 1);
+    hash_line(&hash, "/proc/sys/kernel/random/boot_id");
+    krs_devices(NULL, 0, &count);
+    KrsDevice   *devices  = arena_new_array(arena, KrsDevice, count + 1);
+    const size_t capacity = count;
+    if (krs_devices(devices, capacity, &count) == KRS_OK)
+        for (size_t i = 0; i < count && i < capacity; i++) {
+            XXH64_update(&hash, devices[i].name, strlen(devices[i].name));
+            XXH64_update(&hash, &devices[i].api_version, sizeof devices[i].api_version);
+        }
+    text_format(&name, "%s-%016llx", host, (unsigned long long)XXH64_digest(&hash));
+    return name.bytes;
+}
+
 KrsStatus probe(const FarmJob *job, const Options *options)
 {
-    char        host[256] = "";
+    const char *host = name_machine(options->arena);
     Text        own = {.arena = options->arena}, made = {.arena = options->arena};
     const char *first = job_path(job, options->arena, "probes/first.exr");
-    gethostname(host, sizeof host - 1);
     text_format(&own, "%s/probes/%s.exr", job->folder, host);
     text_format(&made, "%s/probes/%s-%d%s.exr", job->folder, host, (int)getpid(),
                 job->animated ? "-%d" : "");

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "cli/farm/pieces.h"
@@ -118,10 +119,35 @@ static void print_text(const FarmJob *job, const Options *options, const Report 
     }
 }
 
+/* Tells of a folder whose disk is full: workers cannot note it there. */
+static void print_full(const Options *options, const char *path)
+{
+    enum { FEW = 1 << 20 }; /* bytes */
+    struct statvfs disk;
+    if (statvfs(path, &disk) == 0 && (uint64_t)disk.f_bavail * disk.f_frsize < FEW)
+        printf("%s: less than 1 MiB is free on this disk\n", console_name(options, path));
+}
+
+/* Tells of a frame whose parts are all there, as when the disk was full when its picture was to be written. */
+static void print_unwritten(const FarmJob *job, const Options *options, const Report *report)
+{
+    const bool all_done = report->pieces[PIECE_DONE] == job_pieces(job);
+    for (uint32_t frame = job->first; frame <= job->last && all_done; frame++)
+        if (!frame_is_done(job, options, frame)) {
+            printf("frame %u has all its parts, but no picture; `krs farm work` writes it\n",
+                   frame);
+            return;
+        }
+}
+
 KrsStatus report_status(const FarmJob *job, const Options *options)
 {
     const Report report = make_report(job, options);
     (options->json ? print_json : print_text)(job, options, &report);
+    if (!options->json)
+        print_unwritten(job, options, &report);
+    if (!options->json && report.frames < job_frames(job))
+        print_full(options, job->folder);
     const KrsStatus status = console_finish();
     return status == KRS_OK && report.pieces[PIECE_FAILED] > 0 ? KRS_BAD_SCENE : status;
 }

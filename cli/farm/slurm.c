@@ -15,10 +15,24 @@
 #include "cli/shell/console.h"
 #include "cli/shell/supervise.h"
 
-enum {
-    MOST_TASKS = 1000, /* of an array: MaxArraySize is 1001 if nobody has changed it */
-    WARNING    = 60    /* seconds before the limit of time, when tasks leave a checkpoint */
-};
+enum { MOST_TASKS = 1000 }; /* of an array: MaxArraySize is 1001 if nobody has changed it */
+#define WARNING "60"        /* seconds before the limit of time, when tasks leave a checkpoint */
+
+/* What follows the command in a script.  Slurm tells the script, not the command, that time is over.  What has left a
+   checkpoint is queued again. */
+static const char wait_and_requeue[] =
+    " &\n"
+    "child=$!\n"
+    "trap 'kill -USR1 $child' USR1\n"
+    "trap 'kill -TERM $child' TERM\n"
+    "wait $child\n"
+    "status=$?\n"
+    "while kill -0 $child 2>/dev/null; do\n"
+    "    wait $child\n"
+    "    status=$?\n"
+    "done\n"
+    "[ $status -ne 75 ] || exec scontrol requeue \"$SLURM_JOB_ID\"\n"
+    "exit $status\n";
 
 /* Adds a word as the shell reads it. */
 static void add_quoted(Text *text, const char *word)
@@ -43,11 +57,11 @@ static KrsStatus write_script(const FarmJob *job, const Options *options, const 
         return KRS_IO_ERROR;
     }
     program[length] = '\0';
-    text_add(&script, "#!/bin/sh\nexec ");
+    text_add(&script, "#!/bin/sh\n");
     add_quoted(&script, program);
     text_format(&script, " farm %s ", verb);
     add_quoted(&script, job->folder);
-    text_add(&script, "\n");
+    text_add(&script, wait_and_requeue);
     return write_output_text(job_path(job, options->arena, name), script.bytes, script.length);
 }
 
@@ -66,8 +80,10 @@ static unsigned long run_sbatch(const Text *command)
 static Text begin_command(const FarmJob *job, const Options *options, const char *partition)
 {
     Text command = {.arena = options->arena};
-    text_add(&command,
-             "sbatch --parsable --job-name=krs --requeue --open-mode=append --partition=");
+    text_add(
+        &command,
+        "sbatch --parsable --job-name=krs --requeue --open-mode=append --signal=B:USR1@" WARNING
+        " --partition=");
     add_quoted(&command, partition);
     text_add(&command, " --output=");
     add_quoted(&command, job_path(job, options->arena, "slurm.log"));
@@ -83,8 +99,8 @@ KrsStatus slurm_submit(const FarmJob *job, const Options *options, const char *p
     for (uint32_t first = 0; first < job_pieces(job) && status == KRS_OK; first += MOST_TASKS) {
         const uint32_t left    = job_pieces(job) - first;
         Text           command = begin_command(job, options, partition);
-        text_format(&command, " --signal=B:USR1@%d --array=0-%u --export=ALL,KRS_FARM_FIRST=%u ",
-                    WARNING, (left < MOST_TASKS ? left : MOST_TASKS) - 1, first);
+        text_format(&command, " --array=0-%u --export=ALL,KRS_FARM_FIRST=%u ",
+                    (left < MOST_TASKS ? left : MOST_TASKS) - 1, first);
         add_quoted(&command, job_path(job, options->arena, "piece.sh"));
         const unsigned long number = run_sbatch(&command);
         if (number == 0)

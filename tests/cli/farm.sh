@@ -1,8 +1,8 @@
 #!/bin/sh
 # farm.sh: several processes share a render, are killed, and leave the files of one render, byte for byte.
-# shellcheck source-path=SCRIPTDIR disable=SC2086
+# shellcheck source-path=SCRIPTDIR disable=SC2016,SC2086
 . "$(dirname "$0")/common.sh"
-plan 32
+plan 38
 export XDG_CACHE_HOME="$work/caches"
 
 cat >ball.krs <<'END'
@@ -130,6 +130,21 @@ said 2 "100 samples are at most 2 ranges" "no range is shorter than a block of s
 run farm submit other.krs --split-samples 2 $long --cryptomatte --job wrong.farm -o wrong.exr
 said 2 "a range of --samples" "what has no ranges is refused"
 
+# Kubernetes.
+run farm submit other.krs --frames 0..9 --tiles 2x1 --kubernetes 'registry.example/krs:1' --job "On Nodes.farm" -o 'k-%d.exr'
+ended 0 "a Job of Kubernetes is written"
+if python3 -c 'import jsonschema, yaml' 2>/dev/null; then
+    python3 "$root/tests/cli/kubernetes_job.py" "On Nodes.farm/kubernetes.yaml" "$PWD/On Nodes.farm" "$PWD" 20 >out 2>err
+    result $? "it has the fields of a Job, and wrong ones would be found"
+else
+    skip "it has the fields of a Job" "python3-jsonschema or python3-yaml is not installed"
+fi
+run farm submit other.krs --frames 0..200000 --kubernetes image --job wrong.farm -o 'k-%d.exr'
+said 2 "at most 100000 pieces" "more pieces than a Job may have are refused"
+rm -rf wrong.farm
+run farm submit other.krs --kubernetes image --job wrong:farm -o k.exr
+said 2 'no `:`' "so is a path that a container cannot have"
+
 # Slurm: a stand-in for sbatch notes how it is called.
 mkdir bin
 cat >bin/sbatch <<'END'
@@ -147,8 +162,29 @@ PATH="$PWD/bin:$PATH" "$krs" farm submit other.krs --frames 0..1499 $how --slurm
 [ "$(wc -l <sbatch.log)" -eq 3 ] && grep -q -- '--partition=short .*--array=0-999 --export=ALL,KRS_FARM_FIRST=0 ' sbatch.log &&
     grep -q -- '--array=0-499 --export=ALL,KRS_FARM_FIRST=1000 ' sbatch.log && tail -n 1 sbatch.log | grep -q -- '--dependency=afterany:1:2 '
 result $? "sbatch gets arrays, and a task behind them"
-grep -q "^exec '.*krs' farm run '$PWD/many.farm'" many.farm/piece.sh && sh -n many.farm/piece.sh
+grep -q "^'.*krs' farm run '$PWD/many.farm' &" many.farm/piece.sh && sh -n many.farm/piece.sh
 result $? "whose script renders a piece"
+cat >bin/scontrol <<'END'
+#!/bin/sh
+echo "control $*" >>"$SBATCH_LOG"
+END
+chmod +x bin/scontrol
+run farm submit other.krs --size 320x240 --samples 4000 --rays kernels --integrator path --job long.farm -o long.exr
+sed "s:many.farm:long.farm:" many.farm/piece.sh >long.sh
+PATH="$PWD/bin:$PATH" SLURM_JOB_ID=77 SLURM_ARRAY_TASK_ID=0 KRS_TEST_CHECKPOINT=0.1 sh long.sh 2>err &
+script=$! tries=0
+until [ -e long.farm/parts/0-000000.exr.part ] || [ $tries -gt 3000 ]; do
+    tries=$((tries + 1))
+    sleep 0.02
+done
+kill -USR1 $script
+wait $script
+[ -s long.farm/parts/0-000000.exr.part ] && tail -n 1 sbatch.log | grep -q '^control requeue 77$'
+result $? "which leaves a checkpoint when its time is over, and queues the task again"
+sed -i "s:/long.farm:/still.farm:" long.sh
+cp sbatch.log before.log
+PATH="$PWD/bin:$PATH" SLURM_JOB_ID=78 SLURM_ARRAY_TASK_ID=0 sh long.sh 2>err && cmp -s before.log sbatch.log
+result $? "but not one that is done"
 PATH="$PWD/bin:$PATH" "$krs" farm cancel many.farm
 tail -n 1 sbatch.log | grep -q '^cancel 1 2 3$'
 result $? "scancel ends them"

@@ -2,11 +2,11 @@
 # farm_slurm.sh: Slurm renders a film on this machine, while tasks and a daemon are killed, and its frames are those of one render.
 # shellcheck source-path=SCRIPTDIR disable=SC2086
 . "$(dirname "$0")/common.sh"
-plan 4
+plan 6
 PATH=$PATH:/usr/sbin:/sbin
 for program in slurmctld slurmd munged sbatch; do
     command -v $program >/dev/null && [ "$(id -u)" -eq 0 ] && continue
-    for what in "a film" "killed tasks" "frames" "cancelling"; do skip "Slurm: $what" "Slurm is not installed, or this user cannot start it"; done
+    for what in "a film" "killed tasks" "frames" "a checkpoint" "going on" "cancelling"; do skip "Slurm: $what" "Slurm is not installed, or this user cannot start it"; done
     exit 0
 done
 
@@ -111,6 +111,29 @@ done
 "$krs" farm status ball.farm >out 2>err
 [ $same -eq 10 ]
 result $? "frames are those of one render"
+
+# A task that is told that its time is over.
+long="--size 96x64 --samples 1500 --rays kernels --integrator path"
+export KRS_TEST_CHECKPOINT=0.1
+run farm submit ball.krs $long --slurm short --job long.farm -o long.exr
+task="$(head -n 1 long.farm/slurm.jobs)_0" tries=0
+until [ -e long.farm/parts/0-000000.exr.part ] || [ $tries -gt 600 ]; do
+    tries=$((tries + 1))
+    sleep 0.1
+done
+scancel --batch --signal=USR1 "$task"
+again() {
+    scontrol show job "$task" >again 2>&1
+    ! grep -q 'Reason=BeginTime' again || scontrol update "JobId=$task" StartTime=now
+}
+wait_for_slurm again
+scontrol show job "$task" >out
+grep -q 'Restarts=[1-9]' out
+result $? "a task whose time is over leaves a checkpoint, and is queued again"
+run render ball.krs $long --quiet -o one.exr
+cmp -s one.exr long.exr
+result $? "it goes on to the same picture"
+
 run farm submit ball.krs $how --slurm short --job many.farm -o 'more-%d.exr'
 run farm cancel many.farm
 wait_for_slurm true
