@@ -77,7 +77,7 @@ void do_item(uint slot)
     Light light = find_light(number);
     SeenBeam seen = see_beam(beam, light);
     float angle = mix(seen.first, seen.last, square_point.x);
-    float t = clamp(seen.nearest + seen.gap * krs_tan(angle), beam.from, beam.to);
+    float t = clamp(seen.nearest + seen.gap * krs_tan(angle), seen.from, seen.to);
     vec3  place = origin + t * direction, way = light.vector - place;
     LightPoint point = sample_light(light, place, 1.0,
                                     sample_choice(own, control.ray, 0x92000u, control.seed));

@@ -26,20 +26,41 @@ Beam find_beam(vec3 origin, vec3 direction, float end)
     return beam;
 }
 
-// A beam as a lamp sees it: where on the ray it is nearest, how far, and the angles of the ends from there.
+// A beam as a lamp sees it: the part where the lamp shines, where on the ray it is nearest, how far, and the angles
+// of the ends from there.
 struct SeenBeam {
+    float from, to;
     float nearest, gap;
     float first, last;
 };
 
+// Cuts a beam to the cone of a spot.  `way`: from the lamp to where the ray begins.
+void cut_to_cone(Light light, vec3 way, vec3 direction, inout SeenBeam seen)
+{
+    vec3  axis = cross(light.right, light.up);
+    axis *= inversesqrt(max(dot(axis, axis), 1e-30));
+    float ahead = dot(direction, axis), start = dot(way, axis), square_of = square(light.outer);
+    float a = ahead * ahead - square_of, b = ahead * start - square_of * dot(way, direction);
+    float c = start * start - square_of * dot(way, way), root = sqrt(max(b * b - a * c, 0.0));
+    // q is not a difference of what is alike; the walls are at q / a and c / q.
+    float q = -(b + (b < 0.0 ? -root : root));
+    float one = q / (abs(a) > 1e-9 ? a : 1e-9), two = c / (abs(q) > 1e-30 ? q : 1e-30);
+    float near = min(one, two), far = max(one, two);
+    bool  crosses = a < 0.0; // else the ray stays in the cone, or has come from there
+    bool  meets = b * b >= a * c && (!crosses || start + 0.5 * (near + far) * ahead > 0.0);
+    seen.from = !meets ? INFINITE : crosses ? max(seen.from, near) : ahead > 0.0 ? max(seen.from, far) : seen.from;
+    seen.to = crosses ? min(seen.to, far) : ahead > 0.0 ? seen.to : min(seen.to, near);
+}
+
 SeenBeam see_beam(Beam beam, Light light)
 {
-    SeenBeam seen;
-    vec3 way = light.vector - beam.origin;
-    seen.nearest = dot(way, beam.direction);
+    vec3     way = light.vector - beam.origin;
+    SeenBeam seen = SeenBeam(beam.from, beam.to, dot(way, beam.direction), 0.0, 0.0, 0.0);
+    if ((light.kind & LIGHT_SPOT) != 0u && light.outer > 0.05)
+        cut_to_cone(light, -way, beam.direction, seen);
     seen.gap = max(length(way - seen.nearest * beam.direction), 1e-5 * (1.0 + length(way)));
-    seen.first = krs_atan2(beam.from - seen.nearest, seen.gap);
-    seen.last = krs_atan2(beam.to - seen.nearest, seen.gap);
+    seen.first = krs_atan2(seen.from - seen.nearest, seen.gap);
+    seen.last = krs_atan2(seen.to - seen.nearest, seen.gap);
     return seen;
 }
 
@@ -47,8 +68,8 @@ SeenBeam see_beam(Beam beam, Light light)
 float find_beam_importance(Beam beam, Light light)
 {
     SeenBeam seen = see_beam(beam, light);
-    bool meets = is_positional(light) && beam.from < beam.to;
-    return meets ? luminance(light.color) * (seen.last - seen.first) / seen.gap : 0.0;
+    bool meets = is_positional(light) && seen.from < seen.to;
+    return meets ? luminance(light.color) * max(seen.last - seen.first, 0.0) / seen.gap : 0.0;
 }
 
 float sum_beam_importance(Beam beam)

@@ -29,9 +29,8 @@
 #include "beams.glsl"
 
 const uint CHOICES = 3u; // as in scatter.comp
-// From this event on paths may end, and so likely go on at most.
-const uint  LATE = 3u;
-const float MAX_CHANCE = 0.95;
+// From this event on paths may end of which little is left.  What scatters all light keeps its weight.
+const uint LATE = 3u;
 
 void begin_group() { krs_prepare(); }
 
@@ -96,7 +95,7 @@ float continue_path(uvec2 pixel, uint index, uint slot, Event event, float width
     vec3  weight = event.weight;
     bool  goes_on = largest(weight) > 0.0;
     if (control.value >= LATE) {
-        float chance = min(largest(weight), MAX_CHANCE);
+        float chance = min(largest(weight), 1.0);
         goes_on = goes_on && find_chance() < chance;
         weight /= max(chance, 1e-30);
     }

@@ -147,11 +147,13 @@ static void slabs_scatter_once(void **state)
    what is behind it. */
 static const char lamps[] =
     "param past = 0.3 in [0, 3]; param size = 0 in [0, 1]; param g = 0 in [-0.9, 0.9];\n"
-    "param other = 0 in [0, 9]; param dense = 0.5 in [0, 9];\n"
+    "param other = 0 in [0, 9]; param dense = 0.5 in [0, 9]; param spot = 0 in [0, 9];\n"
     "camera { eye: [past, 0, 6], target: [past, 0, 0], projection: \"orthographic\", height: 0.01 "
     "}\n"
     "sky { zenith: black, horizon: black, ground: black }\n"
     "light lamp { position: [0, 0, 0], intensity: 2, radius: size }\n"
+    "light third { position: [past, 1.5, -0.5], target: [past, 0, 0.5], intensity: spot, angle: "
+    "40deg, edge: 0 }\n"
     "light second { position: [0, 2, 0], intensity: other }\n"
     "medium { within: box([8, 8, 4]), density: dense, anisotropy: g, scatter: 0.7 }\n"
     "show sphere(1).move([0, -90, 0]);\n";
@@ -171,19 +173,32 @@ static double scattered_past(double past, double height, double dense, double g,
     return 0.7 * dense * sum;
 }
 
+/* Returns the same of a spot that shines across the ray from (past, 1.5, -0.5) to (past, 0, 0.5), within 20
+   degrees of that. */
+static double scattered_from_spot(double dense, double g)
+{
+    enum { STEPS = 100000 };
+    double sum = 0;
+    for (int i = 0; i < STEPS; i++) {
+        const double z = 2 - 4 * (i + 0.5) / STEPS, way = hypot(1.5, z + 0.5);
+        const double cosine = (1.5 * 1.5 + (z + 0.5)) / (way * hypot(1.5, 1));
+        if (cosine > cos(20 * M_PI / 180))
+            sum += exp(-dense * (2 - z + way)) * phase(g, (z + 0.5) / way) / (way * way) * 4 /
+                   STEPS;
+    }
+    return 0.7 * dense * sum;
+}
+
 static void lamps_shine_through_mist(void **state)
 {
     (void)state;
     static const struct {
-        double past, dense, g, other, size;
-    } rows[]                 = {{0.3, 0.05, 0, 0, 0},
-                                {0.05, 1, 0.6, 0, 0},
-                                {1, 4, -0.5, 3, 0},
-                                {0.5, 0.5, 0.3, 0, 0.1},
-                                {0.3, 3, 0.8, 1, 0.02}};
+        double past, dense, g, other, size, spot;
+    } rows[] = {{0.3, 0.05, 0, 0, 0, 0}, {2, 0.3, 0.4, 0, 0, 9},     {0.05, 1, 0.6, 0, 0, 0},
+                {1, 4, -0.5, 3, 0, 0},   {0.5, 0.5, 0.3, 0, 0.1, 0}, {0.3, 3, 0.8, 1, 0.02, 0}};
     PathFixture      fixture = path_fixture_open(lamps);
     KrsRenderOptions options = paths;
-    KrsLight         lamp, second;
+    KrsLight         lamp, second, third;
     size_t           wrong = 0;
     options.bounces        = 1;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -194,12 +209,15 @@ static void lamps_shine_through_mist(void **state)
         path_fixture_set(&fixture, "g", rows[i].g);
         path_fixture_set(&fixture, "other", rows[i].other);
         path_fixture_set(&fixture, "size", rows[i].size);
+        path_fixture_set(&fixture, "spot", rows[i].spot);
         assert_int_equal(krs_state_light(fixture.product.state, 0, &lamp), KRS_OK);
-        assert_int_equal(krs_state_light(fixture.product.state, 1, &second), KRS_OK);
+        assert_int_equal(krs_state_light(fixture.product.state, 1, &third), KRS_OK);
+        assert_int_equal(krs_state_light(fixture.product.state, 2, &second), KRS_OK);
         const double expected = lamp.color[1] * scattered_past(rows[i].past, 0, rows[i].dense,
                                                                rows[i].g, rows[i].size) +
                                 second.color[1] *
-                                    scattered_past(rows[i].past, 2, rows[i].dense, rows[i].g, 0);
+                                    scattered_past(rows[i].past, 2, rows[i].dense, rows[i].g, 0) +
+                                third.color[1] * scattered_from_spot(rows[i].dense, rows[i].g);
         Estimate found = look(&fixture, options);
         wrong += !must_be_near(found, expected, rows[i].size > 0 ? 0.012 : 0.003, name);
         assert_true(found.error < 0.02 * expected); /* by chance alone it is many times that */
