@@ -29,6 +29,8 @@ void emit_volumes(Emitter *e)
 static void emit_choice(Emitter *e, uint32_t which, GraphType type, const char *nothing)
 {
     emit_variable(e, type, "value", nothing);
+    if (e->module->volume_count == 0)
+        return;
     emit_template(e, TEMPLATE_SWITCH, (Operands){"volume"});
     for (uint32_t i = 0; i < e->module->volume_count; i++) {
         emit_template(e, TEMPLATE_CASE, (Operands){emit_count(e, i)});

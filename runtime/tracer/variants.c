@@ -461,7 +461,7 @@ ShaderVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
     static const struct {
         const char *file;
         bool        marches;
-        KrsFunction wanted[2];
+        KrsFunction wanted[6];
         size_t      count;
     } shaders[] = {
         {"trace.comp", true, {0}, 0},
@@ -472,6 +472,17 @@ ShaderVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
         {"shade.comp", false, {KRS_FUNCTION_SURFACE}, 1},
         {"occluders.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},
         {"scatter.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},
+        {"track.comp", false, {KRS_FUNCTION_DENSITY, KRS_FUNCTION_SINES}, 2},
+        {"beam.comp",
+         false,
+         {KRS_FUNCTION_DENSITY, KRS_FUNCTION_ALBEDO, KRS_FUNCTION_ANISOTROPY, KRS_FUNCTION_SINES,
+          KRS_FUNCTION_ARCS},
+         5},
+        {"collide.comp",
+         false,
+         {KRS_FUNCTION_DENSITY, KRS_FUNCTION_ALBEDO, KRS_FUNCTION_ANISOTROPY, KRS_FUNCTION_EMISSION,
+          KRS_FUNCTION_SINES, KRS_FUNCTION_ARCS},
+         6},
         {"point_query.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SURFACE}, 2},
     };
     ShaderVariant to = {.scene = {.variant = *variant}};
