@@ -257,8 +257,7 @@ static void print_heads(size_t repeats, const char *device, double load)
 {
     say("# Algebraic surfaces on %s\n\n%dx%d, medians of %zu in turns, without shadows and "
         "occlusion; %ld processors, load %.1f at the start. bench/algebraic/README.md says what "
-        "the columns "
-        "mean.\n\n",
+        "the columns mean.\n\n",
         device, WIDTH, HEIGHT, repeats, sysconf(_SC_NPROCESSORS_ONLN), load);
     for (size_t i = 0; i < program_count; i++)
         if (!program_is_installed(programs[i].command))

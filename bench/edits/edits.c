@@ -109,9 +109,10 @@ static double read_frame(const Trial *trial, FILE *stats)
 
 /* ---- processes ---- */
 
-/* Starts the command with a pipe from its standard output; what it says is not shown.  `option`: that which
-   is "structure", or NULL. */
-static pid_t start(const Trial *trial, const char *command, const char *option, FILE **stats)
+/* Starts the command with a pipe from its standard output; what it says is not shown.  `rays`: who marches them.
+   `option`: that which is "structure", or NULL. */
+static pid_t start(const Trial *trial, const char *command, const char *rays, const char *option,
+                   FILE **stats)
 {
     int                        ends[2];
     pid_t                      process;
@@ -128,6 +129,8 @@ static pid_t start(const Trial *trial, const char *command, const char *option, 
                                               "json",
                                               "--deadline",
                                               "600",
+                                              "--rays",
+                                              (char *)rays,
                                               (char *)option,
                                               "structure",
                                               NULL};
@@ -173,7 +176,7 @@ static size_t time_watch(Trial *trial, Edit edits[MAX_EDITS])
 {
     FILE       *stats;
     size_t      count   = 0;
-    const pid_t process = start(trial, "watch", NULL, &stats);
+    const pid_t process = start(trial, "watch", "auto", NULL, &stats);
     await_picture(trial);
     read_frame(trial, stats);
     const clockid_t clock = find_clock(trial, process);
@@ -188,14 +191,14 @@ static size_t time_watch(Trial *trial, Edit edits[MAX_EDITS])
     return count;
 }
 
-static Edit edit_rendered(const Trial *trial, NumberEdit *number)
+static Edit edit_rendered(const Trial *trial, const char *rays, NumberEdit *number)
 {
     FILE         *stats;
     struct rusage usage;
     int           status;
     const double  begun = now();
     number_edit_write(number);
-    const pid_t process = start(trial, "render", "--specialize", &stats);
+    const pid_t process = start(trial, "render", rays, "--specialize", &stats);
     await_picture(trial);
     const double frame = read_frame(trial, stats);
     wait4(process, &status, 0, &usage);
@@ -206,12 +209,13 @@ static Edit edit_rendered(const Trial *trial, NumberEdit *number)
                       1e-3 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec)};
 }
 
+/* The first one fills the caches. */
 static size_t time_render(Trial *trial, Edit edits[MAX_EDITS])
 {
     size_t count = 0;
-    edit_rendered(trial, &trial->numbers[0]);
+    edit_rendered(trial, "kernels", &trial->numbers[0]);
     for (size_t i = 0; i < trial->count; i++)
-        edits[count++] = edit_rendered(trial, &trial->numbers[i]);
+        edits[count++] = edit_rendered(trial, "auto", &trial->numbers[i]);
     return count;
 }
 
