@@ -82,9 +82,8 @@ static Node extend_from_box(Graph *g, Node bound, Box box)
     Node point = graph_leaf(g, OP_POINT), zero = graph_number(g, 0);
     Node excess  = box_distance(g, point, box);
     Node outside = graph_op2(g, OP_max, bound, zero);
-    Node sides   = sides_excess(g, point, box);
-    Node inside  = sides == NODE_NONE ? bound : graph_op2(g, OP_max, bound, sides);
-    inside       = graph_op2(g, OP_min, inside, zero);
+    Node sides   = box_excess(g, point, box);
+    Node inside  = graph_op2(g, OP_min, graph_op2(g, OP_max, bound, sides), zero);
     Node both    = graph_op1(g, OP_length, graph_op2(g, OP_vec2, excess, outside));
     return graph_op2(g, OP_add, both, inside);
 }

@@ -137,14 +137,11 @@ float krs_distance_1(vec3 p)
     float t54 = t48 - (((t48 * t52) - t29) / t53);
     float t55 = t27 + (t54 * (t25 + (t54 * (t23 + (t54 * 3.0000007)))));
     float t56 = sign(t28) * (t54 * min((t29 / max((t54 * t55), 1e-30)), 1.0));
-    float t57 = abs(p.x) - 1.6529645;
-    float t58 = abs(p.y) - 1.6529645;
-    float t59 = max(t57, t58);
-    float t60 = abs(p.z) - 1.6529645;
-    float t61 = max(t59, t60);
-    float t62 = length(vec2(length(max((abs(p) - vec3(1.6529645)), vec3(0.0))), max(t56, 0.0)));
-    float t63 = min(max(t56, t61), 0.0) + t62;
-    return t63;
+    vec3 v57 = abs(p) - vec3(1.6529645);
+    float t58 = max(v57.y, v57.z);
+    float t59 = max(v57.x, t58);
+    float t60 = min(max(t56, t59), 0.0) + length(vec2(length(max(v57, vec3(0.0))), max(t56, 0.0)));
+    return t60;
 }
 
 float krs_distance_2(vec3 p)

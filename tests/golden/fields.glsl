@@ -128,19 +128,15 @@ float krs_distance_1(vec3 p)
     vec3 v0 = abs(p) - vec3(1.0);
     float t1 = length(max(v0, vec3(0.0)));
     float t2 = max(v0.y, v0.z);
+    float t3 = max(v0.x, t2);
     // tests/golden/fields.krs:2
-    vec3 v3 = min(max(p, vec3((-1.0))), vec3(1.0));
-    float t4 = (krs_sin((v3.x * 3.0)) * krs_cos((v3.y * 3.0))) + krs_sin((v3.z * 3.0));
-    float t5 = t4 * 0.22840223;
-    float t6 = abs(p.x) - 1.0;
-    float t7 = abs(p.y) - 1.0;
-    float t8 = max(t6, t7);
-    float t9 = abs(p.z) - 1.0;
-    float t10 = max(t8, t9);
-    float t11 = -(t1 + min(max(v0.x, t2), 0.0));
-    float t12 = -(min(max(t5, t10), 0.0) + length(vec2(t1, max(t5, 0.0))));
-    float t13 = -min(t11, t12);
-    return t13;
+    vec3 v4 = min(max(p, vec3((-1.0))), vec3(1.0));
+    float t5 = (krs_sin((v4.x * 3.0)) * krs_cos((v4.y * 3.0))) + krs_sin((v4.z * 3.0));
+    float t6 = t5 * 0.22840223;
+    float t7 = -(t1 + min(t3, 0.0));
+    float t8 = -(min(max(t3, t6), 0.0) + length(vec2(t1, max(t6, 0.0))));
+    float t9 = -min(t7, t8);
+    return t9;
 }
 
 float krs_distance_2(vec3 p)

@@ -177,6 +177,7 @@ static void sums_and_choices_have_pieces(void **context)
     (void)context;
     assert_true(try_pieces("show field(2 * abs(x) + abs(abs(y) - 0.3) - 0.5 * z - 0.2);") > 20);
     assert_true(try_pieces("show thread(diameter: 1.6, pitch: 0.5, length: 1.6);") > 20);
+    assert_true(try_pieces("show field(y - 0.3 * sin(3 * x)).within(box([2, 1.2, 2]));") > 40);
     assert_true(try_pieces(IN_CUBE("(y + abs(x - 0.4 * round(x / 0.4))) / 2")) > 20);
     assert_true(try_pieces(IN_CUBE("if x <= 0 and not (y > 0) then -sqrt(min(x * x, y * y)) "
                                    "else length([max(x, 0), max(y, 0)])")) > 20);
