@@ -224,6 +224,13 @@ const parts = {
         report(await text() === BALL, 'what was there last comes instead');
         await start('#example=02-gear');
         report((await text()).startsWith('// Functions, figures and time'), 'a link to an example opens it');
+        await page.evaluate(() => document.querySelector('.cm-content').focus());
+        await page.type('// mine\n');
+        await answered();
+        await start(await page.evaluate('location.hash'));
+        report((await text()).startsWith('// mine'), 'what was written after that is there when one comes again', (await text()).slice(0, 40));
+        await start('#example=none');
+        report(/There is no example none/.test(await page.evaluate(() => document.querySelector('#said').textContent)), 'an example that is not there is told');
         quiet('links are opened');
         const refused = await page.evaluate(() => new Promise(resolve => {
             addEventListener('securitypolicyviolation', event => resolve(event.effectiveDirective));

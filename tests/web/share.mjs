@@ -46,12 +46,16 @@ report(links.every((link, i) => alike(JSON.parse(zlib.inflateRawSync(Buffer.from
 
 const fails = async link => unpack(link).then(() => false, error => /broken/.test(error.message));
 const link = links.find(one => one.length > 200);
+report(await fails('#2.abc'), 'a link of another kind is told');
 report(await unpack('') === null && await unpack('#editor') === null, 'other fragments are no links');
 report((await Promise.all([20, 60, 100].map(length => fails(link.slice(0, length))))).every(Boolean), 'links that lack their end are told');
 report(await fails('#1.%%%') && await fails('#1.') && await fails('#1.AAAA'), 'so is what was never one');
 const packed = value => `#1.${zlib.deflateRawSync(Buffer.from(JSON.stringify(value))).toString('base64url')}`;
 report(await fails(packed({ text: 7 })) && await fails(packed(null)), 'so are links without a text');
 report(await fails(packed({ text: ' '.repeat(64 << 20) })), 'a small link does not unpack to 64 MB');
+const seeing = async camera => (await unpack(packed({ text: 'show sphere(1);', camera }))).camera !== undefined;
+report(await seeing({ eye: [0, 0, 5], target: [0, 0, 0] }) && !await seeing({ eye: [1, 1, 1], target: [1, 1, 1] }) && !await seeing({ eye: [1e200, 0, 0], target: [0, 0, 0] }) &&
+    !await seeing({ eye: [0, 0, 5], target: [0, 0, 0], up: [0, 0, 0] }), 'a camera that sees nothing is left out');
 const odd = await unpack(packed({ text: 'show sphere(1);', parameters: { a: 'x', b: [1] }, camera: { eye: [1, 2], target: [0, 0, 0] }, time: 'now', more: 1 }));
 report(alike(odd, { text: 'show sphere(1);', parameters: { b: [1] } }), 'of a strange link only what is of its kind is taken');
 console.log(`1..${number}`);

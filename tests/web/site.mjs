@@ -48,7 +48,7 @@ function brokenLinks(file, html) {
         if (fragment === undefined)
             return false;
         if (to === 'playground/index.html')
-            return fragment.startsWith('example=') ? !examples.has(fragment.slice(8)) : !sceneOf(fragment);
+            return fragment.startsWith('example=') ? !examples.has(fragment.slice(8)) : !sceneOf(fragment) && !idsIn(to).includes(fragment);
         return !idsIn(to).includes(decodeURIComponent(fragment));
     }).map(link => `${file}: ${link}`);
 }

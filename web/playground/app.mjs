@@ -73,6 +73,13 @@ function showScene() {
     downloads.components = scene.components;
 }
 
+// A text that is edited is not that of the link any more: who comes again finds the text.
+function edited() {
+    if (!opening && location.hash)
+        history.replaceState(null, '', location.pathname + location.search);
+    compileSoon();
+}
+
 function compileSoon() {
     wait();
     clearTimeout(pause);
@@ -91,9 +98,13 @@ function present() {
     };
 }
 
+let opening = false;
+
 async function open({ text, parameters: values = {}, camera: place = null, time = 0 }) {
     setPlaying(false);
+    opening = true;
     editor.text = text;
+    opening = false;
     if (view.scene?.ok)
         await view.scene.reset();
     await compile();
@@ -151,7 +162,7 @@ const problems = new Problems($('problems'), { name: NAME, go: place => editor.g
                                                fixes: diagnostic => editor.fixes(diagnostic) });
 const camera = new Camera(view, { moved: () => { $('home').hidden = !camera.moved; keep(); } });
 const downloads = new Downloads($('download'), { view, text: () => editor.text, title: () => examples.current?.title ?? 'scene' });
-const editor = new Editor($('editor'), { name: NAME, changed: compileSoon, run: compile, said: say, ask: (...question) => krs.ask(...question, options) });
+const editor = new Editor($('editor'), { name: NAME, changed: edited, run: compile, said: say, ask: (...question) => krs.ask(...question, options) });
 const examples = new Examples($('examples'), {
     open: async example => {
         const before = editor.text;
@@ -243,8 +254,10 @@ view.addEventListener('krs-frame', ({ detail }) => {
 
 // `#example=02-gear` opens an example.
 async function openLink() {
-    const example = examples.find(/^#example=(.*)$/.exec(location.hash)?.[1]);
+    const [, name] = /^#example=(.*)$/.exec(location.hash) ?? [], example = examples.find(name);
     try {
+        if (name !== undefined && !example)
+            throw new Error(`There is no example ${name.slice(0, 40)}.`);
         return example ? { text: example.text } : await unpack(location.hash);
     } catch (error) {
         say(error.message);

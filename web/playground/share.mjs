@@ -36,6 +36,13 @@ async function through(bytes, transform) {
 const isNumbers = (value, count) =>
     Array.isArray(value) && (count === undefined || value.length === count) && value.every(Number.isFinite);
 
+// A camera that sees something: it looks from one place to another.
+const MAX_DISTANCE = 1e15;
+function isCamera({ eye, target, up }) {
+    const distance = isNumbers(eye, 3) && isNumbers(target, 3) ? Math.hypot(...eye.map((x, i) => x - target[i])) : 0;
+    return distance > 0 && distance < MAX_DISTANCE && (up === undefined || isNumbers(up, 3) && Math.hypot(...up) > 0);
+}
+
 // What is of the right kind in what came with a link.
 function checked(shared) {
     if (typeof shared?.text !== 'string')
@@ -44,8 +51,8 @@ function checked(shared) {
     const parameters = Object.entries(shared.parameters ?? {}).filter(([, value]) => isNumbers(value));
     if (parameters.length > 0)
         result.parameters = Object.fromEntries(parameters);
-    if (camera && isNumbers(camera.eye, 3) && isNumbers(camera.target, 3))
-        result.camera = { eye: camera.eye, target: camera.target, ...(isNumbers(camera.up, 3) && { up: camera.up }) };
+    if (camera && isCamera(camera))
+        result.camera = { eye: camera.eye, target: camera.target, ...(camera.up && { up: camera.up }) };
     if (Number.isFinite(time))
         result.time = time;
     return result;
@@ -56,12 +63,14 @@ export async function pack(shared) {
     return `#${MARK}${toBase64url(await through(bytes, new CompressionStream('deflate-raw')))}`;
 }
 
-// Null: the fragment is not that of a link.  Throws where it is one that is broken.
+// Null: the fragment is not that of a link.  Throws where it is broken, or of another kind.
 export async function unpack(fragment) {
     const packed = fragment.replace(/^#/, '');
-    if (!packed.startsWith(MARK))
+    if (!/^\d+\./.test(packed))
         return null;
     try {
+        if (!packed.startsWith(MARK))
+            throw new TypeError('the link is of another kind');
         const bytes = await through(fromBase64url(packed.slice(MARK.length)), new DecompressionStream('deflate-raw'));
         return checked(JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(bytes)));
     } catch (error) {
