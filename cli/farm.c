@@ -52,7 +52,7 @@ static KrsStatus check_passed_on(const Options *options, OptionId id)
 static KrsStatus collect_words(const Options *options, FarmJob *job)
 {
     KrsStatus status = KRS_OK;
-    job->words       = arena_new_array(options->arena, const char *, options->given.count + 1);
+    job->words       = arena_new_array(options->arena, const char *, options->given.count + 2);
     for (size_t i = 0; i < options->given.count && status == KRS_OK; i++) {
         const GivenOption *given = &options->given.items[i];
         Text               word  = {.arena = options->arena};
@@ -98,7 +98,8 @@ static KrsStatus check_ranges(const Options *options, const FarmJob *job, double
     return status;
 }
 
-static KrsStatus find_size(const Options *options, const char *path, FarmJob *job)
+/* Finds what the scene says.  Who marches rays is chosen by times otherwise, which differ between machines. */
+static KrsStatus read_scene(const Options *options, const char *path, FarmJob *job)
 {
     KrsScene *scene;
     KrsState *state = NULL;
@@ -126,6 +127,8 @@ static KrsStatus find_size(const Options *options, const char *path, FarmJob *jo
         if (job->ranges > 1)
             status = check_ranges(options, job, view.image.noise);
     }
+    if (!option_is_given(options, OPTION_RAYS) && !krs_scene_too_large(scene))
+        job->words[job->word_count++] = "--rays=kernels";
     krs_state_free(state);
     krs_scene_free(scene);
     return status;
@@ -163,7 +166,7 @@ static KrsStatus submit(const Options *options, const char *path)
     if (status == KRS_OK)
         status = collect_words(options, &job);
     if (status == KRS_OK)
-        status = find_size(options, path, &job);
+        status = read_scene(options, path, &job);
     if (status == KRS_OK && (job.across > job.width || job.down > job.height))
         status = say_usage(options, "a picture of %ux%u has not so many tiles", job.width,
                            job.height);

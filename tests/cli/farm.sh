@@ -2,7 +2,7 @@
 # farm.sh: several processes share a render, are killed, and leave the files of one render, byte for byte.
 # shellcheck source-path=SCRIPTDIR disable=SC2016,SC2086
 . "$(dirname "$0")/common.sh"
-plan 38
+plan 39
 export XDG_CACHE_HOME="$work/caches"
 
 cat >ball.krs <<'END'
@@ -129,6 +129,13 @@ run farm submit other.krs --split-samples 3 $long --job wrong.farm -o wrong.exr
 said 2 "100 samples are at most 2 ranges" "no range is shorter than a block of samples"
 run farm submit other.krs --split-samples 2 $long --cryptomatte --job wrong.farm -o wrong.exr
 said 2 "a range of --samples" "what has no ranges is refused"
+
+# Who marches the rays of a preview is chosen by times otherwise.
+run farm submit other.krs --size 40x30 --tiles 2x2 --job preview.farm -o preview.exr
+run farm work preview.farm --quiet
+run render other.krs --size 40x30 --rays kernels --quiet -o once.exr
+cmp -s once.exr preview.exr && grep -q -- '--rays=kernels' preview.farm/job.json
+result $? "tiles of a preview are marched by shaders, whoever would be faster"
 
 # Kubernetes.
 run farm submit other.krs --frames 0..9 --tiles 2x1 --kubernetes 'registry.example/krs:1' --job "On Nodes.farm" -o 'k-%d.exr'
