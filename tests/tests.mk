@@ -189,6 +189,15 @@ fuzzers:
 fuzz: fuzzers
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) tests/fuzz/fuzz.sh
 
+# All of it for hours, each time by other numbers, with a row in bench/results/soak.md; what is not built is left out, such as
+# build/asan/krs (make sanitize), fuzzers (make fuzzers) and build/tsan/krs (make threads).
+HOURS       ?= 1
+soak: $(B)/krs $(B)/tests/fuzz/sentences
+	@nice python3 tests/soak/soak.py --build $(B) --hours $(HOURS) $(if $(SEED),--seed $(SEED)) --row bench/results/soak.md
+threads:
+	@$(MAKE) --no-print-directory $(B)/tsan/krs B=$(B)/tsan CC=$(CLANG) CXX=$(CLANG)++ CFLAGS='-g -O1 -fsanitize=thread' \
+	    CXXFLAGS='-g -O1 -fsanitize=thread'
+
 # For lint, which finds programs that no list has.
 list-programs:
 	@echo $(PROGRAMS) $(DRIVERS)
@@ -225,5 +234,5 @@ test test-long test-all: test-deps
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
 	    JOBS=$(TEST_JOBS) $(call scripts, $(BESIDE)) $(programs) $(sanitized) \
 	    JOBS=1 $(call scripts, $(ALONE)) JOBS=$(TEST_JOBS) $(drivers_$(SET))
-.PHONY: test test-long test-all test-meshes golden list-programs test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
+.PHONY: test test-long test-all test-meshes golden list-programs test-programs soak threads sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint layers docs format bless
