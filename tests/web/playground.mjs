@@ -519,6 +519,30 @@ const parts = {
         quiet('phones are used');
     },
 
+    // A megabyte is pasted, by lines and in one.
+    async large() {
+        for (const [what, whole] of [['lines', `show sphere(2);\n${`// ${'word '.repeat(10)}\n`.repeat(19000)}`], ['one line', `show sphere(3); // ${'word '.repeat(200000)}`]]) {
+            await start();
+            await page.evaluate(() => document.querySelector('.cm-content').focus());
+            await key('a', 2, 'KeyA');
+            await page.evaluate(whole => {
+                const clipboardData = new DataTransfer();
+                clipboardData.setData('text/plain', whole);
+                document.querySelector('.cm-content').dispatchEvent(new ClipboardEvent('paste', { clipboardData, bubbles: true, cancelable: true }));
+            }, whole);
+            await answered();
+            report(await page.evaluate(whole => document.querySelector('krs-view').scene.text === whole, whole), `a megabyte is pasted: ${what}`);
+            await click('#share');
+            await page.until('document.querySelector("#shared").open');
+            const link = await page.evaluate(() => document.querySelector('#link').value);
+            await page.evaluate(() => localStorage.clear());
+            await start(link.slice(link.indexOf('#')));
+            report(await page.evaluate(whole => document.querySelector('krs-view').scene.text === whole, whole), 'and shared');
+        }
+        await page.evaluate(() => localStorage.clear());
+        quiet('large texts are written');
+    },
+
     // Nothing answers any more.
     async offline() {
         await start();
