@@ -13,6 +13,7 @@
 #include "cli/farm/probe.h"
 #include "cli/farm/report.h"
 #include "cli/farm/slurm.h"
+#include "cli/farm/spawn.h"
 #include "cli/picture/frame_paths.h"
 #include "cli/options/values.h"
 #include "cli/picture/picture.h"
@@ -98,9 +99,36 @@ static KrsStatus check_ranges(const Options *options, const FarmJob *job, double
     return status;
 }
 
-/* Finds what the scene says.  Who marches rays is chosen by times otherwise, which differ between machines. */
+/* Packs the scene; that of a stranger is read by another process, in its sandbox. */
+static KrsStatus pack(const Options *options, const char *path, const char *output)
+{
+    Words words = {0};
+    Text  root  = {.arena = options->arena};
+    if (options->untrusted != UNTRUSTED)
+        return pack_scene(options, path, output);
+    spawn_begin(options->arena, &words, "pack", path);
+    text_format(&root, "--root=%s", scene_root(options, path));
+    spawn_add(options->arena, &words, root.bytes);
+    spawn_add(options->arena, &words, "--untrusted");
+    spawn_add(options->arena, &words, "--quiet");
+    spawn_add(options->arena, &words, "-o");
+    spawn_add(options->arena, &words, output);
+    return (KrsStatus)spawn_run(options, &words, NULL);
+}
+
+/* Finds what the scene says; a stranger's is not read for it.  Who marches rays is chosen by times otherwise, which
+   differ between machines. */
 static KrsStatus read_scene(const Options *options, const char *path, FarmJob *job)
 {
+    if (options->untrusted == UNTRUSTED) {
+        job->width   = options->how.width;
+        job->height  = options->how.height;
+        job->samples = options->how.samples;
+        if (job->width == 0 || job->samples == 0 || !option_is_given(options, OPTION_RAYS))
+            return say_usage(options, "farm does not read a stranger's scene itself, so it needs "
+                                      "to know --size, --samples and --rays");
+        return job->ranges > 1 ? check_ranges(options, job, 0) : KRS_OK;
+    }
     KrsScene *scene;
     KrsState *state = NULL;
     KrsView   view;
@@ -173,7 +201,7 @@ static KrsStatus submit(const Options *options, const char *path)
     if (status == KRS_OK)
         status = job_make_folders(&job, options->arena);
     if (status == KRS_OK)
-        status = pack_scene(options, path, job_path(&job, options->arena, "scene.krsz"));
+        status = pack(options, path, job_path(&job, options->arena, "scene.krsz"));
     if (status == KRS_OK)
         status = job_write(&job, options->arena);
     if (status == KRS_OK && options->kubernetes)

@@ -19,10 +19,12 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/confine.h"
 #include "cli/shell/console.h"
+#include "cli/grid/gridding.h"
 #include "cli/help.h"
 #include "cli/shell/input.h"
 #include "cli/parse_options.h"
 #include "cli/shell/supervise.h"
+#include "live/window/window.h"
 
 static Work *const works[COMMAND_COUNT] = {
 #define COMMAND(id, name, function, arguments, files, summary, examples) [COMMAND_##id] = function,
@@ -87,6 +89,25 @@ static bool print_installed(int argc, char **argv, int *status)
     return true;
 }
 
+/* Opens what is needed in the sandbox and cannot be opened there: the display, and a library beside the program. */
+static KrsStatus open_outside(const Options *options)
+{
+    const char *why    = "";
+    KrsStatus   status = KRS_OK;
+    if (!options->needs)
+        return KRS_OK;
+    if (options->command == COMMAND_VIEW && !options->terminal && !window_connect(&why)) {
+        say("no window can be opened: %s", why);
+        return KRS_NO_DEVICE;
+    }
+    for (size_t i = 0; i < options->outputs.count && status == KRS_OK; i++) {
+        const char *dot = strrchr(options->outputs.items[i], '.');
+        if (options->command == COMMAND_GRID && dot && strcmp(dot, ".vdb") == 0)
+            status = grid_check_vdb(options->outputs.items[i]);
+    }
+    return status;
+}
+
 /* Does the work of the child: out of memory in any arena of the command ends here. */
 static KrsStatus work_with_memory(Options *options)
 {
@@ -96,12 +117,14 @@ static KrsStatus work_with_memory(Options *options)
         return KRS_OUT_OF_MEMORY;
     }
     options->arena->memory->exhausted = &exhausted;
-    KrsStatus status                  = confine_enter(options);
+    KrsStatus status                  = open_outside(options);
+    if (status == KRS_OK)
+        status = confine_enter(options);
     if (status == KRS_OK)
         status = packs_open(options);
     if (status == KRS_OK)
         status = works[options->command](options);
-    if (status == KRS_NO_DEVICE && options->needs)
+    if (status == KRS_NO_DEVICE && options->needs && options->command != COMMAND_VIEW)
         say("cards are not reached from the sandbox of untrusted scenes: install a device of the "
             "processor (mesa-vulkan-drivers), or give --untrusted=limits");
     return status;

@@ -59,7 +59,10 @@ static void close_ends(const Ends *ends)
             close(files[i]);
 }
 
-/* Returns the status of the program, or that of a shell that does not find it. */
+/* What a shell returns for a program that may not be started, and for one that is not found. */
+enum { NOT_PERMITTED = 126, NOT_FOUND = 127 };
+
+/* Returns the status of the program, or that of a shell that does not start it. */
 static int run(const Ends *ends, const char *const *options)
 {
     char  file[] = "/dev/stdin", program[] = "spirv-cross";
@@ -73,11 +76,14 @@ static int run(const Ends *ends, const char *const *options)
     posix_spawn_file_actions_adddup2(&actions, ends->in, STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, ends->out, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, ends->messages, STDERR_FILENO);
-    const bool began = posix_spawnp(&child, program, &actions, NULL, words, environ) == 0;
+    const int  failed = posix_spawnp(&child, program, &actions, NULL, words, environ);
+    const bool began  = failed == 0;
     posix_spawn_file_actions_destroy(&actions);
     while (began && waitpid(child, &status, 0) < 0 && errno == EINTR)
         ;
-    return !began ? 127 : WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    if (!began)
+        return failed == EPERM ? NOT_PERMITTED : NOT_FOUND;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
 static KrsStatus translate(const uint32_t *words, size_t count, const char *const *options,
@@ -89,7 +95,10 @@ static KrsStatus translate(const uint32_t *words, size_t count, const char *cons
         status = run(&ends, options);
     if (status == 0)
         read_all(ends.out, to);
-    else if (status == 127)
+    else if (status == NOT_PERMITTED)
+        text_add(why, "`spirv-cross`, which translates to this language, may not be started in the "
+                      "sandbox of untrusted scenes; --untrusted=limits has none");
+    else if (status == NOT_FOUND)
         text_add(why, "there is no `spirv-cross`, which translates to this language "
                       "(a package of that name)");
     else if (status > 0) {

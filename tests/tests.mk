@@ -62,7 +62,7 @@ BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/se
 # compares switches of `krs help render --all` with each other.
 LONG        := $(addprefix tests/, web/many.sh web/pictures.sh web/wgsl_many.sh web/replay.sh web/exports.sh web/playground_long.sh web/python.sh web/site.sh examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
                $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_csg.sh mesh_judges.sh outputs.sh \
-               pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
+               pictures.sh query.sh resume.sh sandboxed.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
                $(addprefix unit/, arguments compiled instance_grid drivers film light_groups memory mesh_proofs methods noise paths \
                per_component plates printing rendering saved schedules values) \
                $(addprefix property/, blends_of_many instances fillets iteration_boxes iterations) \

@@ -95,15 +95,48 @@ static bool fill(const void *user, OutputFile *file, OutputError *error)
     return exr_write(user, file, error);
 }
 
-static KrsStatus merge(const FarmJob *job, const Options *options, const char *const *parts,
-                       uint32_t frame)
+/* Tells whether pieces are rendered in sandboxes. */
+static bool is_of_stranger(const FarmJob *job)
+{
+    for (size_t i = 0; i < job->word_count; i++)
+        if (strcmp(job->words[i], "--untrusted") == 0)
+            return true;
+    return false;
+}
+
+/* Lets another process put parts together, in its sandbox: who wrote them may have been taken over. */
+static KrsStatus merge_confined(const FarmJob *job, const Options *options,
+                                const char *const *parts, const char *picture)
+{
+    Words words = {0};
+    spawn_begin(options->arena, &words, "merge", parts[0]);
+    for (uint32_t part = 1; part < job_parts(job); part++)
+        spawn_add(options->arena, &words, parts[part]);
+    spawn_add(options->arena, &words, "--untrusted");
+    spawn_add(options->arena, &words, "--quiet");
+    spawn_add(options->arena, &words, "-o");
+    spawn_add(options->arena, &words, picture);
+    return (KrsStatus)spawn_run(options, &words, NULL);
+}
+
+static KrsStatus merge_here(const FarmJob *job, const Options *options, const char *const *parts,
+                            const char *picture)
 {
     Tiles     tiles;
     KrsStatus status = tiles_read(options, parts, job_parts(job), &tiles);
     if (status != KRS_OK)
         return status;
-    status = write_output(job_picture(job, options, frame), fill, &tiles.picture);
+    status = write_output(picture, fill, &tiles.picture);
     tiles_free(&tiles);
+    return status;
+}
+
+static KrsStatus merge(const FarmJob *job, const Options *options, const char *const *parts,
+                       uint32_t frame)
+{
+    const char *picture = job_picture(job, options, frame);
+    KrsStatus   status  = is_of_stranger(job) ? merge_confined(job, options, parts, picture)
+                                              : merge_here(job, options, parts, picture);
     for (uint32_t part = 0; part < job_parts(job) && status == KRS_OK; part++)
         unlink(parts[part]);
     return status;

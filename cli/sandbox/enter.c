@@ -18,7 +18,6 @@
 #include <unistd.h>
 
 #include "cli/sandbox/landlock.h"
-#include "cli/sandbox/outputs.h"
 #include "cli/sandbox/sandbox.h"
 
 const char *sandbox_missing(void)
@@ -194,12 +193,8 @@ static bool set_limits(const SandboxNeeds *needs)
 
 bool sandbox_enter(const SandboxNeeds *needs, char why[256])
 {
-    const char *step = "its files cannot be closed";
-    bool        good = outputs_close_others();
-    if (good) {
-        step = "limits cannot be set";
-        good = set_limits(needs) && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
-    }
+    const char *step = "limits cannot be set";
+    bool        good = set_limits(needs) && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
     if (good) {
         step = "Landlock refuses";
         good = confine_files(needs);

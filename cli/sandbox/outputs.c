@@ -16,7 +16,6 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "cli/sandbox/outputs.h"
 #include "cli/sandbox/sandbox.h"
 #include "runtime/writer/atomic.h"
 
@@ -320,20 +319,16 @@ static int ask(OutputVerb verb, const char *path, int *number, OutputError *erro
     return file;
 }
 
-void outputs_ask(Outputs *outputs)
+/* Closes all files but the standard streams and one.  close_range was new in Linux 5.9, which is older than Landlock. */
+static bool close_others(unsigned kept)
 {
-    connection = outputs->childs;
-    close(outputs->own);
-    output_ask(ask);
+    return (kept == FIRST_OTHER || syscall(SYS_close_range, FIRST_OTHER, kept - 1, 0) == 0) &&
+           syscall(SYS_close_range, kept + 1, ~0u, 0) == 0;
 }
 
-/* close_range was new in Linux 5.9, which is older than Landlock. */
-bool outputs_close_others(void)
+bool outputs_ask(Outputs *outputs)
 {
-    const int last = connection;
-    if (last < FIRST_OTHER)
-        return false;
-    return (last == FIRST_OTHER ||
-            syscall(SYS_close_range, FIRST_OTHER, (unsigned)last - 1, 0) == 0) &&
-           syscall(SYS_close_range, (unsigned)last + 1, ~0u, 0) == 0;
+    connection = outputs->childs;
+    output_ask(ask);
+    return close_others((unsigned)connection);
 }

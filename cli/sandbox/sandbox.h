@@ -59,11 +59,10 @@ const char *sandbox_excess(pid_t child, const SandboxNeeds *needs);
 
 /* The child. */
 
-/* Makes this process the one that asks. */
-void outputs_ask(Outputs *outputs);
+/* Makes this process the one that asks, and closes all files but the standard streams and the connection to the parent. */
+bool outputs_ask(Outputs *outputs);
 
-/* Closes all files but the standard streams and the connection to the parent, and takes all rights away that are not listed.
-   False, with one line: that was not possible.  The process has one thread. */
+/* Takes all rights away that are not listed.  False, with one line: that was not possible.  The process has one thread. */
 bool sandbox_enter(const SandboxNeeds *needs, char why[256]);
 
 #endif

@@ -122,7 +122,10 @@ static void collect_outputs(const Options *options)
 KrsStatus confine_prepare(Options *options)
 {
     if (options->untrusted != UNTRUSTED || options->command == COMMAND_FARM)
-        return KRS_OK;
+        return KRS_OK; /* what a farm starts has sandboxes */
+    if (options->command == COMMAND_LSP)
+        return say_usage(options, "lsp starts processes, which no sandbox lets it; give "
+                                  "--untrusted=limits");
     const char *missing = sandbox_missing();
     if (missing) {
         say("no sandbox for untrusted scenes: %s; --untrusted=limits does without", missing);

@@ -70,6 +70,12 @@ static KrsStatus check_use(const Options *options, const char *path)
     switch (options->command) {
     case COMMAND_WATCH: return say_usage(options, "a pack does not change; render `%s`", path);
     case COMMAND_FORMAT: return say_usage(options, "`%s` is a pack, not a text", path);
+    case COMMAND_FARM:
+        return options->untrusted == UNTRUSTED
+                   ? say_usage(options,
+                               "a stranger's pack is opened in a sandbox alone, and farm has "
+                               "none itself; submit its scene, or give --untrusted=limits")
+                   : KRS_OK;
     case COMMAND_PACK: return say_usage(options, "`%s` is a pack already", path);
     default: return KRS_OK;
     }

@@ -264,8 +264,10 @@ static void note_crashes(void)
 static _Noreturn void run_child(Options *options, Work *work, Outputs *outputs,
                                 const sigset_t *mask)
 {
-    if (outputs)
-        outputs_ask(outputs);
+    if (outputs && !outputs_ask(outputs)) {
+        say("no sandbox for untrusted scenes: its files cannot be closed: %s", strerror(errno));
+        _exit(KRS_INTERNAL);
+    }
     limit_memory(options->limits.memory);
     limit_files(options->limits.file);
     atomic_store(&shared->unchecked, 0);

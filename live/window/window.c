@@ -142,6 +142,15 @@ static void listen(Window *window)
     glfwSetCursorPosCallback(window->glfw, on_move);
 }
 
+bool window_connect(const char **why)
+{
+    glfwSetErrorCallback(note_reason);
+    if (glfwInit())
+        return true;
+    *why = glfw_reason ? glfw_reason : "it cannot draw";
+    return false;
+}
+
 Window *window_open(const char *title, uint32_t width, uint32_t height, const WindowEvents *events,
                     WindowLost *lost, const char **why)
 {
@@ -151,8 +160,7 @@ Window *window_open(const char *title, uint32_t width, uint32_t height, const Wi
         return NULL;
     window->events = *events;
     window->button = -1;
-    glfwSetErrorCallback(note_reason);
-    if (glfwInit())
+    if (window_connect(why))
         window->glfw = create(title, width, height);
     if (!window->glfw) {
         *why = glfw_reason ? glfw_reason : "it cannot draw";

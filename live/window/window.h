@@ -23,6 +23,10 @@ typedef struct WindowEvents {
 /* Called when the connection to the display is lost; does not return. */
 typedef void WindowLost(void);
 
+/* Connects to the display, which window_open does else: for who cannot do so later.  False: there is none; *why is one line
+   about it. */
+bool window_connect(const char **why);
+
 /* Opens a window; NULL: there is no display, or none that can draw; *why is one line about it. */
 Window *window_open(const char *title, uint32_t width, uint32_t height, const WindowEvents *events,
                     WindowLost *lost, const char **why);
