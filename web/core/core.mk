@@ -12,7 +12,7 @@ EMCC_FLAGS = $(call once,EMCC_FLAGS,emcc_flags)
 WASM_CC    = $(shell command -v ccache) $(EMCC_ROOT)/clang $(EMCC_FLAGS)
 # A page waits for bytes first: only what takes most of the time is compiled for speed.  Linking by -Oz would make
 # compilations a third slower.
-WASM_FLAGS = $(if $(filter $(wildcard compiler/graph/*.c) compiler/base/elementary.c compiler/shape/box.c compiler/shape/cover.c mesh/contour/% mesh/proof/%,$<),-O2,-Os) \
+WASM_FLAGS = $(if $(filter $(wildcard compiler/graph/*.c) compiler/base/elementary.c compiler/shape/box.c compiler/shape/cover.c mesh/contour/%,$<),-O2,-Os) \
              -ffunction-sections -fdata-sections -ffp-contract=off
 
 # ---- sources ----
