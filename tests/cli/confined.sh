@@ -3,6 +3,7 @@
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 29
+find_untrusted
 
 # A folder with a scene, beside one with a secret; links of all kinds lead from one to the other.
 mkdir -p in/deep in/other beyond
@@ -31,17 +32,17 @@ result $? "without --root any file is read"
 for path in ../beyond/secret.krs ../in/../beyond/secret.krs "$work/beyond/secret.krs" /etc/passwd link.krs \
     absolute.krs folder/secret.krs magic/beyond/secret.krs deep/../../beyond/secret.krs ../missing.krs; do
     uses "$path" in/scene.krs
-    run check --untrusted in/scene.krs
+    run check "$untrusted" in/scene.krs
     kept_out "outside: $(printf %s "$path" | sed "s,$work,/elsewhere,")"
 done
 for path in size.krs ./size.krs deep/size.krs deep/inner.krs deep/../size.krs ../in/size.krs; do
     uses "$path" in/scene.krs
-    run check --untrusted in/scene.krs
+    run check "$untrusted" in/scene.krs
     [ "$status" -eq 0 ] && [ ! -s err ]
     result $? "inside: $path"
 done
 uses pipe.krs in/scene.krs
-run check --untrusted in/scene.krs
+run check "$untrusted" in/scene.krs
 said 1 "it is not a regular file" "a pipe is not waited for"
 uses ../size.krs in/other/scene.krs
 run check --root in in/other/scene.krs
@@ -51,7 +52,7 @@ status=$?
 ended 0 "--root from elsewhere"
 run check --root in beyond/secret.krs
 kept_out "a scene that is outside itself"
-(cd in && "$krs" check --untrusted link.krs) >err 2>&1
+(cd in && "$krs" check "$untrusted" link.krs) >err 2>&1
 status=$?
 kept_out "a scene that is a link to what is outside"
 

@@ -2,6 +2,7 @@
 # grid.sh: `krs grid`: files as their formats want them, what other programs read of them, and what is refused.
 . "$(dirname "$0")/common.sh"
 plan 54
+find_untrusted
 
 echo 'material red { color: [1, 0, 0] } show sphere(0.5).move([0.25, 0, 0]).paint(red);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -443,7 +444,7 @@ status=$(cat ended)
 [ "$status" -ne 0 ] && [ "$status" -lt 128 ]
 result $? "and a pipe that is closed"
 mkdir inside && cp ball.krs inside && ln -s ../outside.npy inside/link.npy
-run grid --quiet --untrusted inside/ball.krs --cell 0.1 -o inside/link.npy
+run grid --quiet "$untrusted" inside/ball.krs --cell 0.1 -o inside/link.npy
 [ "$status" -eq 73 ] && [ ! -e outside.npy ]
 result $? "with --untrusted nothing is written through a link"
 run grid --quiet ball.krs -o missing/a.npy

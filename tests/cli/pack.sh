@@ -3,6 +3,7 @@
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
 plan 22
+find_untrusted
 
 # A scene that reads a text above its folder, one by its whole path, a picture, data and a font.
 mkdir -p home/scenes home/pictures home/far elsewhere
@@ -35,10 +36,10 @@ run check home/scenes/scene.krs
 mv home away
 
 cd elsewhere || exit 1
-for untrusted in "" --untrusted; do
+for how_trusted in "" "$untrusted"; do
     # shellcheck disable=SC2086
-    run render scene.krsz $how $untrusted -o pack.exr -o pack.png
-    ended 0 "a pack is rendered, $untrusted"
+    run render scene.krsz $how $how_trusted -o pack.exr -o pack.png
+    ended 0 "a pack is rendered, $how_trusted"
     cmp -s ../one.exr pack.exr
     result $? "with the same light"
     cmp -s ../one.png pack.png

@@ -8,7 +8,9 @@ deadly=$(sed -n 's/^DEADLY(\([a-z_]*\),.*/\1/p' "$rows")
 beyond=$(sed -n 's/^BEYOND(\([a-z_]*\),.*/\1/p' "$rows")
 refused=$(grep -c '^ESCAPE(' "$rows")
 # shellcheck disable=SC2086 # words are meant
-plan $(($(echo $deadly $beyond | wc -w) + 11))
+tests=$(($(echo $deadly $beyond | wc -w) + 11))
+plan "$tests"
+need_sandbox "$tests"
 "${CC:-cc}" -std=gnu17 -Wall -Wextra -shared -fPIC -o escape.so "$root/tests/sandbox/escape.c" -pthread || exit 1
 : >out
 

@@ -3,6 +3,7 @@
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 10
+need_sandbox 10
 mkdir -p in/deep
 : >out
 

@@ -4,6 +4,7 @@
 # shellcheck source-path=SCRIPTDIR disable=SC2086
 . "$(dirname "$0")/common.sh"
 plan 77
+find_untrusted
 small="--size 16x12 --quiet"
 echo 'show sphere(1);' >ball.krs
 echo '0 0 0' >points
@@ -147,14 +148,14 @@ cp ball.jsurf out-of/ball.jsurf
 ln -s ../out-of/ball.jsurf in/link.jsurf
 run import --root in out-of/ball.jsurf
 said 1 "outside of the root" "an import of what is outside"
-run import --untrusted in/link.jsurf
+run import "$untrusted" in/link.jsurf
 said 1 "outside of the root" "an import through a link"
 cp ball.jsurf in/ball.jsurf
-run import --untrusted in/ball.jsurf
+run import "$untrusted" in/ball.jsurf
 [ "$status" -eq 0 ] && [ -s out ]
 result $? "an import of what is inside"
 printf '<svg xmlns="http://www.w3.org/2000/svg" width="10" height="10"><rect width="5" height="5"/></svg>' >in/a.svg
-run import --untrusted in/a.svg
+run import "$untrusted" in/a.svg
 ended 0 "a drawing, which its scene reads"
 
 # ---- the hash by which checkpoints know their scene ----

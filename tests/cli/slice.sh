@@ -2,6 +2,7 @@
 # slice.sh: `krs slice`: files that other programs accept, their areas, and what is refused.
 . "$(dirname "$0")/common.sh"
 plan 66
+find_untrusted
 
 # None of these files is there.
 no_files() {
@@ -309,7 +310,7 @@ run info figure.krs
 [ "$status" -eq 0 ] && grep -q 'figure .*krs slice' out
 result $? "and told by info"
 mkdir inside && cp ball.krs inside && ln -s ../outside.svg inside/link.svg
-run slice --quiet --untrusted inside/ball.krs --layer 0.5 -o inside/link.svg
+run slice --quiet "$untrusted" inside/ball.krs --layer 0.5 -o inside/link.svg
 [ "$status" -eq 73 ] && [ ! -e outside.svg ]
 result $? "with --untrusted nothing is written through a link"
 run slice --quiet ball.krs --layer 0.5 -o missing/a.svg

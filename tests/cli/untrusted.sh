@@ -4,7 +4,8 @@
 # shellcheck source-path=SCRIPTDIR disable=SC2016,SC2086
 . "$(dirname "$0")/common.sh"
 plan 70
-small="--size 16x12 --quiet --untrusted"
+find_untrusted
+small="--size 16x12 --quiet $untrusted"
 
 # Makes a folder with links of all kinds, and one beside it that nothing may change.
 prepare() {
@@ -53,17 +54,17 @@ for kind in relative absolute dangling chain inside magic pipe; do
     untouched && { [ "$status" -eq 73 ] || [ "$status" -eq 0 ]; }
     result $? "a checkpoint: $kind"
     prepare && plant $kind ball.stl
-    (cd in && timeout 60 "$krs" mesh ball.krs --untrusted --error 0.1 --quiet >../stdout 2>../err)
+    (cd in && timeout 60 "$krs" mesh ball.krs "$untrusted" --error 0.1 --quiet >../stdout 2>../err)
     status=$?
     [ "$status" -eq 73 ] && untouched
     result $? "a mesh: $kind"
     prepare && mkdir in/shaders && plant $kind shaders/ball.json
-    (cd in && timeout 60 "$krs" compile ball.krs --untrusted -o shaders >../stdout 2>../err)
+    (cd in && timeout 60 "$krs" compile ball.krs "$untrusted" -o shaders >../stdout 2>../err)
     status=$?
     [ "$status" -eq 73 ] && untouched
     result $? "shaders: $kind"
     prepare && plant $kind a.krs && printf 'surface_equation=x^2+y^2+z^2-1\n' >in/ball.jsurf
-    (cd in && timeout 60 "$krs" import ball.jsurf --untrusted -o a.krs >../stdout 2>../err)
+    (cd in && timeout 60 "$krs" import ball.jsurf "$untrusted" -o a.krs >../stdout 2>../err)
     status=$?
     [ "$status" -eq 73 ] && untouched
     result $? "an import: $kind"
@@ -86,8 +87,8 @@ for kind in relative absolute chain; do
         [ $good -eq 0 ] || break
     done
     result $good "a folder of an output: $kind"
-    (cd in && timeout 60 "$krs" compile ball.krs --untrusted -o folder/shaders >../stdout 2>../err) ||
-        (cd in && timeout 60 "$krs" compile ball.krs --untrusted -o folder >../stdout 2>../err)
+    (cd in && timeout 60 "$krs" compile ball.krs "$untrusted" -o folder/shaders >../stdout 2>../err) ||
+        (cd in && timeout 60 "$krs" compile ball.krs "$untrusted" -o folder >../stdout 2>../err)
     status=$?
     [ "$status" -eq 73 ] && untouched
     result $? "a folder of shaders: $kind"
@@ -110,7 +111,7 @@ echo old >in/a.png && chmod 640 in/a.png
 result $? "a file that is there is replaced, and keeps its permissions"
 (cd in && "$krs" render ball.krs $small -o - >../piped.png 2>../err) && cmp -s piped.png own.png
 result $? "standard output"
-(cd in && "$krs" compile ball.krs --untrusted -o made >../stdout 2>../err) && [ -s in/made/ball.json ]
+(cd in && "$krs" compile ball.krs "$untrusted" -o made >../stdout 2>../err) && [ -s in/made/ball.json ]
 result $? "a folder that is made"
 chmod a-w in/deep
 if [ "$(id -u)" -ne 0 ]; then
@@ -127,7 +128,7 @@ chmod u+w in/deep
 # `sphere { 0, R }`, where R is in the file that is included.
 include() { # name
     printf '#declare R = 1;\n#include "%s"\nsphere { 0, R }\n' "$1" >in/a.pov
-    (cd in && timeout 60 "$krs" import a.pov --untrusted >../stdout 2>../err)
+    (cd in && timeout 60 "$krs" import a.pov "$untrusted" >../stdout 2>../err)
     status=$?
 }
 for kind in relative absolute chain magic; do
@@ -177,12 +178,12 @@ result $? "what is outside, for a scene of one's own, and where the root is furt
 # A pipe would wait for ever, were it opened.
 prepare && mkfifo in/font.ttf
 printf 'linear_extrude(height = 1) { text(text = "a", size = 10, font = "font.ttf"); }\n' >in/a.csg
-(cd in && timeout 60 "$krs" import a.csg --untrusted >../stdout 2>../err)
+(cd in && timeout 60 "$krs" import a.csg "$untrusted" >../stdout 2>../err)
 status=$?
 [ "$status" -eq 0 ] && grep -q 'text("a"' stdout && ! grep -q 'font: ' stdout
 result $? "a font from a file in OpenSCAD"
 printf 'text { ttf "timrom.ttf" "a" 1, 0 }\n' >in/a.pov
-(cd in && timeout 60 "$krs" import a.pov --untrusted >../stdout 2>../err)
+(cd in && timeout 60 "$krs" import a.pov "$untrusted" >../stdout 2>../err)
 status=$?
 [ "$status" -eq 0 ] && grep -q 'the font `timrom.ttf` is not read' stdout
 result $? "a font of POV-Ray's"

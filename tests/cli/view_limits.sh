@@ -7,6 +7,7 @@ export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
 plan 12
+find_untrusted
 : >out
 
 scene() { printf 'camera { eye: [0, 1, 5], target: [0, 0, 0] }\nshow sphere(%s);\n' "$1"; }
@@ -60,11 +61,11 @@ trap "kill $server 2>/dev/null; rm -rf '$work'" EXIT
 scene_of_many >many.krs
 run view many.krs --deadline 1
 said 1 "gave up compiling the scene after 1 seconds" "a scene that is not compiled by the deadline"
-run view many.krs --untrusted --limit time=1
+run view many.krs "$untrusted" --limit time=1
 said 1 "stopped while compiling the scene: --limit time=1 allows no longer" "or within its limit"
 
 scene 1 >scene.krs
-opens --deadline 1 --untrusted --limit time=3
+opens --deadline 1 "$untrusted" --limit time=3
 sleep 5
 shows "a limit of time does not count waiting"
 rm scene.krs
