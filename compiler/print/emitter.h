@@ -211,8 +211,8 @@ void emit_density(Emitter *e);
 void emit_albedo(Emitter *e);
 void emit_anisotropy(Emitter *e);
 void emit_emission(Emitter *e);
-/* Tells whether functions of media are wanted. */
-bool emit_wants_volumes(const Emitter *e);
+/* Tells whether this function of media is wanted. */
+bool emit_wants_volume(const Emitter *e, uint32_t which);
 void need_gradient(Emitter *e);
 void need_tangent(Emitter *e);
 /* Tells whether krs_tangent keeps the distance to a component's plane from overflow by the box around the component. */

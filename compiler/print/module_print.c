@@ -249,8 +249,8 @@ static NodeList gather_roots(Emitter *e)
     add_nodes(e, &roots, &zone, zone != NODE_NONE && e->cuts);
     add_nodes(e, &roots, e->module->gradients + 2 * e->module->components,
               zone != NODE_NONE && emit_wants_gradient(e) ? 2 : 0);
-    add_nodes(e, &roots, e->module->volumes,
-              emit_wants_volumes(e) ? e->module->volume_count * VOLUME_FUNCTIONS : 0);
+    for (uint32_t i = 0; i < e->module->volume_count * VOLUME_FUNCTIONS; i++)
+        add_nodes(e, &roots, e->module->volumes + i, emit_wants_volume(e, i % VOLUME_FUNCTIONS));
     add_boxes(e, &roots, e->wanted[KRS_FUNCTION_DISTANCE_LOD],
               e->wanted[KRS_FUNCTION_SCENE_PART_BOX] && !e->variant->camera_relative);
     add_kept_boxes(e, &roots);

@@ -6,18 +6,12 @@
 static const KrsFunction functions[VOLUME_FUNCTIONS] = {
     KRS_FUNCTION_DENSITY, KRS_FUNCTION_ALBEDO, KRS_FUNCTION_ANISOTROPY, KRS_FUNCTION_EMISSION};
 
-bool emit_wants_volumes(const Emitter *e)
-{
-    bool found = false;
-    for (size_t i = 0; i < VOLUME_FUNCTIONS; i++)
-        found = found || e->wanted[functions[i]];
-    return found;
-}
+bool emit_wants_volume(const Emitter *e, uint32_t which) { return e->wanted[functions[which]]; }
 
 void emit_volumes(Emitter *e)
 {
     for (uint32_t which = 0; which < VOLUME_FUNCTIONS; which++)
-        for (uint32_t i = 0; e->wanted[functions[which]] && i < e->module->volume_count; i++) {
+        for (uint32_t i = 0; emit_wants_volume(e, which) && i < e->module->volume_count; i++) {
             const Node *root = &e->module->volumes[i * VOLUME_FUNCTIONS + which];
             emit_head_of_volume(e, which, i);
             emit_body(e, root, 1);

@@ -149,6 +149,10 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_MEDIUM_AT]           = "float(krs_medium_at(p))",
     [KRS_FUNCTION_GLASS]               = "krs_glass(p)",
     [KRS_FUNCTION_SUBSURFACE]          = "krs_subsurface(p)",
+    [KRS_FUNCTION_DENSITY]             = "krs_volume_density(0u, p)",
+    [KRS_FUNCTION_ALBEDO]              = "krs_volume_albedo(0u, p).x",
+    [KRS_FUNCTION_ANISOTROPY]          = "krs_volume_anisotropy(0u, p)",
+    [KRS_FUNCTION_EMISSION]            = "krs_volume_emission(0u, p).x",
     [KRS_FUNCTION_SINES]               = "krs_sin(p.x) + krs_cos(p.x) + krs_tan(p.x)",
     [KRS_FUNCTION_ARCS]                = "krs_atan2(p.x, p.y)",
 };
@@ -231,6 +235,10 @@ static bool can_want(const ShaderScene *of, KrsFunction function)
     case KRS_FUNCTION_GLASS: return program->media && v->march_group == 0;
     case KRS_FUNCTION_SUBSURFACE: return program->subsurface && v->march_group == 0;
     case KRS_FUNCTION_SURFACE: return v->march_group == 0;
+    case KRS_FUNCTION_DENSITY:
+    case KRS_FUNCTION_ALBEDO:
+    case KRS_FUNCTION_ANISOTROPY:
+    case KRS_FUNCTION_EMISSION: return program->volumes > 0 && v->march_group == 0;
     default: return true;
     }
 }
