@@ -93,15 +93,17 @@ static const char *name_of(KrsFunction function)
 
 static bool is_entry_point(const char *name, const ShaderScene *of)
 {
-    bool sines = false, arcs = false;
+    bool sines = false, arcs = false, volumes = false;
     for (size_t i = 0; i < of->wanted_count; i++) {
-        sines = sines || of->wanted[i] == KRS_FUNCTION_SINES;
-        arcs  = arcs || of->wanted[i] == KRS_FUNCTION_ARCS;
+        sines   = sines || of->wanted[i] == KRS_FUNCTION_SINES;
+        arcs    = arcs || of->wanted[i] == KRS_FUNCTION_ARCS;
+        volumes = volumes ||
+                  of->wanted[i] == KRS_FUNCTION_DENSITY; /* the caller asks where the ray is */
         if (strcmp(name, name_of(of->wanted[i])) == 0)
             return true;
     }
     return strcmp(name, "krs_prepare") == 0 || (sines && strlen(name) == strlen("krs_sin")) ||
-           (arcs && strcmp(name, "krs_atan2") == 0);
+           (arcs && strcmp(name, "krs_atan2") == 0) || (volumes && strcmp(name, "krs_medium") == 0);
 }
 
 /* A global is declared, set and read; a function that is not wanted is called. */
