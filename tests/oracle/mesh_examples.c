@@ -115,7 +115,7 @@ static void judge(const Row *row, const Example *e, const KrsMesh *mesh)
     if (apart.off_surface > 0)
         print_message("# off the surface at (%.9g, %.9g, %.9g)\n", apart.off_surface_at.x,
                       apart.off_surface_at.y, apart.off_surface_at.z);
-    assert_true(apart.hits > RAYS / 10 && mesh->triangle_count > 100);
+    assert_true(apart.hits > RAYS / 10); /* a plane that a box cuts has 12 triangles */
     assert_true(e->estimate || apart.off_surface == 0);
     assert_true(e->estimate || apart.thick == 0);
     assert_true(e->estimate || mesh->unresolved > 0 || apart.lost == 0);
