@@ -11,7 +11,8 @@ rendering="mesa-vulkan-drivers libgl1-mesa-dri fonts-dejavu-core"
 testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang clang-format libclang-rt-dev lld
          shellcheck strace procps openexr patch chromium-common admesh assimp-utils python3-numpy libcgal-dev
          libegl-dev libgles-dev libopenvdb-dev python3-openvdb python3-nibabel neovim
-         python3-cffi python3-build python3-setuptools python3-wheel python3-venv mypy spirv-cross mono-mcs desktop-file-utils appstream shared-mime-info"
+         python3-cffi python3-build python3-setuptools python3-wheel python3-venv mypy spirv-cross mono-mcs
+         python3-jsonschema python3-yaml desktop-file-utils appstream shared-mime-info"
 web="emscripten nodejs dpkg-dev"
 browsing="chromium esbuild"
 editing="vim emacs-nox elpa-eglot"
