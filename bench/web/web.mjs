@@ -12,6 +12,9 @@ import zlib from 'node:zlib';
 import { launch, serve } from '../../tests/web/browser.mjs';
 
 const PATIENCE = 30000; // milliseconds for a sample of all pixels
+// Milliseconds after which Chromium frees what it showed before a page was opened; the page's thread waits for the
+// graphics process meanwhile, also where that compiles shaders for long.
+const SETTLING = 1500;
 
 const [, , built, ...chosen] = process.argv;
 const names = chosen.length ? chosen : ['01-hello', '03-machined-part', '04-school', '12-fractals', '15-town', '22-lattice', '31-spring'];
@@ -96,6 +99,7 @@ async function drawing() {
 for (const name of names) {
     const page = await browser.open(`${server.url}/view.html`, { inWorkers: timed }), seconds = [await drawing()];
     await page.until('window.krs');
+    await new Promise(resolve => setTimeout(resolve, SETTLING));
     await page.evaluate(prepare);
     const told = await page.evaluate(begin, name);
     seconds.push(await drawing());
