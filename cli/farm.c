@@ -198,6 +198,8 @@ static KrsStatus submit(const Options *options, const char *path)
     if (status == KRS_OK && (job.across > job.width || job.down > job.height))
         status = say_usage(options, "a picture of %ux%u has not so many tiles", job.width,
                            job.height);
+    if (status == KRS_OK && !job_fits(&job))
+        status = say_usage(options, "a job has at most %d pieces", MAX_PIECES);
     if (status == KRS_OK)
         status = job_make_folders(&job, options->arena);
     if (status == KRS_OK)

@@ -7,12 +7,6 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/console.h"
 #include "cli/shell/supervise.h"
-#include "runtime/writer/exr.h"
-
-static bool fill(const void *user, OutputFile *file, OutputError *error)
-{
-    return exr_write(user, file, error);
-}
 
 KrsStatus command_merge(Options *options)
 {
@@ -29,7 +23,7 @@ KrsStatus command_merge(Options *options)
         status = tiles_read(options, options->files.items, options->files.count, &tiles);
     if (status != KRS_OK)
         return status;
-    status = write_output(output, fill, &tiles.picture);
+    status = tiles_write(&tiles, output);
     tiles_free(&tiles);
     return status;
 }

@@ -66,6 +66,13 @@ const char *job_file(const FarmJob *job, Arena *arena, uint32_t piece, const cha
 
 /* ---- pieces ---- */
 
+bool job_fits(const FarmJob *job)
+{
+    const uint64_t parts  = (uint64_t)job->across * job->down * job->ranges;
+    const uint64_t chunks = ((uint64_t)job_frames(job) + job->chunk - 1) / job->chunk;
+    return parts <= MAX_PIECES && parts * chunks <= MAX_PIECES;
+}
+
 uint32_t job_frames(const FarmJob *job) { return job->last - job->first + 1; }
 
 uint32_t job_parts(const FarmJob *job) { return job->across * job->down * job->ranges; }
@@ -160,7 +167,8 @@ static bool read_numbers(const json_t *root, FarmJob *job)
         *(uint32_t *)((char *)job + numbers[i].offset) = (uint32_t)value;
     }
     return job->last >= job->first && job->across <= job->width && job->down <= job->height &&
-           (job->ranges == 1 || (job->ranges - 1) * SAMPLES_OF_BLOCK < job->samples);
+           (job->ranges == 1 || (job->ranges - 1) * SAMPLES_OF_BLOCK < job->samples) &&
+           job_fits(job);
 }
 
 static bool read_words(Arena *arena, const json_t *words, FarmJob *job)

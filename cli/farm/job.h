@@ -10,19 +10,21 @@
  *     probes/         a small picture of each machine (probe.h)
  *     cancelled       nobody takes another piece
  *
- * A part is a tile, or some of its samples, and a piece is a part of some frames.  Who has rendered the last part of a frame writes its picture, and removes the
- * parts.  Files appear whole or not at all, and a part depends on nothing but the job: what is rendered twice is the
- * same, and what is lost is rendered again.
+ * A part is a tile, or some of its samples, and a piece is a part of some frames.  Who has rendered the last part of a
+ * frame writes its picture, and removes the parts.  Files appear whole or not at all, and a part depends on nothing but
+ * the job: what is rendered twice is the same, and what is lost is rendered again.
  */
 #ifndef KRS_FARM_JOB_H
 #define KRS_FARM_JOB_H
 
 #include "cli/shell/commands.h"
 
+enum { MAX_PIECES = 10000000 };
+
 typedef struct FarmJob {
     const char *folder;
-    const char *
-        output; /* where pictures go, a whole path: with a place for the number if there are several */
+    const char          *
+        output; /* the whole path of pictures: with a place for the number of a frame if there are several */
     bool         animated;
     uint32_t     first, last; /* frames; 0 and 0 if it is not animated */
     uint32_t     width, height;
@@ -44,6 +46,9 @@ KrsStatus job_make_folders(const FarmJob *job, Arena *arena);
 KrsStatus job_write(const FarmJob *job, Arena *arena);
 /* Reads that; KRS_IO_ERROR and words if there is no job. */
 KrsStatus job_read(Arena *arena, const char *folder, FarmJob *job);
+
+/* Tells whether the job has MAX_PIECES pieces at most: others are neither submitted nor read. */
+bool job_fits(const FarmJob *job);
 
 uint32_t  job_frames(const FarmJob *job);
 uint32_t  job_parts(const FarmJob *job);

@@ -15,9 +15,9 @@
 #include "cli/shell/supervise.h"
 
 enum {
-    MOST_COMPLETIONS = 100000, /* of an Indexed Job that is not run one after the other */
-    MOST_PODS        = 1000,   /* at once */
-    NAME_LETTERS     = 40      /* names have at most 63, with what is around these */
+    MAX_COMPLETIONS = 100000, /* of an Indexed Job that is not run one after the other */
+    MAX_PODS        = 1000,   /* at once */
+    NAME_LETTERS    = 40      /* names have at most 63, with what is around these */
 };
 
 /* Returns a name that Kubernetes takes: lower-case letters, digits and dashes. */
@@ -73,10 +73,10 @@ KrsStatus kubernetes_write(const FarmJob *job, const Options *options, const cha
 {
     const uint32_t pieces = job_pieces(job);
     Text           text   = {.arena = options->arena};
-    if (pieces > MOST_COMPLETIONS)
+    if (pieces > MAX_COMPLETIONS)
         return say_usage(options,
                          "a Job of Kubernetes has at most %d pieces, not %u; --chunk makes fewer",
-                         MOST_COMPLETIONS, pieces);
+                         MAX_COMPLETIONS, pieces);
     if (strchr(job->folder, ':') || strchr(job->output, ':'))
         return say_usage(options, "places in containers of Kubernetes have no `:` in their paths");
     text_add(&text, "apiVersion: batch/v1\nkind: Job\nmetadata:\n");
@@ -105,7 +105,7 @@ KrsStatus kubernetes_write(const FarmJob *job, const Options *options, const cha
                 "      terminationGracePeriodSeconds: 60\n"
                 "      containers:\n"
                 "        - name: krs\n",
-                pieces, pieces < MOST_PODS ? pieces : MOST_PODS);
+                pieces, pieces < MAX_PODS ? pieces : MAX_PODS);
     add_entry(&text, "          image: ", image);
     add_entry(&text, "          command: [krs, farm, run, ", job->folder);
     text.length--;

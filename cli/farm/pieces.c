@@ -16,9 +16,6 @@
 #include "cli/picture/whole.h"
 #include "cli/shell/console.h"
 #include "cli/shell/supervise.h"
-#include "runtime/writer/exr.h"
-
-enum { RESUMABLE = 75 };
 
 /* ---- what is done ---- */
 
@@ -90,11 +87,6 @@ PieceState piece_state(const FarmJob *job, const Options *options, const FarmPie
 
 /* ---- pictures ---- */
 
-static bool fill(const void *user, OutputFile *file, OutputError *error)
-{
-    return exr_write(user, file, error);
-}
-
 /* Tells whether pieces are rendered in sandboxes. */
 static bool is_of_stranger(const FarmJob *job)
 {
@@ -126,7 +118,7 @@ static KrsStatus merge_here(const FarmJob *job, const Options *options, const ch
     KrsStatus status = tiles_read(options, parts, job_parts(job), &tiles);
     if (status != KRS_OK)
         return status;
-    status = write_output(picture, fill, &tiles.picture);
+    status = tiles_write(&tiles, picture);
     tiles_free(&tiles);
     return status;
 }
@@ -221,7 +213,7 @@ int piece_render(const FarmJob *job, const Options *options, const FarmPiece *pi
     if (held < 0)
         return held == TAKEN ? KRS_OK : KRS_CANNOT_CREATE;
     int status = is_done(job, options, piece) ? KRS_OK : run_render(job, options, piece);
-    if (status != KRS_OK && status != RESUMABLE && status != KRS_INTERRUPTED)
+    if (status != KRS_OK && status != KRS_RESUMABLE && status != KRS_INTERRUPTED)
         note_failure(job, options->arena, piece->number, status);
     if (status == KRS_OK)
         status = finish_frames(job, options, piece);

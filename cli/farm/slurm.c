@@ -15,8 +15,8 @@
 #include "cli/shell/console.h"
 #include "cli/shell/supervise.h"
 
-enum { MOST_TASKS = 1000 }; /* of an array: MaxArraySize is 1001 if nobody has changed it */
-#define WARNING "60"        /* seconds before the limit of time, when tasks leave a checkpoint */
+enum { MAX_TASKS = 1000 }; /* of an array: MaxArraySize is 1001 if nobody has changed it */
+#define WARNING "60"       /* seconds before the limit of time, when tasks leave a checkpoint */
 
 /* What follows the command in a script.  Slurm tells the script, not the command, that time is over.  What has left a
    checkpoint is queued again. */
@@ -96,17 +96,18 @@ KrsStatus slurm_submit(const FarmJob *job, const Options *options, const char *p
     KrsStatus status = write_script(job, options, "piece.sh", "run");
     if (status == KRS_OK)
         status = write_script(job, options, "rest.sh", "work");
-    for (uint32_t first = 0; first < job_pieces(job) && status == KRS_OK; first += MOST_TASKS) {
+    for (uint32_t first = 0; first < job_pieces(job) && status == KRS_OK; first += MAX_TASKS) {
         const uint32_t left    = job_pieces(job) - first;
         Text           command = begin_command(job, options, partition);
         text_format(&command, " --array=0-%u --export=ALL,KRS_FARM_FIRST=%u ",
-                    (left < MOST_TASKS ? left : MOST_TASKS) - 1, first);
+                    (left < MAX_TASKS ? left : MAX_TASKS) - 1, first);
         add_quoted(&command, job_path(job, options->arena, "piece.sh"));
         const unsigned long number = run_sbatch(&command);
-        if (number == 0)
-            status = KRS_IO_ERROR;
-        text_format(&numbers, "%lu\n", number);
-        text_format(&after, ":%lu", number);
+        status                     = number ? KRS_OK : KRS_IO_ERROR;
+        if (number) {
+            text_format(&numbers, "%lu\n", number);
+            text_format(&after, ":%lu", number);
+        }
     }
     if (status == KRS_OK) {
         Text command = begin_command(job, options, partition);
@@ -114,13 +115,17 @@ KrsStatus slurm_submit(const FarmJob *job, const Options *options, const char *p
         add_quoted(&command, job_path(job, options->arena, "rest.sh"));
         const unsigned long number = run_sbatch(&command);
         status                     = number ? KRS_OK : KRS_IO_ERROR;
-        text_format(&numbers, "%lu\n", number);
+        if (number)
+            text_format(&numbers, "%lu\n", number);
     }
-    if (status == KRS_OK)
-        return write_output_text(job_path(job, options->arena, "slurm.jobs"), numbers.bytes,
-                                 numbers.length);
-    say("sbatch has not taken the job; `krs farm work %s` renders it here", job->folder);
-    return status;
+    if (status != KRS_OK)
+        say("sbatch has not taken the job; `krs farm work %s` renders it here", job->folder);
+    /* What was queued before sbatch failed can still be cancelled. */
+    const KrsStatus written = numbers.length
+                                  ? write_output_text(job_path(job, options->arena, "slurm.jobs"),
+                                                      numbers.bytes, numbers.length)
+                                  : KRS_OK;
+    return status == KRS_OK ? written : status;
 }
 
 KrsStatus slurm_cancel(const FarmJob *job, const Options *options)

@@ -13,7 +13,9 @@
 
 #include "cli/picture/sample_sums.h"
 #include "cli/shell/console.h"
+#include "cli/shell/supervise.h"
 #include "compiler/base/exr_chunks.h"
+#include "runtime/writer/exr.h"
 
 static const char *const matrix_names[2] = {"worldToCamera", "worldToNDC"};
 
@@ -528,6 +530,16 @@ KrsStatus tiles_read(const Options *options, const char *const *paths, size_t co
     if (status != KRS_OK)
         tiles_free(tiles);
     return status;
+}
+
+static bool fill(const void *user, OutputFile *file, OutputError *error)
+{
+    return exr_write(user, file, error);
+}
+
+KrsStatus tiles_write(const Tiles *tiles, const char *path)
+{
+    return write_output(path, fill, &tiles->picture);
 }
 
 void tiles_free(Tiles *tiles)

@@ -20,6 +20,8 @@ typedef struct Tiles {
 /* Reads them.  They must be of the same render but for their part of it, no two may have a pixel, and together they
    must fill a rectangle.  Otherwise KRS_IO_ERROR, and what is wrong has been said. */
 KrsStatus tiles_read(const Options *options, const char *const *paths, size_t count, Tiles *tiles);
+/* Writes the picture as an EXR file, and says why if it cannot. */
+KrsStatus tiles_write(const Tiles *tiles, const char *path);
 void      tiles_free(Tiles *tiles);
 
 #endif

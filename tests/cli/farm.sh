@@ -2,7 +2,7 @@
 # farm.sh: several processes share a render, are killed, and leave the files of one render, byte for byte.
 # shellcheck source-path=SCRIPTDIR disable=SC2016,SC2086
 . "$(dirname "$0")/common.sh"
-plan 39
+plan 42
 export XDG_CACHE_HOME="$work/caches"
 
 cat >ball.krs <<'END'
@@ -195,6 +195,16 @@ result $? "but not one that is done"
 PATH="$PWD/bin:$PATH" "$krs" farm cancel many.farm
 tail -n 1 sbatch.log | grep -q '^cancel 1 2 3$'
 result $? "scancel ends them"
+sed -i '2i [ "$(wc -l <"$SBATCH_LOG")" -lt 1 ] || exit 1' bin/sbatch
+: >sbatch.log
+PATH="$PWD/bin:$PATH" run farm submit other.krs --frames 0..1499 $how --slurm short --job half.farm -o 'h-%d.exr'
+said 74 "sbatch has not taken the job" "where Slurm takes a part of the arrays, this is an error"
+PATH="$PWD/bin:$PATH" "$krs" farm cancel half.farm
+tail -n 1 sbatch.log | grep -q '^cancel 1$'
+result $? "and scancel ends what it has taken"
+
+run farm submit other.krs --size 16384x16384 --tiles 16384x16384 --samples 6 --rays kernels --job wrong.farm -o wrong.exr
+said 2 "a job has at most 10000000 pieces" "more pieces than can be counted are refused"
 
 for wrong in "-o still.png" "-o still-%d.exr" "--crop 0,0,9,9 -o still.exr" "--tiles 99x1 -o still.exr"; do
     run farm submit other.krs $how --job wrong.farm $wrong
