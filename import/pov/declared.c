@@ -109,21 +109,17 @@ PovCell *pov_element(PovReader *reader, PovCell *array)
 
 PovCell *pov_take(PovReader *reader, PovKind kind)
 {
-    PovCell *own     = reader->words.word.kind == IMPORT_WORD_NAME
-                           ? pov_find(reader, reader->words.word.text)
-                           : NULL;
-    PovCell *element = own;
+    PovCell       *own     = reader->words.word.kind == IMPORT_WORD_NAME
+                                 ? pov_find(reader, reader->words.word.text)
+                                 : NULL;
+    const PovCell *element = own;
     if (own && own->kind == POV_REFUSED) {
         import_refuse(reader->import, reader->words.word.line, "of `%.40s`: %s",
                       reader->words.word.text, own->string);
         return NULL;
     }
-    while (element && element->kind == POV_ARRAY && kind != POV_ARRAY) {
-        PovCell *first = NULL;
-        for (int i = 0; i < element->sizes[0] && !first; i++)
-            first = element->items[i]->kind != POV_NOTHING ? element->items[i] : NULL;
-        element = first;
-    }
+    if (element && element->kind == POV_ARRAY && kind != POV_ARRAY)
+        element = pov_first_element(element);
     if (!element || element->kind != kind)
         return NULL;
     unsigned line = reader->words.word.line;

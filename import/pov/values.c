@@ -127,10 +127,9 @@ const PovCell *pov_first_element(const PovCell *array)
     for (int i = 0; i < array->dimensions; i++)
         count *= array->sizes[i];
     for (int i = 0; i < count; i++)
-        if (array->items[i]->kind == POV_ARRAY)
-            return pov_first_element(array->items[i]);
-        else if (array->items[i]->kind != POV_NOTHING)
-            return array->items[i];
+        if (array->items[i]->kind != POV_NOTHING)
+            return array->items[i]->kind == POV_ARRAY ? pov_first_element(array->items[i])
+                                                      : array->items[i];
     return NULL;
 }
 
@@ -162,7 +161,7 @@ bool pov_value_follows(PovReader *reader)
     if (words->word.kind != IMPORT_WORD_NAME)
         return false;
     const PovCell *own = pov_find(reader, words->word.text);
-    for (int i = 0; own && own->kind == POV_ARRAY && i < 1; i++)
+    if (own && own->kind == POV_ARRAY)
         own = pov_first_element(own);
     if (own)
         return own->kind == POV_VALUE || own->kind == POV_FUNCTION || own->kind == POV_NOTHING;

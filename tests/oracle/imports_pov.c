@@ -166,6 +166,8 @@ static void programs_are_carried_out(void **state)
         {"lathe { linear_spline 4, <0,0>, <2,0>, <2,3>, <0,3> }", "cylinder { 0, 3*y, 2 }"},
         {"union { object { box { -1, 1 } inverse } sphere { 8*x, 2 } }",
          "union { difference { plane { y, 1000000 } box { -1, 1 } } sphere { 8*x, 2 } }"},
+        {"#declare A = array[2][2]; #declare A[1][1] = sphere { 2*x, 1 } object { A[1][1] }",
+         "sphere { 2*x, 1 }"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
