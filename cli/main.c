@@ -100,11 +100,9 @@ static KrsStatus open_outside(const Options *options)
         say("no window can be opened: %s", why);
         return KRS_NO_DEVICE;
     }
-    for (size_t i = 0; i < options->outputs.count && status == KRS_OK; i++) {
-        const char *dot = strrchr(options->outputs.items[i], '.');
-        if (options->command == COMMAND_GRID && dot && strcmp(dot, ".vdb") == 0)
+    for (size_t i = 0; i < options->outputs.count && status == KRS_OK; i++)
+        if (options->command == COMMAND_GRID && grid_is_vdb(options->outputs.items[i]))
             status = grid_check_vdb(options->outputs.items[i]);
-    }
     return status;
 }
 

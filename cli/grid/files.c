@@ -469,3 +469,9 @@ const GridFormat *grid_format(const char *path)
             return &formats[i];
     return NULL;
 }
+
+bool grid_is_vdb(const char *path)
+{
+    const GridFormat *format = grid_format(path);
+    return format && format->begin == grid_begin_vdb;
+}

@@ -39,6 +39,8 @@ typedef struct GridFormat {
 
 /* files.c: the format by the ending of a path, or that of standard output; NULL: there is none. */
 const GridFormat *grid_format(const char *path);
+/* Tells whether OpenVDB writes what has this path. */
+bool grid_is_vdb(const char *path);
 #define GRID_ENDINGS ".vdb, .npy, .nii, .ktx2, .vti or .vtu"
 /* These return a number in 16 bits as IEEE 754 has it, rounded towards 0, but what is below 0 stays
    so; and what these bits are. */

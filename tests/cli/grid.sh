@@ -1,7 +1,7 @@
 #!/bin/sh
 # grid.sh: `krs grid`: files as their formats want them, what other programs read of them, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 54
+plan 55
 find_untrusted
 
 echo 'material red { color: [1, 0, 0] } show sphere(0.5).move([0.25, 0, 0]).paint(red);' >ball.krs
@@ -234,6 +234,10 @@ if [ "$status" -eq 0 ]; then
     run grid --quiet ball.krs --cell 0.03125 -o again.vdb --surface-color --material
     cmp b.vdb again.vdb 2>err
     result $? "which is the same each time"
+    find_untrusted
+    run grid --quiet ball.krs --cell 0.03125 -o capitals.VDB --surface-color --material "$untrusted"
+    cmp b.vdb capitals.VDB 2>err
+    result $? "and in a sandbox, whatever case the ending has"
     run grid --quiet ball.krs --cell 0.03125 --fog -o f.vdb
     run grid --quiet ball.krs --cell 0.03125 --half -o half.vdb
     if python_with pyopenvdb; then
@@ -298,7 +302,7 @@ END
     fi
 else
     said 73 "libopenvdb-dev" "without OpenVDB it is said"
-    for i in 1 2 3 4; do skip "OpenVDB, $i" "built without"; done
+    for i in 1 2 3 4 5; do skip "OpenVDB, $i" "built without"; done
 fi
 mkdir alone && cp "$krs" alone/krs
 alone/krs grid ball.krs -o a.vdb >out 2>err
