@@ -2,8 +2,8 @@
 # sandboxed.sh: what commands do in the sandbox of a stranger's scene is what they do outside.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 10
-need_sandbox 10
+plan 11
+need_sandbox 11
 mkdir -p in/deep
 : >out
 
@@ -31,6 +31,16 @@ done
 cmp -s uses.stl uses--untrusted.stl && cmp -s uses.svg uses--untrusted.svg && cmp -s uses.npy uses--untrusted.npy &&
     cmp -s uses.three.mjs uses--untrusted.three.mjs && diff -r folder folder--untrusted >out 2>err && [ $good -eq 0 ]
 result $? "so are meshes, sections, grids, exports and shaders"
+echo 'show text("krs").extrude(0.2);' >in/letters.krs
+good=0
+for where in '' --untrusted; do
+    # shellcheck disable=SC2086 # words are meant
+    "$krs" export in/letters.krs --quiet $where --to essl -o letters$where.essl 2>err &&
+        "$krs" compile in/letters.krs --quiet $where --language essl -o tables$where 2>err || good=1
+done
+cmp -s letters.cells.bin letters--untrusted.cells.bin && [ -s tables/letters.rows.bin ] && diff -r tables tables--untrusted >out 2>err &&
+    [ $good -eq 0 ]
+result $? "tables, too, are in files beside them"
 good=0
 for command in check info 'dump --after=graph' 'validate --points 200' 'format --check' query; do
     for where in '' --untrusted; do
