@@ -196,14 +196,18 @@ static void find_all_corner_colors(const Meshing *meshing, MeshParts *parts)
 /* Returns the number of vertices of all parts, which lie one behind the other. */
 size_t parts_vertex_count(const MeshParts *parts)
 {
-    const MeshPart *last = &parts->parts[parts->part_count - 1];
-    return parts->part_count ? last->first_vertex + last->vertex_count : 0;
+    size_t count = 0;
+    for (size_t i = 0; i < parts->part_count; i++)
+        count += parts->parts[i].vertex_count;
+    return count;
 }
 
 size_t parts_triangle_count(const MeshParts *parts)
 {
-    const MeshPart *last = &parts->parts[parts->part_count - 1];
-    return parts->part_count ? last->first_triangle + last->triangle_count : 0;
+    size_t count = 0;
+    for (size_t i = 0; i < parts->part_count; i++)
+        count += parts->parts[i].triangle_count;
+    return count;
 }
 
 void find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts)
