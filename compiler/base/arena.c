@@ -121,13 +121,18 @@ static void block_free(Memory *memory, ArenaBlock *block)
         free(block);
 }
 
+static void free_until(Memory *memory, ArenaBlock **newest, const ArenaBlock *last)
+{
+    while (*newest != last) {
+        ArenaBlock *block = *newest;
+        *newest           = block->older;
+        block_free(memory, block);
+    }
+}
+
 void arena_free(Arena *arena)
 {
-    while (arena->newest) {
-        ArenaBlock *block = arena->newest;
-        arena->newest     = block->older;
-        block_free(arena->memory, block);
-    }
+    free_until(arena->memory, &arena->newest, NULL);
     arena->next = NULL;
     arena->left = 0;
 }
@@ -151,11 +156,7 @@ void arena_clear(Arena *arena)
     const size_t all  = first->size - HEADER_BYTES;
     const bool   only = arena->newest == first;
     memset(block_bytes(first), 0, only ? all - arena->left : all);
-    while (arena->newest != first) {
-        ArenaBlock *block = arena->newest;
-        arena->newest     = block->older;
-        block_free(arena->memory, block);
-    }
+    free_until(arena->memory, &arena->newest, first);
     arena->next = block_bytes(first);
     arena->left = all;
 }
@@ -166,15 +167,6 @@ ArenaMark arena_mark(const Arena *arena)
 {
     return (ArenaMark){arena->newest, arena->newest ? arena->newest->older : NULL, arena->next,
                        arena->left};
-}
-
-static void free_until(Memory *memory, ArenaBlock **newest, const ArenaBlock *last)
-{
-    while (*newest != last) {
-        ArenaBlock *block = *newest;
-        *newest           = block->older;
-        block_free(memory, block);
-    }
 }
 
 /* Frees what was allocated since a mark.  Large objects are listed behind the block that was the

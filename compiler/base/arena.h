@@ -39,8 +39,8 @@ void *arena_alloc(Arena *arena, size_t count, size_t size);
 
 /* Frees all blocks; the arena can be used again. */
 void arena_free(Arena *arena);
-/* Does the same, but a small block stays for what follows: of arenas that are used for one thing
-   after the other. */
+/* Does the same, but keeps a small block for what follows, for arenas that are used for one thing after
+   the other. */
 void arena_clear(Arena *arena);
 
 /* A place in an arena; what was allocated since can be freed again.  Marks are rewound in the
@@ -80,18 +80,8 @@ void arena_release(Arena *arena, void *object, size_t bytes);
          : (void)0,                                                                        \
      (void)((array)->items[(array)->count++] = (item)))
 
-/* The same for arrays that may be large, and into which nothing points: old copies are freed. */
-#define array_push_large(arena, array, item)                         \
-    do {                                                             \
-        size_t before_ = (array)->capacity * sizeof *(array)->items; \
-        void  *old_    = (array)->items;                             \
-        bool   full_   = (array)->count == (array)->capacity;        \
-        array_push(arena, array, item);                              \
-        if (full_)                                                   \
-            arena_release(arena, old_, before_);                     \
-    } while (0)
-
-/* Room for one more item in such an array, for items that cannot be assigned: rows of numbers. */
+/* Makes room for one more item in an array that may be large, and into which nothing points: the old
+   copy is freed.  It is for items that cannot be assigned, as rows of numbers. */
 #define array_reserve_large(arena, array)                                                  \
     do {                                                                                   \
         size_t before_ = (array)->capacity * sizeof *(array)->items;                       \
@@ -101,6 +91,13 @@ void arena_release(Arena *arena, void *object, size_t bytes);
                                         sizeof *(array)->items);                           \
             arena_release(arena, old_, before_);                                           \
         }                                                                                  \
+    } while (0)
+
+/* Does what array_push does to such an array; the item does not stand in it. */
+#define array_push_large(arena, array, item)       \
+    do {                                           \
+        array_reserve_large(arena, array);         \
+        (array)->items[(array)->count++] = (item); \
     } while (0)
 
 #endif

@@ -57,7 +57,7 @@ static void add_lines(Text *out, const char *string, int indent)
         size_t length = strcspn(string, "\n"), shown = length;
         if (length > LONG_TEXT_BYTES)
             shown = LONG_TEXT_BYTES;
-        while (shown < length && ((unsigned char)string[shown] & 0xC0) == 0x80)
+        while (shown < length && !text_begins_character(string[shown]))
             shown--; /* a character is not cut */
         add_visible(out, string, shown);
         text_add(out, shown < length ? "..." : "");
@@ -125,8 +125,6 @@ typedef struct Window {
     bool     cut_before, cut_after;
 } Window;
 
-static bool is_inside_character(char byte) { return (byte & 0xC0) == 0x80; }
-
 static Window window_around(const Source *source, const Mark *mark)
 {
     uint32_t first = source->lines[mark->line], last = line_end(source, mark->line);
@@ -136,12 +134,12 @@ static Window window_around(const Source *source, const Mark *mark)
     for (int i = 0; i < WINDOW_BEFORE && start > first; i++)
         do
             start--;
-        while (start > first && is_inside_character(source->text[start]));
+        while (start > first && !text_begins_character(source->text[start]));
     uint32_t end = start;
     for (int i = 0; i < WINDOW_CHARACTERS && end < last; i++)
         do
             end++;
-        while (end < last && is_inside_character(source->text[end]));
+        while (end < last && !text_begins_character(source->text[end]));
     return (Window){start, end, start > first, end < last};
 }
 

@@ -16,8 +16,11 @@ typedef struct Loaded {
     char       *owned;   /* to be freed when the text is no longer needed */
 } Loaded;
 
-/* Reads a file.  Of one longer than MAX_SOURCE_BYTES a little more than that is read: `length` then shows that it is too
-   long. */
+/* The largest file that anyone takes: a picture or a font. */
+enum { MAX_FILE_BYTES = 64 << 20 };
+
+/* Reads a file.  Of one longer than MAX_FILE_BYTES one byte more than that is read: `length` then shows
+   that it is too long. */
 Loaded disk_read(const char *path);
 /* Returns the same for an open file, which is closed. */
 Loaded disk_read_open(int file);

@@ -72,8 +72,8 @@ static Pair pair_product(Pair a, Pair b)
     return (Pair){product.high, product.low + (a.high * b.low + a.low * b.high)};
 }
 
-/* Returns the same number, with as much as there is room for in the first part. */
-static Pair pair_settled(Pair a)
+/* Returns the same number, with the nearest double to it as its first part. */
+static Pair pair_normalized(Pair a)
 {
     const double sum = a.high + a.low;
     return (Pair){sum, (a.high - sum) + a.low};
@@ -260,7 +260,7 @@ static Pair log_pair(double x)
     const double        rest   = s * square.high * square.high * SERIES(square.high, c);
     const Pair          start  = exact_sum(n * LN2_START, 2 * arc.high);
     const Pair          sum    = exact_sum(start.high, cube.high);
-    return pair_settled((Pair){
+    return pair_normalized((Pair){
         sum.high, sum.low + (start.low + (2 * arc.low + (cube.low + (rest + n * LN2_REST))))});
 }
 
@@ -383,13 +383,14 @@ static Pair reduced(double x, int *quarter)
         const double n     = nearest(x * (2 / 3.14159265358979323846));
         const double first = x - n * 0x1.921fb544p0, second = n * 0x1.0b4611a6p-34;
         const Pair   start = exact_sum(first, -second); /* both products are exact */
-        const Pair   left = pair_settled((Pair){start.high, start.low - n * 0x1.3198a2e037073p-69});
-        *quarter          = (int)n & 3;
+        const Pair   left  = pair_normalized(
+               (Pair){start.high, start.low - n * 0x1.3198a2e037073p-69});
+        *quarter = (int)n & 3;
         if (fabs(left.high) > 0x1p-30 || n == 0)
             return left;
     }
     int        whole;
-    const Pair turn = pair_settled(pair_product(quarter_turns(fabs(x), &whole), HALF_PI));
+    const Pair turn = pair_normalized(pair_product(quarter_turns(fabs(x), &whole), HALF_PI));
     *quarter        = (x < 0 ? -whole : whole) & 3;
     return x < 0 ? (Pair){-turn.high, -turn.low} : turn;
 }

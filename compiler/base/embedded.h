@@ -6,6 +6,7 @@
 #define KRS_EMBEDDED_H
 
 #include <stddef.h>
+#include <string.h>
 
 typedef struct EmbeddedFile {
     const char *name; /* relative to its folder: "primitives.krs" */
@@ -20,5 +21,14 @@ extern const EmbeddedFile essl_files[];   /* what of these is other in ESSL */
 extern const EmbeddedFile export_files[]; /* "shadertoy.glsl": templates */
 extern const EmbeddedFile shader_files[];
 extern const EmbeddedFile module_files[]; /* "fill.comp.spv" */
+
+/* Returns the file of such a list that has this name, or NULL. */
+static inline const EmbeddedFile *embedded_find(const EmbeddedFile *files, const char *name)
+{
+    for (; files->name; files++)
+        if (strcmp(files->name, name) == 0)
+            return files;
+    return NULL;
+}
 
 #endif

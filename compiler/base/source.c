@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/fnv.h"
 #include "compiler/base/paths.h"
 #include "compiler/base/text.h"
 
@@ -27,8 +28,6 @@ static void find_lines(Arena *arena, Source *source)
             source->lines[source->line_count++] = i + 1;
 }
 
-static bool begins_character(char byte) { return (byte & 0xC0) != 0x80; }
-
 static void count_characters(Arena *arena, Source *source)
 {
     uint32_t count     = 0;
@@ -36,7 +35,7 @@ static void count_characters(Arena *arena, Source *source)
     for (uint32_t i = 0; i < source->length; i++) {
         if (i % SOURCE_BLOCK == 0)
             source->characters[i / SOURCE_BLOCK] = count;
-        count += begins_character(source->text[i]);
+        count += text_begins_character(source->text[i]);
     }
     if (source->length % SOURCE_BLOCK == 0)
         source->characters[source->length / SOURCE_BLOCK] = count;
@@ -48,7 +47,7 @@ static uint32_t characters_before(const Source *source, uint32_t offset)
     offset         = offset < source->length ? offset : source->length;
     uint32_t block = offset / SOURCE_BLOCK, count = source->characters[block];
     for (uint32_t i = block * SOURCE_BLOCK; i < offset; i++)
-        count += begins_character(source->text[i]);
+        count += text_begins_character(source->text[i]);
     return count;
 }
 
@@ -95,7 +94,7 @@ Position source_position(const Source *source, uint32_t offset)
     if (offset > first)
         column += characters_before(source, offset) - characters_before(source, first);
     /* An offset in the middle of a character has the column of that character. */
-    if (offset < source->length && !begins_character(source->text[offset]) && column > 1)
+    if (offset < source->length && !text_begins_character(source->text[offset]) && column > 1)
         column--;
     return (Position){line, column};
 }
@@ -148,17 +147,7 @@ Span span_join(Span from, Span to)
 
 const char source_no_memory[] = "there is not enough memory";
 
-/* ---- the hash: FNV-1a (Fowler, Noll, Vo) ---- */
-
-static const uint64_t FNV_START = 0xcbf29ce484222325u, FNV_PRIME = 0x100000001b3u;
-
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t length)
-{
-    const unsigned char *byte = bytes;
-    for (size_t i = 0; i < length; i++)
-        hash = (hash ^ byte[i]) * FNV_PRIME;
-    return hash;
-}
+/* ---- the hash ---- */
 
 /* Hashes the length before the content: bytes that go from one file to the next change the hash. */
 static uint64_t hash_file(uint64_t hash, const char *path, const void *bytes, size_t length)
@@ -166,12 +155,13 @@ static uint64_t hash_file(uint64_t hash, const char *path, const void *bytes, si
     unsigned char size[8];
     for (size_t i = 0; i < sizeof size; i++)
         size[i] = (unsigned char)((uint64_t)length >> 8 * i);
-    hash = hash_bytes(hash, path, strlen(path) + 1);
-    hash = hash_bytes(hash, size, sizeof size);
-    return hash_bytes(hash, bytes, length);
+    hash = fnv_bytes(hash, path, strlen(path) + 1);
+    hash = fnv_bytes(hash, size, sizeof size);
+    return fnv_bytes(hash, bytes, length);
 }
 
-/* Tells how a scene that is called `scene` may name a file, wherever it is compiled: "" for its own. */
+/* Hashes a file by the path from the folder of a scene that is called `scene`, which is the same wherever
+   that is compiled; the scene itself by "". */
 static uint64_t hash_named(uint64_t hash, const char *scene, const char *path, const void *bytes,
                            size_t length)
 {
@@ -217,6 +207,6 @@ void sources_hash(const Sources *sources, char hash[17])
         if (!source->library)
             h = hash_named(h, scene_name(sources), source->name, source->text, source->length);
     }
-    h = hash_bytes(h, &sources->noted, sizeof sources->noted);
+    h = fnv_bytes(h, &sources->noted, sizeof sources->noted);
     snprintf(hash, 17, "%016llx", (unsigned long long)h);
 }

@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/fnv.h"
+
 /* ---- building ---- */
 
 /* Makes room for `more` bytes.  A text that is added to once takes no more than that. */
@@ -99,13 +101,16 @@ void text_number(Text *text, double number)
 }
 
 /* Reads a decimal number by strtod, which gets the digits and an exponent, but no decimal point:
-   which character that is depends on the locale. */
-double text_decimal(Text *scratch, const char *bytes, size_t length)
+   which character that is depends on the locale.  Numbers halfway between two doubles have no more
+   than 767 digits.  So of longer ones only counts whether anything but zeros is behind those. */
+double text_decimal(const char *bytes, size_t length)
 {
+    enum { MAX_DIGITS = 800 };
     const long most     = 100000000; /* exceeds the number of digits in any file */
     long       exponent = 0;
-    bool       fraction = false; /* the digits are behind the decimal point */
-    scratch->length     = 0;
+    bool   fraction = false, more = false; /* behind the decimal point; some digits are left out */
+    char   decimal[MAX_DIGITS + 32];
+    size_t count = 0;
     for (size_t i = 0; i < length; i++) {
         char c = bytes[i];
         if (c == 'e' || c == 'E') {
@@ -114,14 +119,21 @@ double text_decimal(Text *scratch, const char *bytes, size_t length)
             break;
         }
         if (c >= '0' && c <= '9') {
-            text_add_bytes(scratch, &c, 1);
-            exponent -= fraction;
+            bool kept = count < MAX_DIGITS;
+            more      = more || (!kept && c != '0');
+            exponent += !kept - fraction;
+            if (kept && (count > 0 || c != '0'))
+                decimal[count++] = c;
         }
         fraction = fraction || c == '.';
     }
-    if (exponent != 0)
-        text_format(scratch, "e%ld", exponent);
-    return strtod(scratch->bytes, NULL);
+    exponent -= more;
+    snprintf(decimal + count, sizeof decimal - count, "%se%ld",
+             more    ? "1"
+             : count ? ""
+                     : "0",
+             exponent);
+    return strtod(decimal, NULL);
 }
 
 /* ---- JSON ---- */
@@ -221,19 +233,10 @@ void text_json_vector(Text *text, const double *values, size_t count)
 
 /* ---- names ---- */
 
-/* Returns the hash FNV-1a. */
-static size_t hash_bytes(const char *bytes, size_t length)
-{
-    uint64_t hash = 0xCBF29CE484222325u;
-    for (size_t i = 0; i < length; i++)
-        hash = (hash ^ (unsigned char)bytes[i]) * 0x100000001B3u;
-    return (size_t)(hash ^ hash >> 32);
-}
-
 /* Returns the slot where a name is, or where it would go; capacity is a power of two. */
 static const char **find_slot(const char **slots, size_t capacity, const char *bytes, size_t length)
 {
-    size_t i = hash_bytes(bytes, length) & (capacity - 1);
+    size_t i = fnv_slot(bytes, length) & (capacity - 1);
     while (slots[i] && (strlen(slots[i]) != length || memcmp(slots[i], bytes, length) != 0))
         i = (i + 1) & (capacity - 1);
     return &slots[i];

@@ -26,8 +26,8 @@ void text_format_list(Text *text, const char *format, va_list arguments)
 void text_number(Text *text, double number);
 
 /* Returns the number that a decimal without a sign stands for: digits, perhaps a point and an
-   exponent.  `scratch` is overwritten. */
-double text_decimal(Text *scratch, const char *bytes, size_t length);
+   exponent. */
+double text_decimal(const char *bytes, size_t length);
 
 /* Adds a JSON string with its quotes; bytes that are not UTF-8 become U+FFFD. */
 void text_json(Text *text, const char *string);
@@ -38,6 +38,9 @@ void text_json_vector(Text *text, const double *values, size_t count);
 /* Decodes the UTF-8 character at `bytes` and returns how many bytes it has.  `length`, at least 1,
    is the number of bytes that may be read.  Returns 0, and U+FFFD, when they are not UTF-8. */
 size_t text_character(const char *bytes, size_t length, uint32_t *character);
+
+/* Tells whether a byte of UTF-8 is the first of a character. */
+static inline bool text_begins_character(char byte) { return (byte & 0xC0) != 0x80; }
 
 /* A hash table that stores each name once, so that equal names have equal addresses. */
 typedef struct Names {

@@ -53,4 +53,14 @@ static inline bool normalize3(double v[3])
     return true;
 }
 
+/* Finds two unit vectors across a unit vector, and across each other: `along` is first x second. */
+static inline void axes_across3(const double along[3], double first[3], double second[3])
+{
+    const bool   along_x = !(fabs(along[0]) < 0.6);
+    const double side[3] = {!along_x, along_x, 0};
+    cross3(along, side, first);
+    normalize3(first);
+    cross3(along, first, second);
+}
+
 #endif

@@ -7,8 +7,6 @@
 #include "compiler/base/paths.h"
 #include "compiler/eval/elaborate.h"
 
-enum { MAX_FILE_BYTES = 64 << 20 };
-
 /* Returns "folder/file.ttf" for a name in a call in "folder/scene.krs". */
 static const char *path_beside(Elaboration *e, const Syntax *syntax, const char *name)
 {

@@ -23,7 +23,7 @@ typedef struct Lexer {
     Arena      *arena;
     Tokens      tokens;
     Text        doc;     /* the `///` lines since the last token */
-    Text        scratch; /* the number or string being read */
+    Text        scratch; /* the string being read */
     /* The properties of a token by its first byte, as find_beginnings fills them. */
     bool    begins[256];    /* whether something can begin with it */
     bool    lookalike[256]; /* whether a lookalike can */
@@ -426,9 +426,9 @@ static double read_unit(Lexer *lexer, uint32_t start, double number)
     return number;
 }
 
-static double decimal(Lexer *lexer, uint32_t start)
+static double decimal(const Lexer *lexer, uint32_t start)
 {
-    return text_decimal(&lexer->scratch, lexer->text + start, lexer->at - start);
+    return text_decimal(lexer->text + start, lexer->at - start);
 }
 
 static void lex_number(Lexer *lexer)

@@ -18,15 +18,16 @@
 
 /* ---- bytes ---- */
 
-/* Reads a stream to its end, or a little past the limit, since devices have no end. */
+/* Reads a stream to its end, or one byte past the limit, since devices have no end. */
 static char *read_stream(FILE *file, size_t *length, const char **reason)
 {
     char  *text     = NULL;
     size_t capacity = 0;
     *reason         = NULL;
-    while (*length <= MAX_SOURCE_BYTES) {
+    while (*length <= MAX_FILE_BYTES) {
         if (*length == capacity) {
             capacity     = capacity ? 2 * capacity : 16384;
+            capacity     = capacity <= MAX_FILE_BYTES ? capacity : MAX_FILE_BYTES + 1;
             char *larger = realloc(text, capacity);
             *reason      = larger ? NULL : source_no_memory;
             if (!larger)

@@ -16,6 +16,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "compiler/base/disk.h"
 #include "compiler/base/sandbox.h"
 #include "krs/krs.h"
 
@@ -248,6 +249,30 @@ static void a_library_is_confined(void **state)
     krs_scene_free(scene);
 }
 
+/* Returns how much is read of a file of that many bytes, of which the last is an `a`. */
+static size_t length_read(off_t length)
+{
+    FILE *file = fopen("large", "w");
+    assert_non_null(file);
+    assert_int_equal(fseeko(file, length - 1, SEEK_SET), 0);
+    fputc('a', file);
+    assert_int_equal(fclose(file), 0);
+    const Loaded read = disk_read("large");
+    assert_non_null(read.text);
+    if (read.length == (size_t)length)
+        assert_int_equal(read.text[length - 1], 'a');
+    free(read.owned);
+    return read.length;
+}
+
+static void large_files_are_read_to_their_end(void **state)
+{
+    (void)state;
+    assert_int_equal(length_read(MAX_FILE_BYTES / 2 + 12345), MAX_FILE_BYTES / 2 + 12345);
+    assert_int_equal(length_read(MAX_FILE_BYTES), MAX_FILE_BYTES);
+    assert_int_equal(length_read(MAX_FILE_BYTES + 12345), MAX_FILE_BYTES + 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -256,6 +281,7 @@ int main(void)
         cmocka_unit_test(a_caller_supplies_what_is_used),
         cmocka_unit_test(callers_are_told_of_files),
         cmocka_unit_test(a_library_is_confined),
+        cmocka_unit_test(large_files_are_read_to_their_end),
     };
     return cmocka_run_group_tests_name("loader", tests, make_folder, remove_folder);
 }

@@ -73,7 +73,7 @@ Value data_number(DataText *data, uint32_t start, uint32_t end)
 {
     bool     minus = data->text[start] == '-', sign = minus || data->text[start] == '+';
     uint32_t first  = start + sign;
-    double   number = text_decimal(&data->scratch, data->text + first, end - first);
+    double   number = text_decimal(data->text + first, end - first);
     if (isinf(number)) {
         data_error(data, start, end, "a number that is too large")->help =
             "the largest is about 1.8e308";
@@ -101,8 +101,7 @@ Value data_string(DataText *data, uint32_t start, uint32_t end)
 
 bool data_open(Elaboration *e, const Call *call, DataText *data)
 {
-    static const char mark[] = "\xEF\xBB\xBF"; /* that some programs begin UTF-8 with */
-    const Argument   *path   = &call->arguments[0];
+    const Argument *path = &call->arguments[0];
     if (path->value.type != VALUE_STRING) {
         type_error(e, path->syntax, path->value, "the name of a file, a string");
         return false;
@@ -112,9 +111,12 @@ bool data_open(Elaboration *e, const Call *call, DataText *data)
     if (!source)
         return false;
     const Source *file = &e->sources->items[source];
-    *data        = (DataText){.e = e, .call = call->syntax, .text = file->text, .source = source};
-    data->length = file->length;
-    data->scratch.arena = e->scratch;
-    data->at            = strncmp(file->text, mark, 3) == 0 ? 3 : 0;
+    *data              = (DataText){.e       = e,
+                                    .call    = call->syntax,
+                                    .text    = file->text,
+                                    .source  = source,
+                                    .length  = file->length,
+                                    .at      = file->lines[0], /* behind a byte order mark */
+                                    .scratch = {.arena = e->scratch}};
     return count_steps(e, file->length, call->syntax->span);
 }

@@ -14,7 +14,7 @@ typedef struct DataText {
     const char   *text; /* NUL-terminated */
     uint32_t      source, length, at;
     size_t        values;  /* read so far */
-    Text          scratch; /* the number or string being read */
+    Text          scratch; /* the string being read */
 } DataText;
 
 /* Opens the file that the first argument of a call names; false: reported. */
