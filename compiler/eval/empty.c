@@ -31,31 +31,10 @@ static bool can_vanish(const Shape *shape)
 
 bool may_vanish(const Shape *shape) { return can_vanish(inside_wrappers(shape)); }
 
-static bool needs_frame(const Tape *tape)
-{
-    for (size_t i = 0; i < tape->count; i++)
-        if (tape->graph->items[tape->nodes[i]].time == TIME_FRAME)
-            return true;
-    return false;
-}
-
 static double value_at(const Tape *tape, Node distance, const double point[3], NodeValue *values)
 {
     tape_run_point(tape, point, values);
     return values[distance].v[0];
-}
-
-/* Returns the half of a box along its longest side. */
-static Box half_of(Box box, int half)
-{
-    int longest = 0;
-    for (int i = 1; i < 3; i++)
-        if (box.axis[i].high - box.axis[i].low > box.axis[longest].high - box.axis[longest].low)
-            longest = i;
-    Range *side                        = &box.axis[longest];
-    double middle                      = 0.5 * (side->low + side->high);
-    *(half ? &side->low : &side->high) = middle;
-    return box;
 }
 
 static bool cells_are_empty(const Tape *tape, Node distance, Box box, NodeValue *values)
@@ -71,8 +50,8 @@ static bool cells_are_empty(const Tape *tape, Node distance, Box box, NodeValue 
             continue;
         if (!(at > 0) || count + 2 > MAX_CELLS)
             return false;
-        cells[count++] = half_of(cell, 0);
-        cells[count++] = half_of(cell, 1);
+        box_halve(cell, &cells[count]);
+        count += 2;
     }
     return count == 0;
 }
@@ -115,7 +94,7 @@ static bool is_nowhere(Elaboration *e, const Shape *shape)
         NodeValue *values     = arena_new_array(e->scratch, NodeValue, alone->count);
         NodeValue *parameters = arena_new_array(e->scratch, NodeValue, g->parameters.count);
         tape_run_frame(&tape, parameters, values);
-        empty = !needs_frame(&tape) && cells_are_empty(&tape, distance, shape->box, values);
+        empty = !tape_needs_frame(&tape) && cells_are_empty(&tape, distance, shape->box, values);
     }
     arena_free(e->scratch);
     return empty;

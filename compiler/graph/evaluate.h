@@ -35,6 +35,8 @@ Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *a
    guard stands on it twice: before what it may leave out, and after. */
 Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
 
+/* Tells whether something on it may differ from frame to frame. */
+bool tape_needs_frame(const Tape *tape);
 /* Tells how many nodes it has at points, those of functions that it calls included. */
 size_t tape_operations(const Tape *tape);
 

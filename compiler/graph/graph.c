@@ -247,6 +247,14 @@ bool graph_known_component(const Graph *graph, Node node, uint32_t component, do
     return true;
 }
 
+bool graph_known_components(const Graph *graph, Node node, uint32_t count, double *numbers)
+{
+    bool known = true;
+    for (uint32_t i = 0; i < count; i++)
+        known = known && graph_known_component(graph, node, i, &numbers[i]);
+    return known;
+}
+
 bool graph_known_finite(const Graph *graph, Node node)
 {
     double number;

@@ -168,6 +168,8 @@ const char *graph_op_name(Op op);
 bool graph_is_constant(const Graph *graph, Node node);
 /* Tells whether a component is such a number, which may be one of those that a vector is built of. */
 bool graph_known_component(const Graph *graph, Node node, uint32_t component, double *number);
+/* Finds the first `count` components; false: some are not known. */
+bool graph_known_components(const Graph *graph, Node node, uint32_t count, double *numbers);
 /* Tells whether all are known, and finite. */
 bool graph_known_finite(const Graph *graph, Node node);
 

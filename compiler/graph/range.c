@@ -25,6 +25,14 @@ int box_longest_axis(const Box *box)
     return longest;
 }
 
+void box_halve(Box box, Box halves[2])
+{
+    const int    axis   = box_longest_axis(&box);
+    const double middle = 0.5 * (box.axis[axis].low + box.axis[axis].high);
+    halves[0] = halves[1]     = box;
+    halves[0].axis[axis].high = halves[1].axis[axis].low = middle;
+}
+
 /* ---- directed rounding ---- */
 
 /* Returns the next number below.  Those of one sign are in the order of their bits. */

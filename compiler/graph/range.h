@@ -23,6 +23,8 @@ typedef struct Box {
 
 /* Returns the axis along which it is longest, the first of those: 0, 1 or 2. */
 int box_longest_axis(const Box *box);
+/* Cuts a box in the middle of that axis: the half of lesser coordinates comes first. */
+void box_halve(Box box, Box halves[2]);
 
 #define ANYTHING ((Range){-HUGE_VAL, HUGE_VAL})
 

@@ -243,7 +243,15 @@ Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, 
     return tape;
 }
 
-/* ---- what it costs ---- */
+/* ---- what it needs ---- */
+
+bool tape_needs_frame(const Tape *tape)
+{
+    for (size_t i = 0; i < tape->frame_count; i++)
+        if (tape->graph->items[tape->nodes[i]].time == TIME_FRAME)
+            return true;
+    return false;
+}
 
 size_t tape_operations(const Tape *tape)
 {

@@ -51,12 +51,10 @@ static void search(OverlapSearch *s, const Box *boxes, uint32_t count, Box regio
         s->most   = count;
         return;
     }
-    ArenaMark mark            = arena_mark(s->scratch);
-    int       axis            = box_longest_axis(&region);
-    double    middle          = 0.5 * (region.axis[axis].low + region.axis[axis].high);
-    Box       halves[2]       = {region, region}, *lists[2];
-    uint32_t  counts[2]       = {0, 0};
-    halves[0].axis[axis].high = halves[1].axis[axis].low = middle;
+    ArenaMark mark = arena_mark(s->scratch);
+    Box       halves[2], *lists[2];
+    uint32_t  counts[2] = {0, 0};
+    box_halve(region, halves);
     for (int half = 0; half < 2; half++) {
         lists[half] = arena_new_array(s->scratch, Box, count);
         for (uint32_t i = 0; i < count; i++)

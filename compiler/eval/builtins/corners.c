@@ -70,12 +70,11 @@ static bool add_pieces(Elaboration *e, const Outline *outline, Corners *corners)
 static bool turns_left_once(const Elaboration *e, const Corners *corners)
 {
     double at[MAX_CORNERS][2], size = 0, around = 0;
-    for (size_t i = 0; i < corners->count; i++)
-        for (uint32_t k = 0; k < 2; k++) {
-            if (!graph_known_component(e->graph, corners->at[i], k, &at[i][k]))
-                return false;
-            size = fmax(size, fabs(at[i][k]));
-        }
+    for (size_t i = 0; i < corners->count; i++) {
+        if (!graph_known_components(e->graph, corners->at[i], 2, at[i]))
+            return false;
+        size = fmax(size, fmax(fabs(at[i][0]), fabs(at[i][1])));
+    }
     for (size_t i = 0; i < corners->count; i++) {
         const double *from = at[i], *via = at[(i + 1) % corners->count],
                      *to      = at[(i + 2) % corners->count];

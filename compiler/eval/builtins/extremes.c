@@ -70,12 +70,10 @@ static void open_cell(Extremes *x, Box box, uint32_t cuts)
 
 static void cut_cell(Extremes *x, const Cell *cell)
 {
-    int    axis = box_longest_axis(&cell->box);
-    Box    low = cell->box, high = cell->box;
-    double middle       = 0.5 * (low.axis[axis].low + low.axis[axis].high);
-    low.axis[axis].high = high.axis[axis].low = middle;
-    open_cell(x, low, cell->cuts + 1);
-    open_cell(x, high, cell->cuts + 1);
+    Box halves[2];
+    box_halve(cell->box, halves);
+    open_cell(x, halves[0], cell->cuts + 1);
+    open_cell(x, halves[1], cell->cuts + 1);
 }
 
 /* Cuts all open cells that may matter; false: there are none. */
@@ -99,15 +97,6 @@ static bool cut_all(Extremes *x)
     return x->count > before;
 }
 
-/* Tells whether something on the tape differs from frame to frame. */
-static bool depends_on_frame(const Graph *graph, const Tape *tape)
-{
-    for (size_t i = 0; i < tape->frame_count; i++)
-        if (graph->items[tape->nodes[i]].time == TIME_FRAME)
-            return true;
-    return false;
-}
-
 static Range extremes_of(Elaboration *e, Node node, Box box, double slope)
 {
     Extremes x = {
@@ -115,7 +104,7 @@ static Range extremes_of(Elaboration *e, Node node, Box box, double slope)
     x.sure          = x.found;
     x.task          = range_task(e->graph, &node, 1, e->scratch);
     x.values        = arena_new_array(e->scratch, NodeValue, e->graph->count);
-    x.varies        = depends_on_frame(e->graph, &x.task.tape);
+    x.varies        = tape_needs_frame(&x.task.tape);
     NodeValue *none = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count + 1);
     tape_run_frame(&x.task.tape, none, x.values);
     open_cell(&x, box, 0);

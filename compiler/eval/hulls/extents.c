@@ -18,7 +18,7 @@ typedef struct Placing {
     Node columns[3], shift, scale;
 } Placing;
 
-/* The values that stay the same in all parts of a shape; `grown` is added to all radii. */
+/* The values that stay the same in all parts of a shape. */
 typedef struct Gathering {
     Elaboration *e;
     Graph       *graph;
@@ -98,21 +98,13 @@ static Placing placing_of_mirror(Graph *g, Node normal, Node offset)
 
 /* ---- features ---- */
 
-static bool known_vector(const Graph *g, Node node, double numbers[3])
-{
-    bool known = true;
-    for (uint32_t i = 0; i < 3; i++)
-        known = known && graph_known_component(g, node, i, &numbers[i]);
-    return known;
-}
-
 /* Tells whether two unit vectors are one, or opposite to each other. */
 static bool are_parallel(const Graph *g, Node a, Node b)
 {
     double u[3], v[3], across[3];
     if (a == b)
         return true;
-    if (!known_vector(g, a, u) || !known_vector(g, b, v))
+    if (!graph_known_components(g, a, 3, u) || !graph_known_components(g, b, 3, v))
         return false;
     cross3(u, v, across);
     return length3(across) <= SAME;
@@ -135,8 +127,9 @@ static void add_axis(const Gathering *g, Node on, Node along)
             continue;
         if (known->on == on)
             return;
-        if (!known_vector(g->graph, known->on, first) || !known_vector(g->graph, on, second) ||
-            !known_vector(g->graph, along, u))
+        if (!graph_known_components(g->graph, known->on, 3, first) ||
+            !graph_known_components(g->graph, on, 3, second) ||
+            !graph_known_components(g->graph, along, 3, u))
             continue;
         add_scaled3(offset, second, -1, first);
         cross3(offset, u, across);
@@ -237,8 +230,8 @@ static void add_axes(const Gathering *g, size_t first)
     }
     if (count == 2 && parts[0].rim == NODE_NONE && parts[1].rim == NODE_NONE &&
         parts[0].radius == parts[1].radius) {
-        Node way = sub(graph, parts[1].centre, parts[0].centre);
-        add_axis(g, parts[0].centre, graph_op1(graph, OP_normalize, way));
+        Node along = sub(graph, parts[1].centre, parts[0].centre);
+        add_axis(g, parts[0].centre, graph_op1(graph, OP_normalize, along));
     }
 }
 
@@ -283,6 +276,7 @@ static bool add_half_space(const Gathering *g, const Shape *shape, const Placing
     return true;
 }
 
+/* Adds the extents of a shape that is placed; `grown` is added to all radii. */
 static void add_shape(const Gathering *g, const Shape *shape, const Placing *placing, Node grown);
 
 static void add_children(const Gathering *g, const Shape *shape, uint32_t count,
@@ -467,7 +461,8 @@ Node extents_along(Elaboration *e, const Extents *extents, Node along)
     for (size_t i = 0; i < extents->half_spaces.count; i++) {
         const ExtentLine *half = &extents->half_spaces.items[i];
         double            u[3], v[3];
-        const bool        known = known_vector(g, half->along, u) && known_vector(g, along, v);
+        const bool        known = graph_known_components(g, half->along, 3, u) &&
+                           graph_known_components(g, along, 3, v);
         if (half->along != along && !(known && distance3(u, v) <= SAME))
             return NODE_NONE;
         most = greater(g, most, graph_op2(g, OP_dot, along, half->on));

@@ -25,14 +25,6 @@ typedef struct Distances {
     NodeValue *values;
 } Distances;
 
-static bool depends_on_frame(const Tape *tape)
-{
-    for (size_t i = 0; i < tape->count; i++)
-        if (tape->graph->items[tape->nodes[i]].time == TIME_FRAME)
-            return true;
-    return false;
-}
-
 /* Finds the distances of two parts; false: they depend on the frame, or are too large. */
 static bool find_distances(Elaboration *e, const Shape *const parts[2], Distances *distances)
 {
@@ -52,7 +44,7 @@ static bool find_distances(Elaboration *e, const Shape *const parts[2], Distance
     distances->values     = arena_new_array(e->scratch, NodeValue, alone->count);
     NodeValue *parameters = arena_new_array(e->scratch, NodeValue, g->parameters.count);
     tape_run_frame(&distances->tape, parameters, distances->values);
-    return !depends_on_frame(&distances->tape);
+    return !tape_needs_frame(&distances->tape);
 }
 
 /* Tells whether something may be added in a ball. */
@@ -84,13 +76,10 @@ typedef struct Boxes {
 
 static void halve(Elaboration *e, Boxes *boxes, Box box)
 {
-    const int    longest    = box_longest_axis(&box);
-    const double middle     = 0.5 * (box.axis[longest].low + box.axis[longest].high);
-    Box          upper      = box;
-    box.axis[longest].high  = middle;
-    upper.axis[longest].low = middle;
-    array_push(e->values, boxes, box);
-    array_push(e->values, boxes, upper);
+    Box halves[2];
+    box_halve(box, halves);
+    array_push(e->values, boxes, halves[0]);
+    array_push(e->values, boxes, halves[1]);
 }
 
 FilletZone fillet_zone(Elaboration *e, const Shape *a, const Shape *b, double width, Box box,

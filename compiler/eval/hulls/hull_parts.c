@@ -69,23 +69,15 @@ static Place place_product(const Place *place, const Place *inner)
     return product;
 }
 
-static bool known_vector(const Elaboration *e, Node node, double numbers[3])
-{
-    bool known = true;
-    for (uint32_t i = 0; i < 3; i++)
-        known = known && graph_known_component(e->graph, node, i, &numbers[i]);
-    return known;
-}
-
 static bool place_of_map(const Elaboration *e, const Map *map, Place *place)
 {
     double scale;
     if (!graph_known_component(e->graph, map->scale, 0, &scale) ||
-        !known_vector(e, map->shift, place->shift))
+        !graph_known_components(e->graph, map->shift, 3, place->shift))
         return false;
     place->scale = scale;
     for (int i = 0; i < 3; i++) {
-        if (!known_vector(e, map->rows[i], place->matrix[i]))
+        if (!graph_known_components(e->graph, map->rows[i], 3, place->matrix[i]))
             return false;
         for (int k = 0; k < 3; k++)
             place->matrix[i][k] *= scale;
@@ -96,7 +88,7 @@ static bool place_of_map(const Elaboration *e, const Map *map, Place *place)
 static bool place_of_stretch(const Elaboration *e, const Shape *shape, Place *place)
 {
     double factors[3];
-    if (!known_vector(e, shape->values[0], factors))
+    if (!graph_known_components(e->graph, shape->values[0], 3, factors))
         return false;
     *place       = IDENTITY;
     bool even    = factors[0] == factors[1] && (factors[1] == factors[2] || shape->figure);

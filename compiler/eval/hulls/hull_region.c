@@ -29,14 +29,6 @@ enum { ALIKE = 4 };
 /* Up to which distance unit vectors count as one. */
 static const double SAME = 1e-9;
 
-static bool known_numbers(const Graph *g, Node node, uint32_t count, double *numbers)
-{
-    bool known = true;
-    for (uint32_t i = 0; i < count; i++)
-        known = known && graph_known_component(g, node, i, &numbers[i]);
-    return known;
-}
-
 /* Finds the parts in numbers; false: some depend on the frame, or there is a half-space. */
 static bool parts_of_extents(Elaboration *e, const Extents *extents, HullParts *parts)
 {
@@ -45,9 +37,10 @@ static bool parts_of_extents(Elaboration *e, const Extents *extents, HullParts *
     for (size_t i = 0; i < extents->count && known; i++) {
         const Extent *extent = &extents->items[i];
         HullPart      part   = {.rim = {0}};
-        known                = known_numbers(e->graph, extent->centre, 3, part.ball.centre) &&
-                known_numbers(e->graph, extent->radius, 1, &part.ball.radius) &&
-                (extent->rim == NODE_NONE || known_numbers(e->graph, extent->rim, 3, part.rim));
+        known = graph_known_components(e->graph, extent->centre, 3, part.ball.centre) &&
+                graph_known_components(e->graph, extent->radius, 1, &part.ball.radius) &&
+                (extent->rim == NODE_NONE ||
+                 graph_known_components(e->graph, extent->rim, 3, part.rim));
         array_push(e->values, parts, part);
     }
     return known;
@@ -80,15 +73,12 @@ static void add_ball(Elaboration *e, Points *points, const double centre[3], dou
 
 static void add_rim(Elaboration *e, Points *points, const HullPart *part, int corners)
 {
-    double along[3] = {part->rim[0], part->rim[1], part->rim[2]}, first[3], second[3];
+    double       along[3] = {part->rim[0], part->rim[1], part->rim[2]}, first[3], second[3];
+    const double rim      = length3(part->rim);
     normalize3(along);
-    const int    least   = fabs(along[0]) < 0.6 ? 0 : 1;
-    const double side[3] = {least == 0, least == 1, 0}, rim = length3(part->rim);
-    cross3(along, side, first);
-    normalize3(first);
-    cross3(along, first, second);
+    axes_across3(along, first, second);
     for (int i = 0; i < corners; i++) {
-        const double turn = 2 * 3.14159265358979323846 * i / corners;
+        const double turn = 2 * M_PI * i / corners;
         double       direction[3], on[3];
         for (int k = 0; k < 3; k++)
             direction[k] = real_cos(turn) * first[k] + real_sin(turn) * second[k];
@@ -168,7 +158,7 @@ static Node height_along(const Region *region, Node along)
     Graph     *g     = region->e->graph;
     const Node point = graph_leaf(g, OP_POINT);
     double     u[3];
-    if (!region->many && known_numbers(g, along, 3, u))
+    if (!region->many && graph_known_components(g, along, 3, u))
         for (uint32_t k = 0; k < 3; k++)
             if (fabs(u[k]) == 1 && u[(k + 1) % 3] == 0 && u[(k + 2) % 3] == 0) {
                 Node coordinate = graph_component(g, point, k);
@@ -183,11 +173,11 @@ static bool is_tried(Region *region, Node along)
 {
     const Graph *g = region->e->graph;
     double       normal[3], other[3];
-    const bool   known = known_numbers(g, along, 3, normal);
+    const bool   known = graph_known_components(g, along, 3, normal);
     for (size_t i = 0; i < region->normals.count; i++) {
         const Node tried = region->normals.items[i];
-        if (tried == along ||
-            (known && known_numbers(g, tried, 3, other) && distance3(normal, other) < SAME))
+        if (tried == along || (known && graph_known_components(g, tried, 3, other) &&
+                               distance3(normal, other) < SAME))
             return true;
     }
     array_push(region->e->values, &region->normals, along);
@@ -202,8 +192,8 @@ static void add_plane(Region *region, const Extents *extents, Node along)
     if (most == NODE_NONE || is_tried(region, along))
         return;
     Node distance = sub(e->graph, height_along(region, along), most);
-    bool known    = known_numbers(e->graph, along, 3, normal) &&
-                 known_numbers(e->graph, most, 1, &offset);
+    bool known    = graph_known_components(e->graph, along, 3, normal) &&
+                 graph_known_components(e->graph, most, 1, &offset);
     add_distance(region, distance,
                  known ? zone_goes_beyond_plane(region->zone, normal, offset)
                        : zone_goes_beyond(e, region->zone, distance));
