@@ -39,12 +39,10 @@ static void parse_file(Files *files, File *file)
     file->tokens = (Tokens){0};
 }
 
-/* Returns "folder/used.krs" for a `use "used.krs"` in "folder/file.krs". */
-static const char *resolve_path(Files *files, const char *from, const char *path)
+const char *files_beside(const Files *files, const char *from, const char *path)
 {
-    const char *slash = path[0] == '/' ? NULL : strrchr(from, '/');
-    Text        text  = {.arena = files->arena};
-    text_add_bytes(&text, from, slash ? (size_t)(slash - from + 1) : 0);
+    Text text = {.arena = files->arena};
+    text_add_bytes(&text, from, path[0] == '/' ? 0 : path_folder_length(from));
     text_add(&text, path);
     path_simplify(text.bytes);
     return text.bytes;
@@ -67,7 +65,7 @@ void files_load(Files *files, const char *path, const char *text, size_t length)
 {
     uint32_t source = source_add(files->sources, path, text, length, false);
     files->bytes    = length;
-    add_file(files, resolve_path(files, "", path), source, false);
+    add_file(files, files_beside(files, "", path), source, false);
     load_library(files);
 }
 
@@ -95,28 +93,33 @@ static File *find_file(const Files *files, const char *path)
 
 static bool names_library(const Syntax *use) { return strncmp(use->name, "std/", 4) == 0; }
 
-/* Reads the text of a file of the library, or NULL. */
-static const char *read_library(const char *path, size_t *length)
+/* Reads the text of a file of the library. */
+static Loaded read_library(const char *path)
 {
-    for (const EmbeddedFile *file = library_files; file->name; file++)
-        if (strcmp(file->name, path) == 0) {
-            *length = file->length;
-            return file->text;
-        }
-    return NULL;
+    const EmbeddedFile *file = embedded_find(library_files, path);
+    return file ? (Loaded){.text = file->text, .length = file->length}
+                : (Loaded){.reason = "there is no such file in the library"};
 }
 
-static void refuse(Files *files, Span place, const char *path, const Loaded *text,
+Diag *files_refuse(const Files *files, Span place, const char *path, const Loaded *loaded,
                    const char *label)
 {
-    if (text->reason == source_no_memory)
+    if (loaded->reason == source_no_memory)
         arena_exhausted(files->arena);
-    Diag *diag  = text->outside
+    Diag *diag  = loaded->outside
                       ? diag_add(files->diags, DIAG_OUTSIDE_ROOT, place,
                                  "`%s` is outside of the folder that scenes may read from", path)
                       : diag_add(files->diags, DIAG_CANNOT_READ, place, "cannot read `%s`: %s", path,
-                                 text->reason);
+                                 loaded->reason);
     diag->label = label;
+    return diag;
+}
+
+/* Reports a text that could not be read, and suggests one of the library. */
+static void refuse_text(Files *files, Span place, const char *path, const Loaded *text,
+                        const char *label)
+{
+    Diag *diag = files_refuse(files, place, path, text, label);
     if (!text->outside)
         explain_file(files->diags, diag, path);
 }
@@ -136,20 +139,16 @@ static bool check_length(Files *files, size_t length, Span place)
 /* Adds a used file; NULL if it cannot be read, which is then reported. */
 static File *load_text(Files *files, const Syntax *use, const char *path)
 {
-    Loaded text = {.reason = "there is no such file in the library"};
-    File  *file = NULL;
-    if (names_library(use))
-        text.text = read_library(path, &text.length);
-    else
-        text = loader_read(files->loader, path);
+    const bool library = names_library(use);
+    Loaded     text    = library ? read_library(path) : loader_read(files->loader, path);
+    File      *file    = NULL;
     if (!text.text) {
-        refuse(files, use->name_span, path, &text, "used here");
+        refuse_text(files, use->name_span, path, &text, "used here");
         return NULL;
     }
     if (check_length(files, text.length, use->name_span)) {
-        bool     library = names_library(use);
-        uint32_t source  = source_add(files->sources, path, text.text, text.length, library);
-        file             = add_file(files, resolve_path(files, "", path), source, false);
+        uint32_t source = source_add(files->sources, path, text.text, text.length, library);
+        file            = add_file(files, files_beside(files, "", path), source, false);
     }
     free(text.owned);
     return file;
@@ -174,7 +173,7 @@ static void load_all_used(Files *files, File *file);
 
 static const char *path_of_use(Files *files, const File *from, const Syntax *use)
 {
-    return names_library(use) ? use->name : resolve_path(files, from->path, use->name);
+    return names_library(use) ? use->name : files_beside(files, from->path, use->name);
 }
 
 const File *files_used(Files *files, const File *from, const Syntax *use)
@@ -231,7 +230,7 @@ static uint32_t read_data(Files *files, const char *path, Span place)
     Loaded   text   = loader_read(files->loader, path);
     uint32_t source = 0;
     if (!text.text)
-        refuse(files, place, path, &text, "read here");
+        refuse_text(files, place, path, &text, "read here");
     else if (check_length(files, text.length, place))
         source = source_add(files->sources, path, text.text, text.length, false);
     free(text.owned);
@@ -241,7 +240,7 @@ static uint32_t read_data(Files *files, const char *path, Span place)
 /* A file is read once, also one that cannot be read. */
 uint32_t files_load_data(Files *files, uint32_t from, const char *name, Span place)
 {
-    const char *path = resolve_path(files, path_of(files, from), name);
+    const char *path = files_beside(files, path_of(files, from), name);
     for (size_t i = 0; i < files->data.count; i++)
         if (strcmp(files->data.items[i].path, path) == 0)
             return files->data.items[i].source;

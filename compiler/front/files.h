@@ -65,6 +65,11 @@ const File *files_used(Files *files, const File *from, const Syntax *use);
 /* Returns the number of the source with the text of a file that source `from` reads, named at
    `place`; 0: it cannot be read, which is reported. */
 uint32_t files_load_data(Files *files, uint32_t from, const char *name, Span place);
+/* Returns "folder/used.krs" for a "used.krs" that is named in "folder/file.krs". */
+const char *files_beside(const Files *files, const char *from, const char *path);
+/* Reports a file that could not be read. */
+Diag *files_refuse(const Files *files, Span place, const char *path, const Loaded *loaded,
+                   const char *label);
 /* Checks the names of each file (names.h); those in `builtin` need no definition. */
 void files_check_names(Files *files, const char *const *builtin, size_t count);
 

@@ -207,7 +207,7 @@ static uint32_t indent_line(Layout *l, size_t index)
     Statement *statement = &l->statements[l->brace_count];
     if (comment_above(l, index))
         return comment_above(l, index)->to;
-    if (closes(piece->kind) && l->bracket_count > 0)
+    if (token_closes(piece->kind) && l->bracket_count > 0)
         return l->brackets[l->bracket_count - 1].line->to;
     if (!begins_statement(l, index))
         return indent_inside(l, statement, piece->from);
@@ -221,12 +221,12 @@ static uint32_t indent_line(Layout *l, size_t index)
 static void count_bracket(Layout *l, size_t index, const Piece **line)
 {
     const Piece *piece = &l->pieces.items[index];
-    if (opens(piece->kind) && l->bracket_count < MAX_BRACKETS) {
+    if (token_opens(piece->kind) && l->bracket_count < MAX_BRACKETS) {
         l->brackets[l->bracket_count++] = (Bracket){piece->kind, *line};
         if (piece->kind == TOKEN_LEFT_BRACE)
             l->statements[++l->brace_count] = (Statement){
                 .steps_count = 1, .steps = {{(*line)->from, (*line)->to}}, .first = index + 1};
-    } else if (closes(piece->kind) && l->bracket_count > 0) {
+    } else if (token_closes(piece->kind) && l->bracket_count > 0) {
         *line = l->brackets[--l->bracket_count].line;
         l->brace_count -= piece->kind == TOKEN_RIGHT_BRACE && l->brace_count > 0;
     }
@@ -244,7 +244,7 @@ static void find_statements(Layout *l)
         line         = piece->newlines > 0 ? piece : line;
         if (piece->newlines > 1)
             memset(last, 0, (MAX_BRACKETS + 1) * sizeof *last);
-        if (piece->newlines > 0 && !closes(piece->kind) && begins_statement(l, i)) {
+        if (piece->newlines > 0 && !token_closes(piece->kind) && begins_statement(l, i)) {
             piece->above         = last[l->brace_count];
             last[l->brace_count] = i + 1;
         }

@@ -22,7 +22,7 @@ static uint32_t count_characters(const char *text, uint32_t start, uint32_t end)
 {
     uint32_t count = 0;
     for (uint32_t i = start; i < end; i++)
-        count += ((unsigned char)text[i] & 0xC0) != 0x80;
+        count += text_begins_character(text[i]);
     return count;
 }
 
@@ -137,16 +137,6 @@ const Piece *word_before(const Pieces *pieces, size_t index)
     return NULL;
 }
 
-bool opens(PieceKind kind)
-{
-    return kind == TOKEN_LEFT_PAREN || kind == TOKEN_LEFT_BRACKET || kind == TOKEN_LEFT_BRACE;
-}
-
-bool closes(PieceKind kind)
-{
-    return kind == TOKEN_RIGHT_PAREN || kind == TOKEN_RIGHT_BRACKET || kind == TOKEN_RIGHT_BRACE;
-}
-
 static bool is_operator(PieceKind kind)
 {
     return kind >= TOKEN_DOT_DOT && kind <= TOKEN_BAR && kind != TOKEN_DOT;
@@ -155,7 +145,7 @@ static bool is_operator(PieceKind kind)
 bool goes_on(PieceKind kind)
 {
     return is_operator(kind) || kind == TOKEN_DOT || kind == TOKEN_COMMA ||
-           kind == TOKEN_SEMICOLON || (closes(kind) && kind != TOKEN_RIGHT_BRACE);
+           kind == TOKEN_SEMICOLON || (token_closes(kind) && kind != TOKEN_RIGHT_BRACE);
 }
 
 /* Tells whether a value ends with this word, so that a bracket behind it calls or indexes it. */

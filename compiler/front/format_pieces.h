@@ -39,8 +39,6 @@ bool pieces_equal(const Pieces *a, const Pieces *b);
 
 /* Returns the word before piece `index`, past comments, or NULL. */
 const Piece *word_before(const Pieces *pieces, size_t index);
-bool         opens(PieceKind kind);
-bool         closes(PieceKind kind);
 /* Tells whether a line that begins with this goes on with the statement above, even behind a `}`. */
 bool goes_on(PieceKind kind);
 /* Blanks between piece `index` and the one before it in the same line: 0 or 1. */

@@ -91,6 +91,26 @@ const char *token_kind_text(TokenKind kind)
 
 bool token_is_statement_word(TokenKind kind) { return rows[kind].class == STATEMENT; }
 
+bool token_opens(TokenKind kind)
+{
+    return kind == TOKEN_LEFT_PAREN || kind == TOKEN_LEFT_BRACKET || kind == TOKEN_LEFT_BRACE;
+}
+
+bool token_closes(TokenKind kind)
+{
+    return kind == TOKEN_RIGHT_PAREN || kind == TOKEN_RIGHT_BRACKET || kind == TOKEN_RIGHT_BRACE;
+}
+
+size_t token_statements(const char **words)
+{
+    size_t count = 0;
+    for (TokenKind kind = 0; kind < TOKEN_KIND_COUNT; kind++)
+        if ((token_is_statement_word(kind) && kind != TOKEN_KRS) || kind == TOKEN_FOR ||
+            kind == TOKEN_IF)
+            words[count++] = rows[kind].spelling;
+    return count;
+}
+
 static bool is_next(const Lexer *lexer, const char *spelling)
 {
     if (lexer->at == lexer->length || lexer->text[lexer->at] != spelling[0])

@@ -9,6 +9,7 @@
 
 #include <string.h>
 
+#include "compiler/base/fnv.h"
 #include "compiler/front/synonyms.h"
 
 /* A top-level definition: a vertex of the graph whose edges are needs. */
@@ -70,17 +71,9 @@ typedef struct Checker {
 
 /* ---- the table ---- */
 
-static size_t hash_name(const char *name)
-{
-    uint64_t hash = 0xCBF29CE484222325u;
-    for (; *name; name++)
-        hash = (hash ^ (unsigned char)*name) * 0x100000001B3u;
-    return (size_t)(hash ^ hash >> 32);
-}
-
 static NameSlot **find_bucket(NameSlot **slots, size_t capacity, const char *name)
 {
-    size_t i = hash_name(name) & (capacity - 1);
+    size_t i = fnv_slot(name, strlen(name)) & (capacity - 1);
     while (slots[i] && slots[i]->name != name && strcmp(slots[i]->name, name) != 0)
         i = (i + 1) & (capacity - 1);
     return &slots[i];

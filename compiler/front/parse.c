@@ -276,9 +276,7 @@ static bool is_change(TokenKind kind)
 
 static Syntax *no_statement(Parser *p)
 {
-    static const char *const words[] = {"let",    "def",   "param", "shape", "material",
-                                        "camera", "light", "sky",   "image", "show",
-                                        "use",    "for",   "if"};
+    const char  *words[TOKEN_KIND_COUNT];
     const char  *help  = "a scene consists of statements like `let a = 1;` and `show sphere(a);`";
     const Token *token = token_here(p);
     const char  *meant = NULL;
@@ -288,7 +286,7 @@ static Syntax *no_statement(Parser *p)
     else if (kind_here(p) == TOKEN_NAME && call)
         help = "to put a shape into the picture write `show` in front of it";
     else if (kind_here(p) == TOKEN_NAME)
-        meant = nearest_name(token->name, words, sizeof words / sizeof *words);
+        meant = nearest_name(token->name, words, token_statements(words));
     bool  shape       = kind_after(p) == TOKEN_LEFT_BRACE;
     bool  changed     = is_change(kind_after(p));
     Diag *diag        = expected(p, "a statement");

@@ -24,22 +24,12 @@ TokenKind kind_after(const Parser *p)
     return p->failed ? TOKEN_ERROR : kind_at(p, p->here.at + 1);
 }
 
-static bool is_opener(TokenKind kind)
-{
-    return kind == TOKEN_LEFT_PAREN || kind == TOKEN_LEFT_BRACKET || kind == TOKEN_LEFT_BRACE;
-}
-
-static bool is_closer(TokenKind kind)
-{
-    return kind == TOKEN_RIGHT_PAREN || kind == TOKEN_RIGHT_BRACKET || kind == TOKEN_RIGHT_BRACE;
-}
-
 const Token *advance(Parser *p)
 {
     const Token *token = token_here(p);
-    p->here.brackets += is_opener(token->kind);
+    p->here.brackets += token_opens(token->kind);
     p->here.braces += token->kind == TOKEN_LEFT_BRACE;
-    p->here.brackets -= is_closer(token->kind) && p->here.brackets > 0;
+    p->here.brackets -= token_closes(token->kind) && p->here.brackets > 0;
     p->here.braces -= token->kind == TOKEN_RIGHT_BRACE && p->here.braces > 0;
     if (token->kind != TOKEN_END)
         p->here.at++;
@@ -224,7 +214,7 @@ void expect_closer(Parser *p, TokenKind closer, size_t opener, const char *what)
     if (closer == TOKEN_RIGHT_BRACE)
         unclosed = unclosed && !brace_is_closed(p, opener);
     else
-        unclosed = unclosed || is_closer(found) || found == TOKEN_SEMICOLON;
+        unclosed = unclosed || token_closes(found) || found == TOKEN_SEMICOLON;
     if (!unclosed) {
         diag_secondary(p->diags, expected(p, what), p->tokens[opener].span, "opened here");
         return;

@@ -36,14 +36,14 @@ typedef enum SyntaxKind {
     SYNTAX_INDEX,         /* -      [0] list, [1] index */
     SYNTAX_KRS, /* -      statements: KERNEL REFLECT MOBIUS LET MESSAGE FOR IF_STATEMENT */
     /* statements */
-    SYNTAX_BLOCK,     /* -      statements (of a `for` or `if`, and of the whole file) */
-    SYNTAX_LET,       /* name   [0] value */
-    SYNTAX_DEF,       /* name   [0..n-2] PARAMETER, [n-1] body */
-    SYNTAX_PARAMETER, /* name   [0] default, [1] range (any expression); no [1], or no child;
+    SYNTAX_BLOCK,        /* -      statements (of a `for` or `if`, and of the whole file) */
+    SYNTAX_LET,          /* name   [0] value */
+    SYNTAX_DEF,          /* name   [0..n-2] PARAMETER, [n-1] body */
+    SYNTAX_PARAMETER,    /* name   [0] default, [1] range (any expression); no [1], or no child;
                          number[0] is its ParameterKind */
-    SYNTAX_PARAM,     /* name   [0] default, [1] range (any expression), or no [1] */
-    SYNTAX_SHAPE,     /* name   PARAMETER..., PROPERTY... */
-    SYNTAX_MATERIAL, /* name   PARAMETER..., PROPERTY...; number[0] is 1 if it has a list of parameters */
+    SYNTAX_PARAM,        /* name   [0] default, [1] range (any expression), or no [1] */
+    SYNTAX_SHAPE,        /* name   PARAMETER..., PROPERTY... */
+    SYNTAX_MATERIAL,     /* name   PARAMETER..., PROPERTY...; number[0] is 1 if it is called */
     SYNTAX_CAMERA,       /* name?  PROPERTY... */
     SYNTAX_LIGHT,        /* name?  PROPERTY... */
     SYNTAX_SKY,          /* -      PROPERTY... */
@@ -79,12 +79,11 @@ struct Syntax {
     Span        span;      /* of the whole node */
     Span        name_span; /* of the name; for UNARY, BINARY and RANGE of the operator */
     const char *name;      /* interned, or NULL */
-    const char
-            *doc; /* lines of the `///` comment before what defines a name of the file, or NULL */
-    double   number[3];
-    Syntax **children;
-    uint32_t count;
-    uint32_t height; /* levels of this subtree, at least 1 */
+    const char *doc;       /* the `///` comment before what defines a name of the file, or NULL */
+    double      number[3];
+    Syntax    **children;
+    uint32_t    count;
+    uint32_t    height; /* levels of this subtree, at least 1 */
 };
 
 /* Most levels of an expression, so that functions may walk the tree by recursion. */

@@ -30,6 +30,14 @@ const char *token_kind_text(TokenKind kind);
 /* Tells whether a keyword begins a statement; behind `.` and before `:` such words are names. */
 bool token_is_statement_word(TokenKind kind);
 
+/* Tells whether a token is a bracket of one of the three kinds. */
+bool token_opens(TokenKind kind);
+bool token_closes(TokenKind kind);
+
+/* Returns the words that may begin a statement, in the order of token.def; how many there are: at most
+   TOKEN_KIND_COUNT. */
+size_t token_statements(const char **words);
+
 typedef struct Tokens {
     Token *items; /* the last one is TOKEN_END */
     size_t count, capacity;
