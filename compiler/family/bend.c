@@ -119,19 +119,19 @@ static const Map *bend_rotation(ShapeBuilder *builder, Node axis)
     Node   x = graph_vec3(g, 1, 0, 0), y = graph_vec3(g, 0, 1, 0);
     if (axis == x)
         return NULL;
-    Map *turn     = map_new(builder);
-    Node unit     = graph_op1(g, OP_normalize, axis);
-    Node height   = graph_component(g, unit, 1);
-    Node steep    = graph_op1(g, OP_abs, height);
-    Node upright  = graph_op2(g, OP_less, graph_number(g, 0.999), steep);
-    Node stands   = graph_op3(g, OP_select, upright, x, y);
-    Node along    = graph_op2(g, OP_dot, stands, unit);
-    Node parallel = graph_op2(g, OP_scale, unit, along);
-    Node across   = graph_op2(g, OP_sub, stands, parallel);
-    turn->rows[0] = unit;
-    turn->rows[1] = graph_op1(g, OP_normalize, across);
-    turn->rows[2] = graph_op2(g, OP_cross, unit, turn->rows[1]);
-    return turn;
+    Map *rotation     = map_new(builder);
+    Node unit         = graph_op1(g, OP_normalize, axis);
+    Node height       = graph_component(g, unit, 1);
+    Node steep        = graph_op1(g, OP_abs, height);
+    Node upright      = graph_op2(g, OP_less, graph_number(g, 0.999), steep);
+    Node stands       = graph_op3(g, OP_select, upright, x, y);
+    Node along        = graph_op2(g, OP_dot, stands, unit);
+    Node parallel     = graph_op2(g, OP_scale, unit, along);
+    Node across       = graph_op2(g, OP_sub, stands, parallel);
+    rotation->rows[0] = unit;
+    rotation->rows[1] = graph_op1(g, OP_normalize, across);
+    rotation->rows[2] = graph_op2(g, OP_cross, unit, rotation->rows[1]);
+    return rotation;
 }
 
 const Shape *make_bend(ShapeBuilder *builder, const Shape *shape, const DeformArguments *asked)

@@ -25,6 +25,7 @@
 #include <math.h>
 
 #include "compiler/family/field_bounds.h"
+#include "compiler/graph/build.h"
 #include "compiler/graph/symbolic/series.h"
 #include "compiler/lower/box_distance.h"
 
@@ -97,8 +98,6 @@ static Node at_nearest(ShapeBuilder *builder, Node formula, Box box)
     return graph_substitute(builder->graph, formula, with, builder->scratch);
 }
 
-static Node opposite(Graph *g, Node a) { return graph_op1(g, OP_neg, a); }
-
 /* Bounds the distance outside of the box that holds all zeros.  The polynomial is not looked at
    there: thousands of units away its value is too large for single precision, or what is left of
    numbers that cancel. */
@@ -110,10 +109,11 @@ static Node near_zeros(ShapeBuilder *builder, Node distance, ZeroBox zeros)
     const Box region = builder_region(builder, zeros.box);
     distance         = at_nearest(builder, distance, region);
     return zeros.sign > 0 ? extend_from_box(g, distance, region)
-                          : opposite(g, extend_from_box(g, opposite(g, distance), region));
+                          : neg(g, extend_from_box(g, neg(g, distance), region));
 }
 
-static void settle_polynomial(ShapeBuilder *builder, Shape *shape, const Series *series)
+/* Sets the distance by the series, and the box where all zeros are in one. */
+static void bound_polynomial(ShapeBuilder *builder, Shape *shape, const Series *series)
 {
     Node        distance = series_distance(builder, series);
     FieldFacts *field    = own_field_facts(builder, shape);
@@ -132,8 +132,9 @@ Node extend_from_region(ShapeBuilder *builder, Node formula, const Steepness *sl
                            slope->region);
 }
 
-/* Finds the slope over a region, which may be all space; infinite when there is no bound. */
-static void settle(ShapeBuilder *builder, Shape *shape, Box box, bool uniform)
+/* Sets the distance by the slope over a region, which may be all space.  Where the slope has no bound, that
+   of the shape is infinite. */
+static void bound_field(ShapeBuilder *builder, Shape *shape, Box box, bool uniform)
 {
     Steepness   slope;
     bool        bounded = find_slope(builder, shape->formula, &box, 1, shape->span, &slope);
@@ -197,11 +198,11 @@ const Shape *make_field(ShapeBuilder *builder, Node formula, bool algebraic, Spa
     if (graph_ball_series(builder->graph, formula, point, &series, &fault, builder->scratch)) {
         if (series_is_constant(builder->graph, &series))
             return refuse_constant(builder, shape);
-        settle_polynomial(builder, shape, &series);
+        bound_polynomial(builder, shape, &series);
     } else if (algebraic) {
         return refuse_polynomial(builder, fault, span);
     } else {
-        settle(builder, shape, box_infinite, false);
+        bound_field(builder, shape, box_infinite, false);
     }
     arena_free(builder->scratch);
     return shape;
@@ -231,7 +232,7 @@ static const Shape *restrict_primitive(ShapeBuilder *builder, const Shape *shape
         restrict_polynomial(builder, restricted, box);
         return restricted;
     }
-    settle(builder, restricted, box, uniform);
+    bound_field(builder, restricted, box, uniform);
     arena_free(builder->scratch);
     return restricted;
 }

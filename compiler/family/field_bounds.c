@@ -402,11 +402,7 @@ static TrialMarch trial_march_new(ShapeBuilder *builder, Box box)
     Box        tried      = box_is_finite(box) ? box : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
     NodeValue *parameters = arena_new_array(builder->scratch, NodeValue,
                                             builder->graph->parameters.count);
-    for (size_t i = 0; i < builder->parameters->count; i++) {
-        const Parameter *parameter = &builder->parameters->items[i];
-        for (int k = 0; k < 4; k++)
-            parameters[parameter->slot].v[k] = parameter->value[k];
-    }
+    parameter_defaults(builder->parameters, parameters);
     return (TrialMarch){builder->graph, tried, parameters, 3e-5 * box_diagonal(tried),
                         builder->scratch};
 }

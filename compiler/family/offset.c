@@ -2,6 +2,7 @@
  * offset.c: shapes grown or shrunk by a distance, shells and open surfaces.
  */
 #include "compiler/family/family.h"
+#include "compiler/family/vary.h"
 
 #include <math.h>
 
@@ -62,7 +63,7 @@ const Shape *make_open_surface(ShapeBuilder *builder, const Shape *shape, Node t
 {
     Shape *open_surface         = arena_new(builder->arena, Shape);
     *open_surface               = *make_shell(builder, shape, thickness, span);
-    open_surface->name          = "sheet";
+    open_surface->name          = "open_surface";
     open_surface->open          = true;
     open_surface->open_surface  = is_derivable(builder, shape);
     open_surface->open_surfaces = open_surface->open_surfaces || open_surface->open_surface;
@@ -99,13 +100,7 @@ static Lowered thin_open_surface(Lowering *l, Lowered solid)
 static bool asks_front(Lowering *l, Node node)
 {
     const Node front = graph_leaf(l->graph, OP_FRONT);
-    if (node == NODE_NONE || node == front)
-        return false;
-    Tape tape = tape_new(l->graph, &node, 1, l->scratch);
-    for (size_t i = 0; i < tape.count; i++)
-        if (tape.nodes[i] == front)
-            return true;
-    return false;
+    return node != front && depends_on_leaf(l->graph, node, front, l->scratch);
 }
 
 static void replace_front(Lowering *l, Node *node, Node by)

@@ -65,12 +65,12 @@ static void undo_twist(Lowering *l, Node point, Node rate, InverseDeformation *i
     Node against    = neg(g, rate);
     Node x          = mul(g, graph_component(g, inverse->point, 2), against);
     Node z          = mul(g, graph_component(g, inverse->point, 0), rate);
-    Node back       = row(g, x, zero, z), turned[3];
+    Node back       = row(g, x, zero, z), inverted[3];
     inverse->out[0] = row(g, c, zero, s);
     inverse->out[1] = row(g, x, one, z);
     inverse->out[2] = row(g, minus, zero, c);
-    transpose_rows(g, rows, turned);
-    Node level     = graph_op4(g, OP_rotate, back, turned[0], turned[1], turned[2]);
+    transpose_rows(g, rows, inverted);
+    Node level     = graph_op4(g, OP_rotate, back, inverted[0], inverted[1], inverted[2]);
     inverse->in[0] = rows[0];
     inverse->in[1] = sub(g, rows[1], level);
     inverse->in[2] = rows[2];

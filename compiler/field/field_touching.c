@@ -161,8 +161,8 @@ typedef struct Tree {
     const FieldPieces *pieces;
     Form               forms[MAX_PIECES];
     int                children[MAX_PIECE_STEPS][2]; /* of steps that choose */
-    int                sides
-        [MAX_PIECE_STEPS]; /* of pieces that are left out: -1, as if below all others, or 1, above them; else 0 */
+    /* Of pieces that are left out -1, as if below all others, or 1, above them; else 0. */
+    int sides[MAX_PIECE_STEPS];
     /* Steps that choose have a piece of each child, which are opposite to each other; -1: they have none. */
     int pairs[MAX_PIECE_STEPS][2];
     int root;
@@ -240,7 +240,8 @@ typedef struct Left {
     FieldPieces pieces;
     uint32_t    operands[MAX_PIECES][PIECE_VALUES];
     int         numbers[MAX_PIECES]; /* of the pieces before; -1: not yet */
-    bool joins, full; /* whether what is beside pairs is joined; there was no room for that */
+    bool        joins;               /* what is beside pairs is joined, */
+    bool        full;                /* for which there was no room */
 } Left;
 
 static void leave_step(Left *left, int step)

@@ -8,9 +8,9 @@
 
 typedef struct Stepping {
     const Graph *graph;
-    bool *
-        steps; /* of each node; a state of an instance group counts as one until its body tells otherwise */
-    bool changed;
+    /* Of each node; a state of an instance group counts as one until its body tells otherwise. */
+    bool *steps;
+    bool  changed;
 } Stepping;
 
 static Node body_of(const Stepping *s, uint32_t function, uint32_t body)
@@ -19,7 +19,8 @@ static Node body_of(const Stepping *s, uint32_t function, uint32_t body)
     return instances->bodies.items[instances->functions.items[function].first_body + body];
 }
 
-/* Adds the steps of a call, whose result is a state, or what joins the states; sums change evenly. */
+/* Tells whether a call changes in steps, whose result is a state, or what joins the states; sums change
+   evenly. */
 static bool call_steps(const Stepping *s, const Expr *call)
 {
     uint32_t                number   = (uint32_t)s->graph->items[call->operands[0]].number[0];

@@ -299,13 +299,11 @@ void box_plan_find(const BoxPlan *plan, const Node *nodes, const NodeValue *valu
 
 void box_plan_default(ShapeBuilder *builder, const BoxPlan *plan, Box *boxes)
 {
-    const Graph      *graph = builder->graph;
-    const Parameters *all   = builder->parameters;
-    NodeValue *parameters   = arena_new_array(builder->arena, NodeValue, graph->parameters.count);
-    NodeValue *values       = arena_new_array(builder->arena, NodeValue, graph->count);
-    const Tape tape         = tape_new(graph, plan->nodes.items, plan->nodes.count, builder->arena);
-    for (size_t i = 0; i < all->count; i++)
-        memcpy(parameters[all->items[i].slot].v, all->items[i].value, sizeof all->items[i].value);
+    const Graph *graph      = builder->graph;
+    NodeValue   *parameters = arena_new_array(builder->arena, NodeValue, graph->parameters.count);
+    NodeValue   *values     = arena_new_array(builder->arena, NodeValue, graph->count);
+    const Tape   tape       = tape_new(graph, plan->nodes.items, plan->nodes.count, builder->arena);
+    parameter_defaults(builder->parameters, parameters);
     tape_run_frame(&tape, parameters, values);
     box_plan_find(plan, plan->nodes.items, values, boxes);
 }

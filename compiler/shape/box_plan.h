@@ -37,10 +37,9 @@ typedef struct BoxPlan {
         size_t         count, capacity;
     } numbers;
     struct {
-        PlannedShape
-              *items; /* first the shapes that are asked for; parts behind what they are of */
-        size_t count, capacity;
-    } shapes;
+        PlannedShape *items;
+        size_t        count, capacity;
+    } shapes;         /* first those that are asked for; parts stand behind what they are of */
     size_t asked_for; /* shapes; 0: none is planned */
 } BoxPlan;
 

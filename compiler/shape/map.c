@@ -246,7 +246,7 @@ static bool is_unit_axis(const Graph *graph, Node row, int axis)
            entries[2] == (axis == 2);
 }
 
-static bool turns_nothing(const Graph *graph, const Node rows[3])
+static bool rotates_nothing(const Graph *graph, const Node rows[3])
 {
     return is_unit_axis(graph, rows[0], 0) && is_unit_axis(graph, rows[1], 1) &&
            is_unit_axis(graph, rows[2], 2);
@@ -254,7 +254,7 @@ static bool turns_nothing(const Graph *graph, const Node rows[3])
 
 void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3])
 {
-    if (turns_nothing(graph, rows)) {
+    if (rotates_nothing(graph, rows)) {
         for (int i = 0; i < 3; i++)
             transposed[i] = rows[i];
         return;

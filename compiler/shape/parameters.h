@@ -5,6 +5,8 @@
 #ifndef KRS_PARAMETERS_H
 #define KRS_PARAMETERS_H
 
+#include <string.h>
+
 #include "compiler/base/source.h"
 #include "compiler/graph/graph.h"
 #include "compiler/shape/box.h"
@@ -25,6 +27,14 @@ typedef struct Parameters {
     Parameter *items;
     size_t     count, capacity;
 } Parameters;
+
+/* Sets the values of the parameter block, by slots, that are those of the parameters' defaults. */
+static inline void parameter_defaults(const Parameters *parameters, NodeValue *values)
+{
+    for (size_t i = 0; i < parameters->count; i++)
+        memcpy(values[parameters->items[i].slot].v, parameters->items[i].value,
+               sizeof parameters->items[i].value);
+}
 
 /* The slope of an expression that no constant bounds, as parameters in it have no limits: it is
    found for the values of each state (slope.c), and stands in a slot of the parameter block. */

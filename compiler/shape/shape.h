@@ -222,13 +222,14 @@ struct Shape {
     /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and
        shapes do not; else NULL. */
     const struct Declaration *declaration;
-    const struct Shape
-        *iterated;  /* ITERATION: what all iterations of a loop have in common; else NULL.  It is no
-                                   child: numbers in it depend on the leaf `iteration` */
-    Node iteration; /* ITERATION: the leaf that is `number` in this one; else NODE_NONE */
-    double number;
-    const struct IterationSource
-                        *source;  /* ITERATION: what the evaluator knows of its loop; else NULL */
+    /* ITERATION: what all iterations of a loop have in common, which is no child: numbers in it depend on
+       the leaf `iteration`, which is `number` in this one; and what the evaluator knows of the loop.  Else
+       NULL and NODE_NONE. */
+    const struct Shape           *iterated;
+    Node                          iteration;
+    double                        number;
+    const struct IterationSource *source;
+
     const struct Shape  *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
     const Material      *material;
     const SequenceStage *stages;

@@ -41,22 +41,14 @@ static void sample_point(uint32_t index, Box box, double point[3])
     }
 }
 
-static void parameter_values(const Elaboration *e, NodeValue *values)
-{
-    for (size_t i = 0; i < e->scene->parameters.count; i++) {
-        const Parameter *parameter = &e->scene->parameters.items[i];
-        memcpy(values[parameter->slot].v, parameter->value, sizeof parameter->value);
-    }
-}
-
-/* Begins to sample; false: the box is so large that check_extent refuses it, in better words. */
+/* Begins to sample; false: the box is so large that show_one refuses it, in better words. */
 static bool start_sampling(Elaboration *e, Sampling *s, const Node *roots, size_t count, Box box)
 {
     NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
     s->tape               = tape_new(e->graph, roots, count, e->scratch);
     s->values             = arena_new_array(e->scratch, NodeValue, e->graph->count);
     s->flat               = false;
-    parameter_values(e, parameters);
+    parameter_defaults(&e->scene->parameters, parameters);
     tape_run_frame(&s->tape, parameters, s->values);
     s->around   = box_is_finite(box) ? box_grow(box, 0.3 * box_diagonal(box) + 0.1)
                                      : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
