@@ -79,8 +79,7 @@ static Strips strips_make(const Making *making, int axis)
     return strips;
 }
 
-/* Finds where an edge that goes from one side of a line to the other crosses it. */
-static double crosses_at(const Curve *curve, int axis, double level)
+double edge_crossing(const Curve *curve, int axis, double level)
 {
     int    k   = 1 - axis;
     double low = 0, high = 1, point[2], t = 0.5;
@@ -109,7 +108,7 @@ static int count_crossings(const Strips *strips, const double point[2], uint32_t
             fmax(fmax(curve->from[axis], curve->to[axis]), curve->via[axis]) < point[axis])
             continue;
         if (fmin(fmin(curve->from[axis], curve->to[axis]), curve->via[axis]) < point[axis] &&
-            crosses_at(curve, axis, point[k]) < point[axis])
+            edge_crossing(curve, axis, point[k]) < point[axis])
             continue;
         winding += to ? edge->weight : -edge->weight;
     }

@@ -39,15 +39,8 @@ typedef struct Sides {
     bool left, right;
 } Sides;
 Sides *edge_sides(const Making *making, FillRule rule);
-
-static inline double cross2(const double a[2], const double b[2])
-{
-    return a[0] * b[1] - a[1] * b[0];
-}
-
-static inline double dot2(const double a[2], const double b[2])
-{
-    return a[0] * b[0] + a[1] * b[1];
-}
+/* Returns where an edge that goes from one side of a line to the other crosses it: the line has this
+   level, and is along `axis`. */
+double edge_crossing(const Curve *curve, int axis, double level);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * letters.c: the bridge to FreeType and HarfBuzz.
+ * letters.c: draws texts by FreeType and HarfBuzz.
  */
 #include "compiler/outline/letters.h"
 

@@ -126,19 +126,6 @@ typedef struct RowCrossings {
     size_t  count, capacity;
 } RowCrossings;
 
-/* Finds where a piece, along which neither coordinate turns back, has this height. */
-static double x_at(const Curve *curve, double y)
-{
-    double low = 0, high = 1, point[2] = {curve->from[0], y};
-    bool   rises = curve->to[1] > curve->from[1];
-    for (int i = 0; i < 40; i++) {
-        double t = 0.5 * (low + high);
-        curve_point(curve, t, point);
-        *((point[1] < y) == rises ? &low : &high) = t;
-    }
-    return point[0];
-}
-
 static int compare_crossings(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
@@ -170,7 +157,7 @@ void outline_fill(const Outline *outline, const double low[2], double step, cons
             if (y > fmax(from, to))
                 break;
             if ((from > y) != (to > y))
-                array_push_large(scratch, &rows[(size_t)k], x_at(curve, y));
+                array_push_large(scratch, &rows[(size_t)k], edge_crossing(curve, 0, y));
         }
     }
     for (uint32_t k = 0; k < count[1]; k++)

@@ -48,28 +48,26 @@ void path_move(Path *path, const double to[2])
     memcpy(path->at, to, sizeof path->at);
 }
 
-static double cross_of(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
-
 /* Curves whose points are on one line are drawn as lines, to where they turn back and from there. */
 void path_quadratic(Path *path, const double via[2], const double to[2])
 {
     Curve  curve = {.straight = false};
-    double chord[2], way[2];
+    double chord[2], tangent[2];
     memcpy(curve.from, path->at, sizeof curve.from);
     memcpy(curve.via, via, sizeof curve.via);
     memcpy(curve.to, to, sizeof curve.to);
     for (int k = 0; k < 2; k++) {
-        chord[k] = to[k] - curve.from[k];
-        way[k]   = via[k] - curve.from[k];
+        chord[k]   = to[k] - curve.from[k];
+        tangent[k] = via[k] - curve.from[k];
     }
-    double size = fmax(real_hypot(chord[0], chord[1]), real_hypot(way[0], way[1]));
-    if (fabs(cross_of(chord, way)) > 1e-9 * size * size) {
+    double size = fmax(real_hypot(chord[0], chord[1]), real_hypot(tangent[0], tangent[1]));
+    if (fabs(cross2(chord, tangent)) > 1e-9 * size * size) {
         add_curve(path, &curve);
         return;
     }
     double bend[2] = {curve.from[0] - 2 * via[0] + to[0], curve.from[1] - 2 * via[1] + to[1]};
-    double square  = bend[0] * bend[0] + bend[1] * bend[1], turn[2];
-    double t       = square > 0 ? (way[0] * bend[0] + way[1] * bend[1]) / -square : 0;
+    double square  = dot2(bend, bend), turn[2];
+    double t       = square > 0 ? dot2(tangent, bend) / -square : 0;
     if (t > 0 && t < 1) {
         curve_point(&curve, t, turn);
         path_line(path, turn);
@@ -263,8 +261,8 @@ static double arc_nearest(const Curve *curve, const double point[2])
         from[k]   = curve->from[k] - curve->centre[k];
         at[k]     = point[k] - curve->centre[k];
     }
-    double half  = real_atan2(cross_of(middle, from), middle[0] * from[0] + middle[1] * from[1]);
-    double angle = real_atan2(cross_of(middle, at), middle[0] * at[0] + middle[1] * at[1]);
+    double half  = real_atan2(cross2(middle, from), dot2(middle, from));
+    double angle = real_atan2(cross2(middle, at), dot2(middle, at));
     if (fabs(angle) <= fabs(half))
         return clamp_unit(0.5 - 0.5 * real_tan(0.5 * angle) / real_tan(0.5 * half));
     return (angle < 0) == (half < 0) ? 0 : 1;

@@ -32,6 +32,16 @@ typedef struct Path {
     double tolerance;       /* of cubic curves */
 } Path;
 
+static inline double cross2(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+static inline double dot2(const double a[2], const double b[2])
+{
+    return a[0] * b[0] + a[1] * b[1];
+}
+
 /* Each of these begins where the one before ended.  Contours end where they began: what is left
    open when the next begins is closed by a line. */
 void path_move(Path *path, const double to[2]);

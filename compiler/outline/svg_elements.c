@@ -3,15 +3,9 @@
  */
 #include "compiler/outline/svg.h"
 
-#include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-#include "compiler/base/elementary.h"
-#include "compiler/base/embedded.h"
-#include "compiler/base/text.h"
 #include "compiler/outline/svg_paint.h"
 #include "compiler/outline/svg_shapes.h"
 

@@ -3,14 +3,12 @@
  */
 #include "compiler/outline/svg_paint.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "compiler/base/embedded.h"
-#include "compiler/base/text.h"
 #include "compiler/outline/svg_shapes.h"
 
 /* Gradients that continue others. */
@@ -47,14 +45,6 @@ static bool functional(const char *text, uint32_t *rgb)
     return true;
 }
 
-static const char *library_text(const char *name)
-{
-    const EmbeddedFile *file = library_files;
-    while (file->name && strcmp(file->name, name) != 0)
-        file++;
-    return file->name ? file->text : "";
-}
-
 /* Reads a colour of CSS by the library's declaration, `let tomato = #ff6347;`, except for `tan`,
    which is the tangent in the language. */
 static bool named(const char *name, uint32_t *rgb)
@@ -63,7 +53,7 @@ static bool named(const char *name, uint32_t *rgb)
     *rgb          = 0xd2b48c;
     if (strcasecmp(name, "tan") == 0)
         return true;
-    for (const char *at = strstr(library_text("colours.krs"), "\nlet "); at;
+    for (const char *at = strstr(embedded_find(library_files, "colours.krs")->text, "\nlet "); at;
          at             = strstr(at + 1, "\nlet ")) {
         if (length == 0 || strncasecmp(at + 5, name, length) != 0)
             continue;

@@ -3,7 +3,6 @@
  */
 #include "compiler/outline/svg_reader.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -32,8 +31,6 @@ void svg_stop(SvgReader *reader, const char *fault)
 
 /* ---- attributes ---- */
 
-static bool is_blank(char c) { return isspace((unsigned char)c) != 0; }
-
 const char *svg_given(const SvgReader *reader, const SvgElement *element, const char *name)
 {
     const char *value = svg_property(&reader->tree, element, name);
@@ -49,7 +46,7 @@ static double length_in(SvgReader *reader, const char *text, double whole, doubl
         return otherwise;
     if (*text == '%' && whole > 0)
         return number / 100 * whole;
-    if (*text && strncmp(text, "px", 2) != 0 && !is_blank(*text))
+    if (*text && strncmp(text, "px", 2) != 0 && !svg_is_blank(*text))
         svg_note(reader, "units other than px, which count as px");
     return number;
 }

@@ -5,10 +5,10 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "compiler/base/elementary.h"
+#include "compiler/base/text.h"
 
 /* ---- numbers ---- */
 
@@ -18,17 +18,33 @@ static void skip_blanks(const char **text)
         ++*text;
 }
 
-/* Reads a number, but not what else strtod knows: hexadecimal numbers, infinities. */
+/* Returns where the digits at a place end. */
+static const char *behind_digits(const char *text) { return text + strspn(text, "0123456789"); }
+
+/* Returns the length of a number without a sign; 0: there is none. */
+static size_t number_length(const char *text)
+{
+    const char *end = behind_digits(text);
+    if (*end == '.' && (end > text || isdigit((unsigned char)end[1])))
+        end = behind_digits(end + 1);
+    if (end > text && (*end | 32) == 'e') {
+        const char *digits = end + 1 + (end[1] == '-' || end[1] == '+');
+        end                = isdigit((unsigned char)*digits) ? behind_digits(digits) : end;
+    }
+    return (size_t)(end - text);
+}
+
 bool svg_number(const char **text, double *number)
 {
-    char *end;
     skip_blanks(text);
-    const char *digits = *text + (**text == '-' || **text == '+');
-    if (!isdigit((unsigned char)digits[digits[0] == '.']) ||
-        (digits[0] == '0' && (digits[1] | 32) == 'x'))
+    const bool   minus  = **text == '-';
+    const char  *digits = *text + (minus || **text == '+');
+    const size_t length = number_length(digits);
+    if (length == 0)
         return false;
-    *number = strtod(*text, &end);
-    *text   = end;
+    *number = text_decimal(digits, length);
+    *number = minus ? -*number : *number;
+    *text   = digits + length;
     return isfinite(*number);
 }
 
@@ -258,7 +274,7 @@ typedef struct PathReader {
     char        before;                      /* the letter of what was drawn last, in capitals */
 } PathReader;
 
-/* Tells how many numbers stand behind a letter, and how many of them, from which on, are coordinates. */
+/* Returns how many numbers stand behind a letter; -1: it is none of a path. */
 static int numbers_of(char letter)
 {
     static const char letters[] = "MLHVCSQTAZ";

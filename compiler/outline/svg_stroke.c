@@ -198,7 +198,6 @@ static void draw_piece(Stroker *stroker, const Curve *piece)
         return;
     }
     Contour contour = {.count = 0};
-    Curve   back    = *piece;
     beside(&a, -stroker->radius, right);
     beside(&b, stroker->radius, left);
     corner(&contour, a.at);
@@ -207,7 +206,7 @@ static void draw_piece(Stroker *stroker, const Curve *piece)
     corner(&contour, b.at);
     corner(&contour, left);
     /* The left side, backwards: from the end of the piece to its beginning. */
-    add_side(&contour, &back, &b, &a, stroker->radius);
+    add_side(&contour, piece, &b, &a, stroker->radius);
     draw_contour(stroker->pen, &contour);
 }
 

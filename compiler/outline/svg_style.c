@@ -13,8 +13,6 @@
 /* Weights are ids, classes and names, eight bits each; then whether it is important. */
 enum { WEIGHT_NAME = 1, WEIGHT_CLASS = 1 << 8, WEIGHT_ID = 1 << 16, WEIGHT_IMPORTANT = 1 << 24 };
 
-static bool is_blank(char c) { return isspace((unsigned char)c) != 0; }
-
 static bool is_of_name(char c)
 {
     return isalnum((unsigned char)c) || c == '-' || c == '_' || (unsigned char)c >= 0x80;
@@ -25,7 +23,7 @@ static bool is_of_name(char c)
 static bool has_word(const char *list, const char *word, size_t length)
 {
     while (list && *list) {
-        while (is_blank(*list))
+        while (svg_is_blank(*list))
             list++;
         size_t own = strcspn(list, " \t\r\n\f");
         if (own == length && length > 0 && strncmp(list, word, length) == 0)
@@ -54,30 +52,34 @@ static bool matches_simple(const SvgElement *element, const char *text, size_t l
     return true;
 }
 
-/* Tells whether a selector is that of an element, from its end on: "g .thin" is inside of a `g`,
-   however deep, "g > .thin" a child of one. */
-static bool matches(const SvgElement *element, const char *text, size_t length)
+/* How a selector and an element go together.  FAILS_AROUND: nor does it match any element around this one,
+   since what it asks for was looked for up to the root. */
+typedef enum Match { MATCHES, FAILS, FAILS_AROUND } Match;
+
+/* Matches a selector from its end on: "g .thin" is inside of a `g`, however deep, "g > .thin" a child of
+   one.  The nearest `g` that matches decides, as the ones around it have less around them.  So the time
+   grows with the depth and not with its powers. */
+static Match match(const SvgElement *element, const char *text, size_t length)
 {
     size_t from;
-    while (length > 0 && is_blank(text[length - 1]))
+    while (length > 0 && svg_is_blank(text[length - 1]))
         length--;
-    for (from = length; from > 0 && !is_blank(text[from - 1]) && text[from - 1] != '>';)
+    for (from = length; from > 0 && !svg_is_blank(text[from - 1]) && text[from - 1] != '>';)
         from--;
     if (from == length || !matches_simple(element, text + from, length - from))
-        return false;
-    while (from > 0 && is_blank(text[from - 1]))
+        return FAILS;
+    while (from > 0 && svg_is_blank(text[from - 1]))
         from--;
     if (from == 0)
-        return true;
+        return MATCHES;
     bool child = text[from - 1] == '>';
     from -= child;
     for (const SvgElement *around = element->parent; around; around = around->parent) {
-        if (matches(around, text, from))
-            return true;
-        if (child)
-            return false;
+        Match found = match(around, text, from);
+        if (found != FAILS || child)
+            return found;
     }
-    return false;
+    return FAILS_AROUND;
 }
 
 static unsigned weight_of(const char *selector)
@@ -99,20 +101,19 @@ static unsigned weight_of(const char *selector)
 
 static const char *trimmed(SvgTree *tree, const char *from, const char *to)
 {
-    while (from < to && is_blank(*from))
+    while (from < to && svg_is_blank(*from))
         from++;
-    while (to > from && is_blank(to[-1]))
+    while (to > from && svg_is_blank(to[-1]))
         to--;
     return arena_copy_text(tree->arena, from, (size_t)(to - from));
 }
 
 static void add_rule(SvgTree *tree, const char *selector, const char *property, const char *value)
 {
-    char       *mark = strstr(value, "!important");
-    unsigned    more = mark ? WEIGHT_IMPORTANT : 0;
-    SvgRule     rule = {selector, property, value, weight_of(selector) + more};
-    const char *end  = mark ? mark : value + strlen(value);
-    rule.value       = trimmed(tree, value, end);
+    const char *mark   = strstr(value, "!important");
+    const char *end    = mark ? mark : value + strlen(value);
+    unsigned    weight = weight_of(selector) + (mark ? WEIGHT_IMPORTANT : 0);
+    SvgRule     rule   = {selector, property, trimmed(tree, value, end), weight};
     array_push(tree->arena, &tree->rules, rule);
 }
 
@@ -131,7 +132,7 @@ static void add_declarations(SvgTree *tree, const char *selector, const char *fr
 /* Comments become blanks. */
 static char *without_comments(SvgTree *tree, const Text *text)
 {
-    char *copy = (char *)arena_copy_text(tree->arena, text->bytes, text->length);
+    char *copy = arena_copy_text(tree->arena, text->bytes, text->length);
     for (char *at = copy; (at = strstr(at, "/*"));) {
         char *end = strstr(at + 2, "*/");
         end       = end ? end + 2 : at + strlen(at);
@@ -155,7 +156,7 @@ static const char *behind_block(const char *text)
 static bool is_known(const char *selector)
 {
     for (const char *at = selector; *at; at++)
-        if (!is_of_name(*at) && !is_blank(*at) && !strchr(".#*>", *at))
+        if (!is_of_name(*at) && !svg_is_blank(*at) && !strchr(".#*>", *at))
             return false;
     return *selector != '\0';
 }
@@ -187,16 +188,16 @@ static const char *styled(const SvgTree *tree, const char *style, const char *na
 {
     size_t length = strlen(name);
     while (style && *style) {
-        while (is_blank(*style) || *style == ';')
+        while (svg_is_blank(*style) || *style == ';')
             style++;
         const char *colon = style + length, *end = style + strcspn(style, ";");
         bool        named = strncmp(style, name, length) == 0;
-        while (named && is_blank(*colon))
+        while (named && svg_is_blank(*colon))
             colon++;
         if (named && *colon == ':') {
-            for (colon++; is_blank(*colon);)
+            for (colon++; svg_is_blank(*colon);)
                 colon++;
-            while (end > colon && is_blank(end[-1]))
+            while (end > colon && svg_is_blank(end[-1]))
                 end--;
             return arena_copy_text(tree->arena, colon, end > colon ? (size_t)(end - colon) : 0);
         }
@@ -211,7 +212,7 @@ const char *svg_property(const SvgTree *tree, const SvgElement *element, const c
     for (size_t i = 0; i < tree->rules.count; i++) {
         const SvgRule *rule = &tree->rules.items[i];
         if (strcmp(rule->property, name) == 0 && (!best || rule->weight >= best->weight) &&
-            matches(element, rule->selector, strlen(rule->selector)))
+            match(element, rule->selector, strlen(rule->selector)) == MATCHES)
             best = rule;
     }
     if (best && best->weight >= WEIGHT_IMPORTANT)

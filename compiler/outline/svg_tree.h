@@ -4,6 +4,7 @@
 #ifndef KRS_SVG_TREE_H
 #define KRS_SVG_TREE_H
 
+#include <ctype.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -16,6 +17,9 @@ typedef struct SvgElement {
     unsigned           line;
     struct SvgElement *parent, *first, *last, *next; /* children in their order */
 } SvgElement;
+
+/* Tells whether nothing is seen of a character. */
+static inline bool svg_is_blank(char c) { return isspace((unsigned char)c) != 0; }
 
 /* A declaration of a rule, for what its selector matches. */
 typedef struct SvgRule {

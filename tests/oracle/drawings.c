@@ -4,6 +4,7 @@
  * Each drawing has one shape.  Its contours, resolved, contain a point where the definition of the
  * shape says so.  A shape that is a little larger does not.
  */
+#include <locale.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -439,6 +440,10 @@ static const Drawn styled_shapes[] = {
     {"<style>g > rect { fill: none }</style><g><a><rect x='10' y='20' width='60' height='30'/></a>"
      "</g><g><rect width='9' height='9'/></g>",
      rectangle, 1},
+    {"<style>.x g > a g rect { fill: none }</style><g><g><a class='x'><g><rect x='10' y='20' "
+     "width='60' height='30'/></g></a></g></g><a class='x'><g><a><a><g><rect width='9' "
+     "height='9'/></g></a></a></g></a>",
+     rectangle, 1},
     {"<style>rect { fill: none } .k { fill: red } #i { fill: none !important }</style>"
      "<rect class='k' x='10' y='20' width='60' height='30'/><rect id='i' style='fill:red' "
      "width='9' "
@@ -478,6 +483,43 @@ static void styles_and_references(void **state)
     }
 }
 
+/* A selector with many parts on elements within elements: a search for each part from each element on
+   would not end. */
+static void selectors_end_on_nested_elements(void **state)
+{
+    enum { GROUPS = 60, PARTS = 20 };
+    Bench     *bench = *state;
+    SvgDrawing drawing;
+    Text       text = {.arena = &bench->arena};
+    text_add(&text, "<style>.missing ");
+    for (int i = 0; i < PARTS; i++)
+        text_add(&text, "g ");
+    text_add(&text, "rect { fill: none }</style>");
+    for (int i = 0; i < GROUPS; i++)
+        text_add(&text, "<g>");
+    text_add(&text, "<rect width='9' height='9'/>");
+    for (int i = 0; i < GROUPS; i++)
+        text_add(&text, "</g>");
+    read_drawing(text.bytes, &drawing, &bench->arena);
+    assert_int_equal(drawing.figures.count, 1);
+}
+
+/* A program that the library is part of may have set a locale with decimal commas. */
+static void numbers_do_not_depend_on_the_locale(void **state)
+{
+    static const char *const locales[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "C"};
+    for (size_t i = 0; !setlocale(LC_NUMERIC, locales[i]); i++)
+        ;
+    static const Drawn forms = {"<rect x='.1e2' y='+20.0' width='600e-1' height='30.'/>", rectangle,
+                                1};
+    Bench             *bench = *state;
+    SvgDrawing         drawing;
+    read_drawing(forms.element, &drawing, &bench->arena);
+    assert_int_equal(drawing.figures.count, 1);
+    assert_int_equal(count_wrong(&forms, &drawing.figures.items[0], 0, bench), 0);
+    setlocale(LC_NUMERIC, "C");
+}
+
 static void gradients_have_their_mean(void **state)
 {
     static const struct {
@@ -514,6 +556,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(strokes_of_lines, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(strokes_of_curves, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(styles_and_references, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(selectors_end_on_nested_elements, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(numbers_do_not_depend_on_the_locale, bench_start,
+                                        bench_stop),
         cmocka_unit_test_setup_teardown(gradients_have_their_mean, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(broken_files, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(random_files, bench_start, bench_stop),
