@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double ORIGIN[3] = {0, 0, 0};
-
 /* ---- checks ---- */
 
 /*

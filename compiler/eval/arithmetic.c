@@ -273,11 +273,6 @@ static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
     return value_map_op(e, ops[syntax->op], (Value[]){a, b}, 2, syntax);
 }
 
-static bool is_numeric(const Elaboration *e, Value value)
-{
-    return is_scalar(e, value) || vector_length(e, value) != 0;
-}
-
 /* Says of two expressions what type each has. */
 static void label_types(Elaboration *e, Diag *diag, Syntax *const *pair, const char *left,
                         const char *right)
@@ -288,16 +283,10 @@ static void label_types(Elaboration *e, Diag *diag, Syntax *const *pair, const c
 
 static Value mismatch(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
-    static const char *const words[TOKEN_KIND_COUNT] = {
-        [TOKEN_PLUS] = "+",         [TOKEN_MINUS] = "-",      [TOKEN_STAR] = "*",
-        [TOKEN_SLASH] = "/",        [TOKEN_PERCENT] = "%",    [TOKEN_CARET] = "^",
-        [TOKEN_AMPERSAND] = "&",    [TOKEN_BAR] = "|",        [TOKEN_LESS] = "<",
-        [TOKEN_LESS_EQUAL] = "<=",  [TOKEN_GREATER] = ">",    [TOKEN_GREATER_EQUAL] = ">=",
-        [TOKEN_EQUAL_EQUAL] = "==", [TOKEN_NOT_EQUAL] = "!=", [TOKEN_AND] = "and",
-        [TOKEN_OR] = "or"};
     const char *left = value_type_name(e, a), *right = value_type_name(e, b);
     Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->name_span,
-                                "`%s` does not go with %s and %s", words[syntax->op], left, right);
+                                "%s does not go with %s and %s", token_kind_text(syntax->op), left,
+                                right);
     label_types(e, diag, syntax->children, left, right);
     point_at_definition(e, diag, syntax->children[0]);
     point_at_definition(e, diag, syntax->children[1]);
@@ -333,8 +322,9 @@ static bool is_decided(Elaboration *e, Op op, Node left, Node right, bool *answe
     if (!e->parameterises || items[left].time == TIME_POINT || items[right].time == TIME_POINT)
         return false;
     Range a = node_range(e->builder, left, 0), b = node_range(e->builder, right, 0);
-    bool below = a.high<b.low, above = a.low> b.high;
-    *answer    = op == OP_not_equal || ((op == OP_less || op == OP_less_equal) && below);
+    bool  below = a.high < b.low;
+    bool  above = b.high < a.low;
+    *answer     = op == OP_not_equal || ((op == OP_less || op == OP_less_equal) && below);
     return below || above;
 }
 
@@ -402,7 +392,7 @@ Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b)
     case TOKEN_SLASH:
     case TOKEN_PERCENT:
     case TOKEN_CARET:
-        if (is_numeric(e, a) && is_numeric(e, b))
+        if (value_size(e, a) > 0 && value_size(e, b) > 0)
             return arithmetic(e, syntax, a, b);
         if (syntax->op == TOKEN_MINUS && a.type == VALUE_SHAPE && b.type == VALUE_SHAPE)
             return join_shapes(e, syntax, a.shape, b.shape);
@@ -422,10 +412,10 @@ Value value_unary(Elaboration *e, const Syntax *syntax, Value a)
         return value_of_node(e, graph_op1(e->graph, OP_not, value_node(e, a)));
     if (syntax->op == TOKEN_MINUS && a.type == VALUE_NUMBER)
         return value_from(e, value_number(-a.number), OP_neg, &a, 1);
-    if (syntax->op == TOKEN_MINUS && is_numeric(e, a))
+    if (syntax->op == TOKEN_MINUS && value_size(e, a) > 0)
         return value_map_op(e, OP_neg, &a, 1, syntax);
-    Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "`%s` does not go with %s",
-                          syntax->op == TOKEN_NOT ? "not" : "-", value_type_name(e, a));
+    Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "%s does not go with %s",
+                          token_kind_text(syntax->op), value_type_name(e, a));
     point_at_definition(e, diag, syntax->children[0]);
     return value_error();
 }

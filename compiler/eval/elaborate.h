@@ -92,15 +92,14 @@ struct Elaboration {
         Scope **items;
         size_t  count, capacity;
     } scopes; /* of the files, in their order */
-    /* Shape declarations whose claims have been put to the test. */
     struct {
         const Syntax **items;
         size_t         count, capacity;
-    } single; /* sky, image, camera */
+    } single; /* blocks that a scene has once: sky, fog, image, the camera without a name */
     struct {
         const Syntax **items;
         size_t         count, capacity;
-    } checked;
+    } checked; /* declarations of shapes, and properties, whose claims have been put to the test */
     struct {
         FileBytes *items;
         size_t     count, capacity;
@@ -123,14 +122,15 @@ struct Elaboration {
     const Syntax *block;       /* the last one whose properties were looked at, or NULL */
     bool          in_material; /* level, instance, u, v, normal and front have a meaning */
     bool          uses_uv;     /* a material may need the coordinates on surfaces */
-    struct IterationTrials
-        *iterations; /* loops whose iterations are made at once: iterations.c; NULL: none is */
-    struct Iterated
-        *iterated; /* such a loop, while its body is tried with a leaf for its variable; or NULL */
-    bool beams;    /* someone asks for capsules that are shown */
-    Span without;  /* what the expression there makes is empty (hollow.c); source 0: nothing is */
-    const Syntax *joining; /* a call that joins shapes, or a `show`, of which
-                                    the arguments are evaluated; or NULL */
+    /* Loops whose iterations are made at once (iterations.c), or NULL; and the one whose body is tried
+       with a leaf for its variable now, or NULL. */
+    struct IterationTrials *iterations;
+    struct Iterated        *iterated;
+    bool                    beams; /* someone asks for capsules that are shown */
+    /* The expression whose shapes are made empty (hollow.c); source 0: there is none. */
+    Span without;
+    /* A call that joins shapes, or a `show`, of which the arguments are evaluated; or NULL. */
+    const Syntax *joining;
 };
 
 /* The properties of the declaration that made a shape. */
@@ -142,10 +142,16 @@ struct Declaration {
     Environment   names;  /* what these expressions see */
 };
 
+/* Tells whether a text is the scene's, not the library's. */
+static inline bool is_of_author(const Elaboration *e, const Syntax *syntax)
+{
+    return !e->sources->items[syntax->span.source].library;
+}
+
 /* The library's claims hold for all sizes: tests search them, and compiling does not wait. */
 static inline bool is_of_library(const Elaboration *e, const Shape *shape)
 {
-    return e->sources->items[shape->declaration->syntax->span.source].library;
+    return !is_of_author(e, shape->declaration->syntax);
 }
 
 /* Tells whether a limit was reached: everything is an error from here, silently. */
@@ -164,6 +170,8 @@ Definition *scope_find(const Scope *scope, const char *name);
 /* The distance from the origin that shapes, cameras and lights may have: single precision, in which
    devices compute, ends at 3e38, and its squares much earlier. */
 static const double MAX_EXTENT = 1e12;
+
+static const double ORIGIN[3] = {0, 0, 0};
 
 /* ---- expression.c ---- */
 /* A list has no more elements than that. */
@@ -215,9 +223,9 @@ typedef struct Comprehension {
 
 /* ---- iterations.c: loops whose iterations differ in numbers only are evaluated once ---- */
 typedef struct IterationTrials {
-    uint32_t least; /* iterations of such a loop */
-    uint32_t loops,
-        depth; /* made so far; being tried now, one within a definition that another needs */
+    uint32_t least;      /* iterations of such a loop */
+    uint32_t loops;      /* made so far */
+    uint32_t depth;      /* being tried now, one within a definition that another needs */
     uint32_t statements; /* loops of statements around what runs now */
     struct {
         Definition **items;
@@ -308,6 +316,10 @@ void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value);
 void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, const char *help);
 
 /* ---- reports.c ---- */
+/* Tells whether what has this range on an axis is near enough for devices to compute with; `what` names
+   it.  False: reported. */
+bool check_extent(Elaboration *e, Range range, uint32_t axis, const Syntax *syntax,
+                  const char *what);
 /* Returns the top-level definition that a name refers to, as far as its file tells; or NULL. */
 const Definition *definition_of(const Elaboration *e, const Syntax *name);
 /* Marks where `syntax` was defined as a second place of `diag`, if it is a top-level name. */
@@ -328,6 +340,8 @@ Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index)
 /* Reads a file that an argument names, relative to the file that has the call; false: reported.  It is
    read once. */
 bool read_beside(Elaboration *e, const Argument *argument, const char *path, FileBytes *bytes);
+/* Reports that the picture in a file that was read is none, and why. */
+void refuse_picture(Elaboration *e, const Syntax *named, const char *path, const char *fault);
 /* Reads a font that a scene names by its name, or any where that is NULL: the caller's, or one of the system. */
 FontSearch read_font(Elaboration *e, const char *name, FileBytes *bytes);
 
@@ -361,8 +375,7 @@ Value           value_string(Elaboration *e, const char *bytes, size_t length);
 BuiltinFunction builtin_str;
 
 /* ---- properties.c: blocks with properties, and values of those ---- */
-/* Reports properties that a block of this kind may not have, and those that are given twice.  False:
-   one of the first. */
+/* Reports properties that a block of this kind may not have; false: there is one. */
 bool check_block(Elaboration *e, const Syntax *block);
 /* Returns "a camera", for messages. */
 const char *block_name(SyntaxKind kind);
@@ -443,7 +456,7 @@ void complete_view(Elaboration *e);
 /* Plans which boxes of components are to be found in each state. */
 void plan_boxes(Elaboration *e);
 /* Adds lights, a sky and a floor to a scene that has none, if that is wanted. */
-void run_studio(Elaboration *e, const Files *files);
+void run_studio(Elaboration *e);
 
 /* declared/declare.c */
 /* Returns the name of property `index` of shapes (vocabulary.h). */

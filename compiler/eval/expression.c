@@ -286,7 +286,7 @@ static Value evaluate_let(Elaboration *e, const Environment *env, const Syntax *
 static Value written_number(Elaboration *e, double number, const Syntax *syntax)
 {
     Value value = value_number(number);
-    return e->sources->items[syntax->span.source].library ? value : value_authored(e, value);
+    return is_of_author(e, syntax) ? value_authored(e, value) : value;
 }
 
 static Value written_colour(Elaboration *e, const Syntax *syntax)

@@ -4,33 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/base/paths.h"
 #include "compiler/eval/elaborate.h"
-
-/* Returns "folder/file.ttf" for a name in a call in "folder/scene.krs". */
-static const char *path_beside(Elaboration *e, const Syntax *syntax, const char *name)
-{
-    const char *from  = e->sources->items[syntax->span.source].name;
-    const char *slash = name[0] == '/' ? NULL : strrchr(from, '/');
-    Text        path  = {.arena = e->arena};
-    text_add_bytes(&path, from, slash ? (size_t)(slash - from + 1) : 0);
-    text_add(&path, name);
-    path_simplify(path.bytes);
-    return path.bytes;
-}
-
-static void refuse_file(Elaboration *e, const Syntax *syntax, const char *path,
-                        const Loaded *loaded)
-{
-    if (loaded->reason == source_no_memory)
-        arena_exhausted(e->arena);
-    Diag *diag  = loaded->outside
-                      ? diag_add(e->diags, DIAG_OUTSIDE_ROOT, syntax->span,
-                                 "`%s` is outside of the folder that scenes may read from", path)
-                      : diag_add(e->diags, DIAG_CANNOT_READ, syntax->span, "cannot read `%s`: %s",
-                                 path, loaded->reason);
-    diag->label = "named here";
-}
 
 static bool is_too_large(Elaboration *e, const Syntax *syntax, size_t length)
 {
@@ -63,12 +37,13 @@ static void keep_bytes(Elaboration *e, const char *path, const Loaded *loaded, i
 
 bool read_beside(Elaboration *e, const Argument *argument, const char *name, FileBytes *bytes)
 {
-    const char *path = path_beside(e, argument->syntax, name);
+    const Span  span = argument->syntax->span;
+    const char *path = files_beside(e->files, e->sources->items[span.source].name, name);
     if (find_read(e, path, bytes))
         return true;
     Loaded loaded = loader_read(e->loader, path);
     if (!loaded.text) {
-        refuse_file(e, argument->syntax, path, &loaded);
+        files_refuse(e->files, span, path, &loaded, "named here");
         return false;
     }
     bool large = is_too_large(e, argument->syntax, loaded.length);
@@ -78,6 +53,12 @@ bool read_beside(Elaboration *e, const Argument *argument, const char *name, Fil
     }
     free(loaded.owned);
     return !large;
+}
+
+void refuse_picture(Elaboration *e, const Syntax *named, const char *path, const char *fault)
+{
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_TEXTURE, named->span, "%s: %s", path, fault);
+    diag->label = "this picture cannot be read";
 }
 
 /* ---- fonts ---- */

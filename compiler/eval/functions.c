@@ -33,7 +33,7 @@ void note_signature(Elaboration *e, Diag *diag, const Syntax *definition)
 
 void explain_library(Elaboration *e, Diag *diag, const Syntax *call, const Syntax *definition)
 {
-    if (e->sources->items[definition->span.source].library)
+    if (!is_of_author(e, definition))
         explain_usage(e, diag, call, definition->name);
 }
 
@@ -318,14 +318,9 @@ Value call_with(Elaboration *e, const Function *function, Value first, const Syn
 
 Value call_library(Elaboration *e, const char *name, Value first, const Syntax *call)
 {
-    Definition *found = NULL;
-    for (size_t i = 0; !found && i < e->library->used.count; i++) {
-        const Scope *scope = e->library->used.items[i];
-        for (size_t k = 0; !found && k < scope->definitions.count; k++)
-            if (strcmp(scope->definitions.items[k]->name, name) == 0)
-                found = scope->definitions.items[k];
-    }
-    Value function = found ? run_definition(e, found, call->span) : value_error();
+    name                 = name_intern(e->files->names, name, strlen(name));
+    Definition *found    = scope_find(e->library, name);
+    Value       function = found ? run_definition(e, found, call->span) : value_error();
     return function.type == VALUE_FUNCTION ? call_with(e, function.function, first, call)
                                            : value_error();
 }

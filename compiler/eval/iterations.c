@@ -111,8 +111,8 @@ static void put_back(Elaboration *e, const Before *before)
     for (size_t i = before->defined; i < e->iterations->defined.count; i++)
         e->iterations->defined.items[i]->state = DEFINITION_NEW;
     ShapeBuilder builder = before->builder;
-    if (function_count(e->graph) !=
-        before->functions) { /* outlines know them, and they have nodes */
+    if (function_count(e->graph) != before->functions) {
+        /* Outlines know the functions that were made, and these have nodes: both stay. */
         builder.outlines = e->builder->outlines;
         graph_keep(e->graph);
     } else {

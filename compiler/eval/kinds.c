@@ -4,8 +4,6 @@
  */
 #include "compiler/eval/kinds.h"
 
-#include "compiler/eval/elaborate.h"
-
 #include <math.h>
 
 typedef bool KindCheck(Elaboration *e, Value value);
@@ -225,11 +223,6 @@ static bool fits_kind(Elaboration *e, const Function *function, const Syntax *pa
     return value->type != VALUE_ERROR;
 }
 
-bool is_of_author(const Elaboration *e, const Syntax *syntax)
-{
-    return !e->sources->items[syntax->span.source].library;
-}
-
 /* Tells whether a value is of the type of another; of those that no default shows, any is. */
 static bool is_alike(Elaboration *e, Value usual, Value value)
 {
@@ -275,8 +268,8 @@ bool fits_type(Elaboration *e, const Environment *env, const Function *function,
     return false;
 }
 
-/* The range of a parameter, two numbers; false: reported. */
-/* An end of a range is a number now; where shaders read numbers, the end of what they all allow. */
+/* Finds an end of a range: a number that is known now or, where shaders read numbers, the end of what all
+   of their values permit. */
 static bool range_end(Elaboration *e, Value value, bool high, double *end)
 {
     if (value.type == VALUE_NUMBER) {
@@ -296,6 +289,7 @@ static bool takes_whole(const Syntax *parameter)
     return parameter->children[1]->kind == SYNTAX_RANGE;
 }
 
+/* Finds the range of a parameter, two numbers; false: reported. */
 static bool parameter_range(Elaboration *e, const Environment *env, const Syntax *parameter,
                             Range *range)
 {

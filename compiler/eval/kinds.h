@@ -1,5 +1,5 @@
 /*
- * kinds.h: what the parameters of a function take, and whom mistakes inside of it are told.
+ * kinds.h: what the parameters of a function take, and whom mistakes inside of it are told to.
  *
  * It is for the files of this folder.
  */
@@ -7,9 +7,6 @@
 #define KRS_KINDS_H
 
 #include "compiler/eval/elaborate.h"
-
-/* Tells whether a text is the scene's, not the library's. */
-bool is_of_author(const Elaboration *e, const Syntax *syntax);
 
 /* ---- kinds.c ---- */
 /* A path of points becomes one of curves, straight from each to the next; one radius a list. */

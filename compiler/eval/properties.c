@@ -126,18 +126,8 @@ bool check_block(Elaboration *e, const Syntax *block)
     e->block   = block;
     for (uint32_t i = 0; i < block->count; i++) {
         const Syntax *property = block->children[i];
-        if (property->kind != SYNTAX_PROPERTY || !check_property(e, block, property)) {
+        if (property->kind != SYNTAX_PROPERTY || !check_property(e, block, property))
             known = false;
-            continue;
-        }
-        for (uint32_t k = 0; k < i; k++)
-            if (block->children[k]->kind == SYNTAX_PROPERTY &&
-                block->children[k]->name == property->name) {
-                Diag *diag = diag_add(e->diags, DIAG_DUPLICATE_NAME, property->name_span,
-                                      "`%s` is given twice", property->name);
-                diag_secondary(e->diags, diag, block->children[k]->name_span, "given here first");
-                break;
-            }
     }
     return known;
 }
@@ -179,17 +169,10 @@ Node position_property(Elaboration *e, const Environment *env, const Syntax *blo
 {
     Node          position = vector_property(e, env, block, name, otherwise);
     const Syntax *syntax   = find_property(block, name);
-    for (uint32_t i = 0; syntax && i < 3; i++) {
-        Range  range = node_range(e->builder, position, i);
-        double far   = fmax(isfinite(range.low) ? fabs(range.low) : 0,
-                          isfinite(range.high) ? fabs(range.high) : 0);
-        if (far <= MAX_EXTENT)
-            continue;
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
-                               "`%s` reaches to %.3g on the %c axis", name, far, "xyz"[i]);
-        diag->label = "farther than 1e12, which devices cannot compute with";
-        break;
-    }
+    const char   *what     = diag_text(e->diags, "`%s`", name);
+    for (uint32_t i = 0; syntax && i < 3; i++)
+        if (!check_extent(e, node_range(e->builder, position, i), i, syntax, what))
+            break;
     return position;
 }
 

@@ -3,6 +3,7 @@
  */
 #include "compiler/eval/elaborate.h"
 
+#include <math.h>
 #include <string.h>
 
 const Definition *definition_of(const Elaboration *e, const Syntax *name)
@@ -101,6 +102,19 @@ void point_error(Elaboration *e, const Syntax *syntax, const char *what)
                            "%s may not depend on the point", what);
     diag->label = "this depends on `x`, `y`, `z` or `p`";
     point_at_definition(e, diag, syntax);
+}
+
+bool check_extent(Elaboration *e, Range range, uint32_t axis, const Syntax *syntax,
+                  const char *what)
+{
+    double reach = fmax(isfinite(range.low) ? fabs(range.low) : 0,
+                        isfinite(range.high) ? fabs(range.high) : 0);
+    if (reach <= MAX_EXTENT)
+        return true;
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
+                           "%s reaches to %.3g on the %c axis", what, reach, "xyz"[axis]);
+    diag->label = "farther than 1e12, which devices cannot compute with";
+    return false;
 }
 
 void not_supported(Elaboration *e, Span span, const char *what)

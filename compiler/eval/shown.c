@@ -57,7 +57,7 @@ static uint64_t hash_of_form(const Shape *shape, int *left)
     hash          = hash_with(hash, shape->blend.kind);
     hash          = hash_with(hash, shape->blend.width != NODE_NONE);
     hash          = hash_with(hash, shape->stage_count);
-    for (uint32_t i = 0; i<shape->child_count && * left> 0; i++) {
+    for (uint32_t i = 0; *left > 0 && i < shape->child_count; i++) {
         --*left;
         hash = hash_with(hash, hash_of_form(shape->children[i], left));
     }

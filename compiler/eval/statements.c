@@ -82,19 +82,11 @@ static const char *component_name(Elaboration *e, const Syntax *syntax)
     return diag_text(e->diags, "component %zu", e->scene->components.count + 1);
 }
 
-static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *syntax)
+static bool check_box(Elaboration *e, Box box, const Syntax *syntax)
 {
-    for (int i = 0; i < 3; i++) {
-        Range  axis  = shape->box.axis[i];
-        double reach = fmax(isfinite(axis.low) ? fabs(axis.low) : 0,
-                            isfinite(axis.high) ? fabs(axis.high) : 0);
-        if (reach <= MAX_EXTENT)
-            continue;
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
-                               "the shape reaches to %.3g on the %c axis", reach, "xyz"[i]);
-        diag->label = "farther than 1e12, which devices cannot compute with";
-        return false;
-    }
+    for (uint32_t i = 0; i < 3; i++)
+        if (!check_extent(e, box.axis[i], i, syntax, "the shape"))
+            return false;
     return true;
 }
 
@@ -135,7 +127,7 @@ static bool show_one(Elaboration *e, Value value, const Syntax *syntax)
                      "as it is";
         return false;
     }
-    if (!check_bounded(e->builder, value.shape) || !check_extent(e, value.shape, syntax))
+    if (!check_bounded(e->builder, value.shape) || !check_box(e, value.shape->box, syntax))
         return false;
     Component component = {.name   = component_name(e, syntax),
                            .first  = e->scene->components.count,
@@ -452,7 +444,7 @@ void elaborate(Elaboration *e)
         run_messages(e, e->scopes.items[i]);
     run_file(e, scope);
     plan_boxes(e);
-    run_studio(e, e->files);
+    run_studio(e);
     gather_shown(e);
     e->scene->box = box_empty;
     for (size_t i = 0; i < e->scene->components.count; i++)

@@ -102,10 +102,10 @@ void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value)
     bool          more = false, large = value.type == VALUE_NUMBER && fabs(value.number) >= 10;
     const Syntax *literal = NULL;
     warn_of_revolutions(e, syntax, value);
+    /* An iteration with a large number earns the warning, so each is evaluated by itself. */
     if (value.type == VALUE_EXPRESSION && degrees_in(e, syntax, DEEPEST_CHAIN, &more) && !more)
-        iterations_require(e,
-                           graph_bool(e->graph, false)); /* iterations with large numbers earn it */
-    if (!large || is_literal(syntax) || e->sources->items[syntax->span.source].library)
+        iterations_require(e, graph_bool(e->graph, false));
+    if (!large || is_literal(syntax) || !is_of_author(e, syntax))
         return;
     /* A multiple of pi or degrees is no multiple of a half. */
     if (fmod(value.number, 0.5) == 0)
@@ -153,7 +153,7 @@ static void require_colour(Elaboration *e, Value value)
 void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, const char *help)
 {
     double color[3], most = 0;
-    if (e->sources->items[syntax->span.source].library)
+    if (!is_of_author(e, syntax))
         return;
     require_colour(e, value);
     if (value.type != VALUE_LIST || value.list->count != 3)

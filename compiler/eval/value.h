@@ -41,8 +41,7 @@ struct Function {
 
 struct Value {
     ValueType type;
-    uint32_t
-        number_id; /* of a number that the scene's author may change: see value_authored; else 0 */
+    uint32_t  number_id; /* of a number that the author may change (value_authored); else 0 */
     union {
         double          number;
         bool            boolean;

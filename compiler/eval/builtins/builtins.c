@@ -98,7 +98,6 @@ static Value builtin_reflect(Elaboration *e, Call *call)
 
 static Value builtin_invert(Elaboration *e, Call *call)
 {
-    static const double ORIGIN[3] = {0, 0, 0};
     Node center = want_vector(e, call, 0, ORIGIN), radius = want_number(e, call, 1, 1);
     if (center == NODE_NONE || radius == NODE_NONE)
         return value_error();
@@ -180,6 +179,7 @@ static Value builtin_field(Elaboration *e, Call *call)
     Node formula = value_node(e, argument->value);
     return value_shape(make_field(e->builder, formula, false, call->syntax->span));
 }
+
 /* ---- tables ---- */
 
 /* Operations of the graph without parameters are not called by scenes. */

@@ -33,9 +33,8 @@ static bool cell_counts(Elaboration *e, const Call *call, uint32_t cells[3])
 
 bool want_lattice(Elaboration *e, const Call *call, Node *period, uint32_t cells[3])
 {
-    static const double ORIGIN[3] = {0, 0, 0};
-    const Argument     *argument  = &call->arguments[0];
-    bool                vector    = value_size(e, argument->value) >= 2;
+    const Argument *argument = &call->arguments[0];
+    bool            vector   = value_size(e, argument->value) >= 2;
     if (vector)
         *period = want_vector(e, call, 0, ORIGIN);
     else {

@@ -51,16 +51,10 @@ static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Bl
     if (!is_given(call, first))
         return true;
     Node width = want_number(e, call, first, 0);
-    if (width == NODE_NONE)
+    if (width == NODE_NONE ||
+        !check_not_negative(e, width, call->arguments[first].syntax, "the width of a blend"))
         return false;
-    Range range = node_range(e->builder, width, 0);
-    if (range.low < 0) {
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[first].syntax->span,
-                               "the width of a blend cannot be negative");
-        diag->label = diag_text(e->diags, "this can be %g", range.low);
-        return false;
-    }
-    if (range.high != 0)
+    if (node_range(e->builder, width, 0).high != 0)
         blend->width = width;
     return true;
 }

@@ -14,8 +14,6 @@
 
 typedef Value Method(Elaboration *e, const Shape *shape, Call *call);
 
-static const double ORIGIN[3] = {0, 0, 0};
-
 static bool lies_in_plane(const Shape *shape) { return shape->figure || shape->nothing; }
 
 /* Returns a vector of three.  Figures take two as well: `otherwise` is the third. */

@@ -43,13 +43,6 @@ static bool find_texture(const Elaboration *e, const TextureKey *key, uint32_t *
     return false;
 }
 
-static bool fail_texture(Elaboration *e, const Argument *file, const char *path, const char *fault)
-{
-    Diag *diag  = diag_add(e->diags, DIAG_BAD_TEXTURE, file->syntax->span, "%s: %s", path, fault);
-    diag->label = "this picture cannot be read";
-    return false;
-}
-
 /* Copies of a picture that are only needed while it is read are freed. */
 static bool make_texture(Elaboration *e, const Argument *file, const FileBytes *bytes,
                          const TextureKey *key)
@@ -67,7 +60,7 @@ static bool make_texture(Elaboration *e, const Argument *file, const FileBytes *
         array_push(e->textures.arena, &all->list, texture);
         array_push(e->arena, &e->textures, *key);
     } else
-        fail_texture(e, file, bytes->path, image.fault);
+        refuse_picture(e, file->syntax, bytes->path, image.fault);
     arena_free(e->scratch);
     return read;
 }
@@ -169,8 +162,7 @@ static Node want_place(Elaboration *e, const Call *call)
 static Value known_sample(Elaboration *e, const Texture *texture, Node uv, bool alpha)
 {
     double place[2];
-    for (uint32_t i = 0; i < 2; i++)
-        graph_known_component(e->graph, uv, i, &place[i]);
+    graph_known_components(e->graph, uv, 2, place);
     NodeValue value = texture_value(texture, place, 0);
     return alpha ? value_number(value.v[3]) : value_vector(e, value.v, 3);
 }

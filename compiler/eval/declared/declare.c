@@ -17,17 +17,12 @@ static const char *const property_names[] = {"distance", "bound", "exact",  "slo
                                              "outline",  "hull",  "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 
-/* Figures of the library say what their outlines are: what `outline` is of polygons, where there are arcs. */
-static const char bridge_name[] = "border";
+/* The property by which figures of the library say what their outlines are: `outline` for those with arcs. */
+static const char border_name[] = "border";
 
 const char *property_of_shape(size_t index)
 {
     return index < PROPERTY_COUNT ? property_names[index] : NULL;
-}
-
-static bool is_declared_in_library(const Elaboration *e, const Syntax *declaration)
-{
-    return e->sources->items[declaration->span.source].library;
 }
 
 static bool check_properties(Elaboration *e, const Syntax *declaration)
@@ -36,8 +31,7 @@ static bool check_properties(Elaboration *e, const Syntax *declaration)
     for (uint32_t i = 0; i < declaration->count; i++) {
         const Syntax *property = declaration->children[i];
         bool          known    = property->kind != SYNTAX_PROPERTY ||
-                     (strcmp(property->name, bridge_name) == 0 &&
-                      is_declared_in_library(e, declaration));
+                     (strcmp(property->name, border_name) == 0 && !is_of_author(e, declaration));
         for (size_t k = 0; !known && k < PROPERTY_COUNT; k++)
             known = strcmp(property->name, property_names[k]) == 0;
         if (known)
@@ -268,8 +262,8 @@ static bool known_corner(Value value, double corner[4])
 static const Syntax *outline_syntax(const Elaboration *e, const Syntax *declaration)
 {
     const Syntax *outline = find_property(declaration, "outline");
-    bool          wanted  = !outline && e->outlines && is_declared_in_library(e, declaration);
-    return wanted && !find_property(declaration, "core") ? find_property(declaration, bridge_name)
+    bool          wanted  = !outline && e->outlines && !is_of_author(e, declaration);
+    return wanted && !find_property(declaration, "core") ? find_property(declaration, border_name)
                                                          : outline;
 }
 
@@ -298,9 +292,9 @@ static bool outline_property(Elaboration *e, const Environment *env, const Synta
 
 static const Syntax *border_property(const Elaboration *e, const Syntax *declaration)
 {
-    if (!is_declared_in_library(e, declaration))
+    if (is_of_author(e, declaration))
         return NULL;
-    const Syntax *border = find_property(declaration, bridge_name);
+    const Syntax *border = find_property(declaration, border_name);
     return border ? border : find_property(declaration, "outline");
 }
 
@@ -386,8 +380,8 @@ static bool read_properties(Elaboration *e, const Environment *env, const Syntax
 }
 
 /* Makes the distance safe: by its claimed slope, which is put to the test, or a derived one. */
-static bool settle_slope(Elaboration *e, const Environment *env, const Syntax *declaration,
-                         bool first, Shape *shape)
+static bool bound_slope(Elaboration *e, const Environment *env, const Syntax *declaration,
+                        bool first, Shape *shape)
 {
     const Syntax *distance = find_property(declaration, "distance");
     double        slope;
@@ -474,7 +468,7 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     if (shape->declaration->border)
         shape->border = arena_new(e->arena, Border);
     if (!read_properties(e, env, declaration, first, call, shape) ||
-        !settle_slope(e, env, declaration, first, shape))
+        !bound_slope(e, env, declaration, first, shape))
         return value_error();
     if (!e->uses_uv)
         shape->uv = NODE_NONE; /* of the first as of the others: they are alike */

@@ -203,11 +203,7 @@ static bool common_axis(const HullParts *parts, Axis *axis)
     }
     for (int k = 0; k < 3; k++)
         axis->on[k] = parts->items[first].ball.centre[k];
-    int    least   = fabs(axis->along[0]) < 0.6 ? 0 : 1;
-    double side[3] = {least == 0, least == 1, 0};
-    cross3(axis->along, side, axis->across);
-    normalize3(axis->across);
-    cross3(axis->along, axis->across, axis->other);
+    axes_across3(axis->along, axis->across, axis->other);
     return true;
 }
 
@@ -247,7 +243,7 @@ static Value put_in_place(const Hulling *h, const Shape *shape, double axes[3][3
 
 /* Makes the hull of balls about one axis: that of what is left and right of it in a plane through
    it, revolved. */
-static bool turned_hull(const Hulling *h, const Axis *axis, double slack, Value *result)
+static bool revolved_hull(const Hulling *h, const Axis *axis, double slack, Value *result)
 {
     size_t    count = 2 * h->parts.count;
     HullBall *discs = arena_new_array(h->e->values, HullBall, count);
@@ -350,7 +346,7 @@ static bool rims_hull(const Hulling *h, bool *common, Value *result)
     *common      = common_axis(&h->parts, &axis);
     double slack = *common ? NEAR * parts_size(&axis, &h->parts) : 0;
     return *common &&
-           (turned_hull(h, &axis, slack, result) || extruded_hull(h, &axis, slack, result));
+           (revolved_hull(h, &axis, slack, result) || extruded_hull(h, &axis, slack, result));
 }
 
 static Value hull_with_rims(const Hulling *h)

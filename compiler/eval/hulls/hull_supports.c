@@ -11,8 +11,6 @@
 #include "compiler/base/elementary.h"
 #include "compiler/base/vec.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* The part of the size of all below which a length is rounding. */
 static const double SLACK = 1e-11;
 /* Shorter arcs leave nothing out that single precision can tell, nor do nearer normals. */
@@ -104,7 +102,7 @@ static void add_edge(Work *w, const Pair *pair, double from, double to)
 {
     HullEdge edge = {w->balls[pair->first], {0}, pair->sine, pair->cosine, {0}, -2};
     double   half = 0.5 * (to - from), angle = 0.5 * (from + to);
-    bool     whole = half > PI - 1e-9;
+    bool     whole = half > M_PI - 1e-9;
     for (int i = 0; i < 3; i++) {
         edge.axis[i]   = pair->axis[i];
         edge.middle[i] = real_cos(angle) * pair->e1[i] + real_sin(angle) * pair->e2[i];
@@ -119,7 +117,7 @@ static void add_edge(Work *w, const Pair *pair, double from, double to)
 }
 
 /* Finds the directions of a pair beyond which another ball reaches: `arc_ends` gets where they
-   begin and end, from -PI to PI. False: all of them. */
+   begin and end, from -pi to pi.  False: all of them. */
 static bool hide_behind(Work *w, const Pair *pair, size_t other, size_t *end_count)
 {
     const HullBall *a = &w->balls[pair->first], *c = &w->balls[other];
@@ -135,7 +133,7 @@ static bool hide_behind(Work *w, const Pair *pair, size_t other, size_t *end_cou
     double middle = real_atan2(y, x), half = real_acos(room / reach);
     double from = middle - half, to = middle + half;
     for (int lap = -1; lap <= 1; lap++) {
-        double low = fmax(from + 2 * PI * lap, -PI), high = fmin(to + 2 * PI * lap, PI);
+        double low = fmax(from + 2 * M_PI * lap, -M_PI), high = fmin(to + 2 * M_PI * lap, M_PI);
         if (low >= high)
             continue;
         w->arc_ends[(*end_count)++] = (ArcEnd){low, 1};
@@ -155,12 +153,12 @@ static int compare_arc_ends(const void *left, const void *right)
 /* Adds an edge for each arc that is left of the circle.  The first and the last may be one. */
 static void add_edges(Work *w, const Pair *pair, size_t end_count)
 {
-    double from = -PI, first_end = -PI;
+    double from = -M_PI, first_end = -M_PI;
     int    hidden = 0;
     qsort(w->arc_ends, end_count, sizeof *w->arc_ends, compare_arc_ends);
     for (size_t i = 0; i < end_count; i++) {
         double angle = w->arc_ends[i].angle;
-        if (hidden == 0 && from == -PI)
+        if (hidden == 0 && from == -M_PI)
             first_end = angle;
         else if (hidden == 0 && angle - from > SHORTEST_ARC)
             add_edge(w, pair, from, angle);
@@ -169,9 +167,9 @@ static void add_edges(Work *w, const Pair *pair, size_t end_count)
             from = angle;
     }
     if (end_count == 0)
-        add_edge(w, pair, -PI, PI);
-    else if (PI - from + first_end + PI > SHORTEST_ARC)
-        add_edge(w, pair, from, first_end + 2 * PI);
+        add_edge(w, pair, -M_PI, M_PI);
+    else if (M_PI - from + first_end + M_PI > SHORTEST_ARC)
+        add_edge(w, pair, from, first_end + 2 * M_PI);
 }
 
 static void join_in_space(Work *w, const Pair *pair)
@@ -189,7 +187,7 @@ static void join_in_plane(Work *w, const Pair *pair)
 {
     for (int side = 0; side < 2; side++) {
         double direction[3], beyond = -HUGE_VAL;
-        pair_direction(pair, PI * side, direction);
+        pair_direction(pair, M_PI * side, direction);
         const HullBall *a      = &w->balls[pair->first];
         double          offset = dot3(direction, a->centre) + a->radius;
         for (size_t k = 0; k < w->count; k++)
@@ -197,7 +195,7 @@ static void join_in_plane(Work *w, const Pair *pair)
                 beyond = fmax(beyond, dot3(direction, w->balls[k].centre) + w->balls[k].radius);
         if (beyond > offset + w->slack)
             continue;
-        add_face(w, pair, PI * side);
+        add_face(w, pair, M_PI * side);
         mark_joined(w, pair);
     }
 }

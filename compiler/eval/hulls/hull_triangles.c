@@ -67,15 +67,15 @@ static Value triangle_value(Elaboration *e, const facetT *facet)
     return value_list(e, corners, 3);
 }
 
-/* Its facets are handed to a function, which may keep nothing of them.  False: the points lie in a
-   plane. */
 typedef void EachFacet(const facetT *facet, void *user);
-static bool  run_qhull(coordT *points, size_t count, const char *options, EachFacet *each,
-                       void *user)
+
+/* Runs Qhull and hands the facets of the hull to a function, which keeps nothing of them.  What Qhull says of
+   mistakes goes nowhere.  False: the points lie in a plane. */
+static bool run_qhull(coordT *points, size_t count, const char *options, EachFacet *each,
+                      void *user)
 {
     qhT   state, *qh = &state;
-    FILE *silent = fopencookie(NULL, "w",
-                               (cookie_io_functions_t){0}); /* what it says of mistakes */
+    FILE *silent = fopencookie(NULL, "w", (cookie_io_functions_t){0});
     FILE *said   = silent ? silent : stderr;
     char  command[32];
     snprintf(command, sizeof command, "%s", options);

@@ -74,10 +74,9 @@ static void check_fov(Elaboration *e, const Syntax *given, Node fov)
         return;
     Diag *diag        = diag_add(e->diags, DIAG_BAD_VALUE, given->span,
                                  "`fov` must lie between 0 and 180 degrees");
-    diag->help        = "angles are radians unless they end in `deg`";
     diag->replacement = degrees_instead(e, given);
-    if (!diag->replacement)
-        diag->help = "angles are radians unless they end in `deg`, as in `40deg`";
+    diag->help        = diag->replacement ? "angles are radians unless they end in `deg`"
+                                          : "angles are radians unless they end in `deg`, as in `40deg`";
 }
 
 static void check_aperture(Elaboration *e, const Syntax *given, Node aperture)

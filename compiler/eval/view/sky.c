@@ -36,11 +36,8 @@ static const KrsSkyMap *read_map(Elaboration *e, const Syntax *syntax, const cha
         return NULL;
     if (image_read(&image, bytes.bytes, bytes.length))
         map = make_map(e, &image);
-    else {
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_TEXTURE, syntax->span, "%s: %s", bytes.path,
-                               image.fault);
-        diag->label = "this picture cannot be read";
-    }
+    else
+        refuse_picture(e, syntax, bytes.path, image.fault);
     arena_free(e->scratch);
     return map;
 }

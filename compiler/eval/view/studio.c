@@ -96,29 +96,27 @@ static Node state_floor(Elaboration *e, Box box)
 }
 
 /* Returns the scope of the library's file, whose statements are run like those of the scene. */
-static Scope *find_studio(const Elaboration *e, const Files *files)
+static Scope *find_studio(const Elaboration *e)
 {
+    const Files *files = e->files;
     for (size_t i = 0; i < files->count; i++)
         if (files->items[i]->library && strcmp(files->items[i]->path, "library:studio.krs") == 0)
             return e->scopes.items[i];
     return NULL;
 }
 
-static void set_value(Scope *scope, const char *name, Value value)
+/* Gives a definition of the file another value than it is written with. */
+static void set_value(Elaboration *e, const Scope *scope, const char *name, Value value)
 {
-    for (size_t i = 0; i < scope->definitions.count; i++) {
-        Definition *definition = scope->definitions.items[i];
-        if (strcmp(definition->name, name) != 0)
-            continue;
-        definition->value = value;
-        definition->state = DEFINITION_DONE;
-    }
+    Definition *definition = scope_find(scope, name_intern(e->files->names, name, strlen(name)));
+    definition->value      = value;
+    definition->state      = DEFINITION_DONE;
 }
 
-void run_studio(Elaboration *e, const Files *files)
+void run_studio(Elaboration *e)
 {
     Scene     *scene  = e->scene;
-    Scope     *scope  = find_studio(e, files);
+    Scope     *scope  = find_studio(e);
     const bool varies = scene->boxes.nodes.count > 0;
     if (!e->studio || !scope || e->diags->errors > 0 || scene->lights.count > 0 ||
         scene->sky.zenith != NODE_NONE || scene->fog.color != NODE_NONE)
@@ -130,9 +128,9 @@ void run_studio(Elaboration *e, const Files *files)
         return;
     /* Rays that begin inside of a floor, and along it, would never leave it. */
     const double bottom = fmin(box.axis[1].low, lowest_of_level_rays(e));
-    set_value(scope, "_bottom",
+    set_value(e, scope, "_bottom",
               varies ? value_of_node(e, state_floor(e, box)) : value_number(bottom));
-    set_value(scope, "_size", value_number(fmax(box_diagonal(box), 1e-9)));
+    set_value(e, scope, "_size", value_number(fmax(box_diagonal(box), 1e-9)));
     run_file(e, scope);
     scene->components.items[scene->components.count - 1].name = "floor";
 }

@@ -9,8 +9,6 @@
 
 /* ---- fog, image, zones ---- */
 
-static const double ORIGIN[3] = {0, 0, 0};
-
 /* Returns 1 over the height, unless that is 0: then the fog is as dense everywhere. */
 static Node fog_fall(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
