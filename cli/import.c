@@ -77,11 +77,11 @@ static const char *other_way(const char *path)
     return "";
 }
 
-/* Prints the notes of the head of the scene; what is left out was reported before. */
+/* Prints the notes of the head of the scene, but for those of parts that are left out. */
 static void say_notes(const Import *import)
 {
     for (size_t i = 0; i < import->notes.count; i++)
-        if (strncmp(import->notes.items[i].words, "a part is left out", 18) != 0)
+        if (!import->notes.items[i].left_out)
             say("%s:%u: note: %s", import->path, import->notes.items[i].line,
                 import->notes.items[i].words);
 }

@@ -9,18 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tells how long the folder of a path is, with its slash. */
-static size_t folder_length(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path + 1) : 0;
-}
+#include "compiler/base/paths.h"
 
 /* Adds the file as seen from the folder of the scene; where that is another one, from everywhere. */
 static void add_file_name(const Import *import, Text *name)
 {
     const char *output = import->output ? import->output : "";
-    size_t      folder = folder_length(output), own = folder_length(import->path);
+    size_t      folder = path_folder_length(output), own = path_folder_length(import->path);
     if (folder == own && strncmp(output, import->path, own) == 0)
         text_add(name, import->path + own);
     else if (folder == 0)

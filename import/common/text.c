@@ -33,14 +33,10 @@ bool import_refuse(Import *import, unsigned line, const char *format, ...)
     return false;
 }
 
-void import_note(Import *import, unsigned line, const char *format, ...)
+static void add_note(Import *import, ImportNote note)
 {
-    va_list arguments;
-    va_start(arguments, format);
-    ImportNote note = {harmless(import->arena, format, arguments), line};
-    va_end(arguments);
     if (import->notes.count >= MAX_NOTES - 1)
-        note.words = "more is left out than can be listed";
+        note = (ImportNote){"more is left out than can be listed", note.line, false};
     for (size_t i = 0; i < import->notes.count; i++)
         if (strcmp(import->notes.items[i].words, note.words) == 0)
             return;
@@ -48,11 +44,19 @@ void import_note(Import *import, unsigned line, const char *format, ...)
         array_push(import->arena, &import->notes, note);
 }
 
+void import_note(Import *import, unsigned line, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    add_note(import, (ImportNote){harmless(import->arena, format, arguments), line, false});
+    va_end(arguments);
+}
+
 void import_blame(Import *import, unsigned line, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    ImportNote note = {harmless(import->arena, format, arguments), line};
+    ImportNote note = {harmless(import->arena, format, arguments), line, false};
     va_end(arguments);
     array_push(import->arena, &import->blames, note);
 }
@@ -61,14 +65,16 @@ bool import_leaves_out(Import *import, unsigned line)
 {
     if (!import->keep_going || import->refusal.length == 0)
         return false;
-    ImportNote note = {import->refusal.bytes, line};
-    import->refusal = (Text){.arena = import->arena};
+    ImportNote note  = {import->refusal.bytes, line, true};
+    Text       words = {.arena = import->arena};
+    import->refusal  = (Text){.arena = import->arena};
     for (size_t i = 0; i < import->left_out.count; i++)
         if (import->left_out.items[i].line == line &&
             strcmp(import->left_out.items[i].words, note.words) == 0)
             return true;
     array_push(import->arena, &import->left_out, note);
-    import_note(import, line, "a part is left out: %s", strchr(note.words, ':') + 1);
+    text_format(&words, "a part is left out: %s", strchr(note.words, ':') + 1);
+    add_note(import, (ImportNote){words.bytes, line, true});
     return true;
 }
 

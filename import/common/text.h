@@ -19,6 +19,7 @@ typedef struct ImportMark {
 typedef struct ImportNote {
     const char *words;
     unsigned    line;
+    bool left_out; /* it is of a part that was refused, which the command says in its own words */
 } ImportNote;
 
 typedef struct Import {

@@ -126,6 +126,14 @@ bool word_is(const WordReader *reader, const char *text)
            strcmp(reader->word.text, text) == 0;
 }
 
+int word_index(const WordReader *reader, const char *const *names, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (word_is(reader, names[i]))
+            return (int)i;
+    return -1;
+}
+
 bool word_accept(WordReader *reader, const char *text)
 {
     if (!word_is(reader, text))

@@ -41,7 +41,11 @@ void words_advance_plain(WordReader *reader);
 
 /* Tells whether the next word is this name or sign. */
 bool word_is(const WordReader *reader, const char *text);
-/* Goes on if it is. */
+/* Returns which of these names or signs the next word is; -1: none of them. */
+int word_index(const WordReader *reader, const char *const *names, size_t count);
+#define word_among(reader, names) \
+    (word_index((reader), (names), sizeof(names) / sizeof *(names)) >= 0)
+/* Goes on if the next word is this name or sign. */
 bool word_accept(WordReader *reader, const char *text);
 /* Refuses the file if it is not. */
 bool word_expect(WordReader *reader, const char *text);

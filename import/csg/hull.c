@@ -232,9 +232,10 @@ size_t csg_convex_corners(Import *import, PartBalls *balls)
     double(*points)[3] = balls->points;
     double(*chain)[3]  = arena_alloc(import->arena, 2 * n + 1, sizeof *chain);
     qsort(points, n, sizeof *points, compare_points);
-    for (size_t turn = 0, bottom = 0; turn<2; turn++, bottom = count> 0 ? count - 1 : 0)
+    for (int upper = 0; upper < 2; upper++) {
+        const size_t bottom = count > 0 ? count - 1 : 0; /* the first corner of this half */
         for (size_t i = 0; i < n; i++) {
-            const double *p = points[turn ? n - 1 - i : i];
+            const double *p = points[upper ? n - 1 - i : i];
             if (count > 0 && compare_points(chain[count - 1], p) == 0)
                 continue;
             while (count >= bottom + 2) {
@@ -245,6 +246,7 @@ size_t csg_convex_corners(Import *import, PartBalls *balls)
             }
             memcpy(chain[count++], p, sizeof *chain);
         }
+    }
     if (count > 1 && compare_points(chain[0], chain[count - 1]) == 0)
         count--;
     balls->points = chain;

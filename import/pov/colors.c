@@ -4,36 +4,31 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/srgb.h"
 #include "import/pov/reader.h"
 
-static const char *const color_words[] = {"color", "colour", "rgb",   "rgbf",  "rgbt",
-                                          "rgbft", "srgb",   "srgbf", "srgbt", "srgbft"};
+static const char *const color_words[] = {"rgb",  "rgbf",  "rgbt",  "rgbft",
+                                          "srgb", "srgbf", "srgbt", "srgbft"};
 static const char *const channels[]    = {"red", "green", "blue", "filter", "transmit"};
 
 bool pov_color_follows(PovReader *reader)
 {
-    for (size_t i = 0; i < sizeof color_words / sizeof *color_words; i++)
-        if (word_is(&reader->words, color_words[i]))
-            return true;
-    for (size_t i = 0; i < sizeof channels / sizeof *channels; i++)
-        if (word_is(&reader->words, channels[i]))
-            return true;
-    return pov_value_follows(reader);
+    const WordReader *words = &reader->words;
+    return word_is(words, "color") || word_is(words, "colour") || word_among(words, color_words) ||
+           word_among(words, channels) || pov_value_follows(reader);
 }
-
-static double linear(double s) { return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4); }
 
 double pov_light_of(const PovReader *reader, double channel)
 {
     double gamma = reader->gamma;
-    return gamma == 0 ? linear(channel) : pow(fmax(channel, 0), gamma);
+    return gamma == 0 ? linear_of_srgb(channel) : pow(fmax(channel, 0), gamma);
 }
 
 /* Converts a channel from how it is shown. */
 static double in_space_of_file(const PovReader *reader, double shown)
 {
     double gamma = reader->gamma;
-    return gamma == 0 ? shown : pow(linear(fmax(shown, 0)), 1 / gamma);
+    return gamma == 0 ? shown : pow(linear_of_srgb(fmax(shown, 0)), 1 / gamma);
 }
 
 /* Puts the numbers behind a word for colours where they belong: of rgbt the fourth is
@@ -53,28 +48,19 @@ static void take_channels(const PovReader *reader, const char *word, const PovVa
     color->count = 5;
 }
 
-static int find_word(const PovReader *reader, const char *const *words, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (word_is(&reader->words, words[i]))
-            return i;
-    return -1;
-}
-
 /* Reads words and numbers, one after the other, each of which changes what is known so far. */
 bool pov_color(PovReader *reader, double color[5])
 {
     WordReader *words = &reader->words;
     PovValue    value = {.count = 0}, found;
-    int         word, channel;
+    int         channel;
     if (!pov_release(reader))
         return false;
     if (!word_accept(words, "color"))
         word_accept(words, "colour");
     for (;;) {
-        word    = find_word(reader, color_words + 2, sizeof color_words / sizeof *color_words - 2);
-        channel = find_word(reader, channels, 5);
-        if (word >= 0) {
+        channel = word_index(words, channels, 5);
+        if (word_among(words, color_words)) {
             const char *name = words->word.text;
             words_advance(words);
             if (!pov_value(reader, &found))

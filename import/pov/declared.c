@@ -15,14 +15,6 @@ static const char *const others[] = {"normal",      "interior",  "media",     "f
                                      "density_map", "photons",   "radiosity", "global_settings",
                                      "spline",      "subsurface"};
 
-static bool follows(const PovReader *reader, const char *const *names, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (word_is(&reader->words, names[i]))
-            return true;
-    return false;
-}
-
 /* ---- arrays ---- */
 
 static bool read_sizes(PovReader *reader, PovCell *array)
@@ -109,9 +101,7 @@ PovCell *pov_element(PovReader *reader, PovCell *array)
 
 PovCell *pov_take(PovReader *reader, PovKind kind)
 {
-    PovCell       *own     = reader->words.word.kind == IMPORT_WORD_NAME
-                                 ? pov_find(reader, reader->words.word.text)
-                                 : NULL;
+    PovCell       *own     = pov_find_next(reader);
     const PovCell *element = own;
     if (own && own->kind == POV_REFUSED) {
         import_refuse(reader->import, reader->words.word.line, "of `%.40s`: %s",
@@ -214,9 +204,7 @@ static bool read_value(PovReader *reader, PovCell *cell)
 /* Copies a declared name, and refuses one of something else than a value. */
 static bool copy_declared(PovReader *reader, PovCell *cell)
 {
-    PovCell *own = reader->words.word.kind == IMPORT_WORD_NAME
-                       ? pov_find(reader, reader->words.word.text)
-                       : NULL;
+    PovCell *own = pov_find_next(reader);
     if (!own || own->kind == POV_VALUE || own->kind == POV_FUNCTION || own->kind == POV_NOTHING)
         return false;
     words_advance(&reader->words);
@@ -230,9 +218,7 @@ static bool copy_declared(PovReader *reader, PovCell *cell)
 static bool is_whole_array(PovReader *reader)
 {
     const char    *at  = reader->words.at;
-    const PovCell *own = reader->words.word.kind == IMPORT_WORD_NAME
-                             ? pov_find(reader, reader->words.word.text)
-                             : NULL;
+    const PovCell *own = pov_find_next(reader);
     return own && own->kind == POV_ARRAY && at[strspn(at, " \t\r\n")] != '[';
 }
 
@@ -282,7 +268,7 @@ bool pov_rvalue(PovReader *reader, PovCell *cell)
         return read_light(reader, cell);
     if (word_is(words, "sky_sphere"))
         return read_sky(reader, cell);
-    if (follows(reader, others, sizeof others / sizeof *others))
+    if (word_among(words, others))
         return read_other(reader, cell);
     return import_refuse(reader->import, words->word.line,
                          "`%.40s` is not translated: a name is declared"
@@ -293,7 +279,7 @@ bool pov_rvalue(PovReader *reader, PovCell *cell)
 bool pov_argument(PovReader *reader, PovCell **cell)
 {
     WordReader *words = &reader->words;
-    PovCell *own = words->word.kind == IMPORT_WORD_NAME ? pov_find(reader, words->word.text) : NULL;
+    PovCell    *own   = pov_find_next(reader);
     const char *at    = words->at + strspn(words->at, " \t\r\n");
     bool        alone = *at == ',' || *at == ')';
     bool        known = own || pov_value_follows(reader) || pov_string_follows(reader) ||

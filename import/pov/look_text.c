@@ -31,7 +31,7 @@ static void mirrored(PovReader *reader, const PovLook *look, double light[3], do
     }
     *part = share = sum > 0 ? sum / all : 0;
     for (int i = 0; i < 3 && all > sum; i++)
-        light[i] = share * light[i] + (1 - share) * (sum / 3) * 3 * body[i] / (all - sum);
+        light[i] = share * light[i] + (1 - share) * sum * body[i] / (all - sum);
 }
 
 /* Adds `color` and `emission`, as POV-Ray has them: what is transmitted has no colour of the thing,

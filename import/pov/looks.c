@@ -256,7 +256,7 @@ static void name_pattern(const PovReader *reader, PovLook *look)
     look->averages = look->averages || word_is(&reader->words, "average");
 }
 
-static bool pigment(PovReader *reader, PovLook *look)
+static bool read_pigment(PovReader *reader, PovLook *look)
 {
     Transform ignored = transform_identity();
     while (!word_is(&reader->words, "}") && !word_is(&reader->words, "]")) {
@@ -295,11 +295,11 @@ bool pov_look_inside(PovReader *reader, PovLook *look)
     while (taken && !word_is(&reader->words, "]") && !word_is(&reader->words, "}"))
         if (!pov_look(reader, look, &taken) || (!taken && !pov_leave_out(reader, NULL)))
             return false;
-    return taken || pigment(reader, look);
+    return taken || read_pigment(reader, look);
 }
 
 /* Reads an optional number behind a word. */
-static bool amount(PovReader *reader, double otherwise, double *number)
+static bool read_amount(PovReader *reader, double otherwise, double *number)
 {
     PovValue value = {.v = {otherwise}};
     words_advance(&reader->words);
@@ -310,7 +310,7 @@ static bool amount(PovReader *reader, double otherwise, double *number)
 }
 
 /* Reads a number, or a colour, for each of three channels. */
-static bool channels(PovReader *reader, double channels[3])
+static bool read_channels(PovReader *reader, double channels[3])
 {
     double color[5];
     words_advance(&reader->words);
@@ -321,7 +321,7 @@ static bool channels(PovReader *reader, double channels[3])
 }
 
 /* Reads `diffuse albedo 0.6, 0.2`: the second one is for what is lit from behind. */
-static bool diffuse(PovReader *reader, PovFinish *finish)
+static bool read_diffuse(PovReader *reader, PovFinish *finish)
 {
     double behind;
     words_advance(&reader->words);
@@ -336,7 +336,7 @@ static bool diffuse(PovReader *reader, PovFinish *finish)
 
 /* Reads `reflection R`, or `reflection { least, most ... }`, of which the first one is seen from
    above. */
-static bool reflection(PovReader *reader, PovFinish *finish)
+static bool read_reflection(PovReader *reader, PovFinish *finish)
 {
     unsigned line = reader->words.word.line;
     double   most[5], number;
@@ -360,7 +360,7 @@ static bool reflection(PovReader *reader, PovFinish *finish)
         if (!pov_release(reader))
             return false;
         if (word_is(&reader->words, "metallic")) {
-            if (!amount(reader, 1, &number))
+            if (!read_amount(reader, 1, &number))
                 return false;
             finish->mirrors_metal = number > 0;
         } else if (!pov_leave_out(reader, "of a reflection is")) {
@@ -371,10 +371,10 @@ static bool reflection(PovReader *reader, PovFinish *finish)
     return true;
 }
 
-/* Tells how wide a highlight is: a cosine with phong_size for its exponent, between the mirrored ray and
-   the light, is about one with four times that between the normal and their middle; 1 / roughness is
-   such an exponent. */
-static bool finish_word(PovReader *reader, PovLook *look)
+/* Reads what a finish says next.  Of a highlight this is how narrow it is: a cosine with phong_size for its exponent,
+   between the mirrored ray and the light, is about one with four times that between the normal and their middle;
+   1 / roughness is such an exponent. */
+static bool read_finish_word(PovReader *reader, PovLook *look)
 {
     WordReader *words  = &reader->words;
     PovFinish  *finish = &look->finish;
@@ -391,35 +391,36 @@ static bool finish_word(PovReader *reader, PovLook *look)
         return true;
     }
     if (word_is(words, "phong_size")) {
-        if (!amount(reader, 40, &number))
+        if (!read_amount(reader, 40, &number))
             return false;
         finish->exponent = 4 * number;
         return true;
     }
     if (word_is(words, "roughness")) {
-        if (!amount(reader, 0.05, &number))
+        if (!read_amount(reader, 0.05, &number))
             return false;
         finish->exponent = number > 0 ? 1 / number : 1e6;
         return true;
     }
     if (word_is(words, "metallic"))
-        return amount(reader, 1, &finish->metallic);
+        return read_amount(reader, 1, &finish->metallic);
     if (word_is(words, "diffuse"))
-        return diffuse(reader, finish);
+        return read_diffuse(reader, finish);
     if (word_is(words, "ambient"))
-        return channels(reader, finish->ambient);
+        return read_channels(reader, finish->ambient);
     if (word_is(words, "emission"))
-        return channels(reader, finish->emission);
+        return read_channels(reader, finish->emission);
     if (word_is(words, "reflection"))
-        return reflection(reader, finish);
+        return read_reflection(reader, finish);
     return pov_leave_out(reader, "of a finish is");
 }
 
-static bool finish(PovReader *reader, PovLook *look)
+static bool read_finish(PovReader *reader, PovLook *look)
 {
     look->finished = true;
     while (!word_is(&reader->words, "}")) {
-        if (!pov_release(reader) || (!take_declared(reader, look) && !finish_word(reader, look)))
+        if (!pov_release(reader) ||
+            (!take_declared(reader, look) && !read_finish_word(reader, look)))
             return false;
         word_accept(&reader->words, ",");
     }
@@ -427,13 +428,13 @@ static bool finish(PovReader *reader, PovLook *look)
 }
 
 /* Reads what is inside of a thing: its index of refraction alone shows. */
-static bool interior(PovReader *reader, PovLook *look)
+static bool read_interior(PovReader *reader, PovLook *look)
 {
     while (!word_is(&reader->words, "}")) {
         if (!pov_release(reader))
             return false;
         if (word_is(&reader->words, "ior")) {
-            if (!amount(reader, 1, &look->ior))
+            if (!read_amount(reader, 1, &look->ior))
                 return false;
         } else if (!take_declared(reader, look) && !pov_leave_out(reader, NULL)) {
             return false;
@@ -442,14 +443,14 @@ static bool interior(PovReader *reader, PovLook *look)
     return true;
 }
 
-static bool block(PovReader *reader, PovLook *look,
-                  bool (*inside)(PovReader *reader, PovLook *look))
+static bool read_block(PovReader *reader, PovLook *look,
+                       bool (*inside)(PovReader *reader, PovLook *look))
 {
     return word_expect(&reader->words, "{") && inside(reader, look) &&
            word_expect(&reader->words, "}");
 }
 
-static bool texture(PovReader *reader, PovLook *look)
+static bool read_texture(PovReader *reader, PovLook *look)
 {
     Transform ignored = transform_identity();
     while (!word_is(&reader->words, "}")) {
@@ -486,7 +487,7 @@ static bool read_layer(PovReader *reader, PovLook *look)
         layer.finish                  = reader->usual.finish;
     }
     layer.textured = false;
-    if (!block(reader, &layer, texture))
+    if (!read_block(reader, &layer, read_texture))
         return false;
     double through = fmin(fmax(layer.filter + layer.transmit, 0), 1);
     bool   both    = below.textured && layer.colored;
@@ -515,11 +516,11 @@ bool pov_look(PovReader *reader, PovLook *look, bool *taken)
         return false;
     bool good;
     if (word_accept(words, "pigment"))
-        good = block(reader, look, pigment);
+        good = read_block(reader, look, read_pigment);
     else if (word_accept(words, "finish"))
-        good = block(reader, look, finish);
+        good = read_block(reader, look, read_finish);
     else if (word_accept(words, "interior"))
-        good = block(reader, look, interior);
+        good = read_block(reader, look, read_interior);
     else if (word_accept(words, "texture") || word_accept(words, "material"))
         good = read_layer(reader, look);
     else if (word_is(words, "color_map") || word_is(words, "colour_map"))

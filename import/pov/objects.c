@@ -66,13 +66,7 @@ static const char *const missing[] = {"mesh",       "mesh2",       "height_field
                                       "isosurface", "parametric",  "sor",          "ovus",
                                       "lemon",      "sphere_sweep"};
 
-static bool is_missing(const PovReader *reader)
-{
-    for (size_t i = 0; i < sizeof missing / sizeof *missing; i++)
-        if (word_is(&reader->words, missing[i]))
-            return true;
-    return false;
-}
+static bool is_missing(const PovReader *reader) { return word_among(&reader->words, missing); }
 
 /* Reads an object of a join; *item is NULL where nothing is seen of it.  One that is refused is
    left out of a union with --keep-going. */
@@ -162,23 +156,14 @@ static bool read_object(PovReader *reader, unsigned line, Part **part)
     return true;
 }
 
-static bool is_harmless(const PovReader *reader)
-{
-    for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
-        if (word_is(&reader->words, harmless[i]))
-            return true;
-    return false;
-}
+static bool is_harmless(const PovReader *reader) { return word_among(&reader->words, harmless); }
 
 bool pov_modifier_follows(const PovReader *reader)
 {
     static const char *const others[] = {"}",         "translate",  "rotate", "scale",   "matrix",
                                          "transform", "pigment",    "finish", "texture", "material",
                                          "inverse",   "clipped_by", "open"};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (word_is(&reader->words, others[i]))
-            return true;
-    return is_harmless(reader);
+    return word_among(&reader->words, others) || is_harmless(reader);
 }
 
 /* A box that is scaled along its edges is a box: its distance is exact, where that of what is scaled

@@ -17,14 +17,6 @@
 /* Blocks that change no shape. */
 static const char *const settings[] = {"fog", "rainbow", "media", "atmosphere", "photons"};
 
-static bool is_setting(const PovReader *reader)
-{
-    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
-        if (word_is(&reader->words, settings[i]))
-            return true;
-    return false;
-}
-
 /* ---- the file ---- */
 
 /* Shows a part, with the material of `#default` unless it has one. */
@@ -77,7 +69,7 @@ static bool statement(PovReader *reader)
         return pov_sky_sphere(reader);
     if (word_is(words, "global_settings"))
         return pov_settings(reader);
-    if (is_setting(reader))
+    if (word_among(&reader->words, settings))
         return pov_leave_out(reader, "is");
     if (pov_object_follows(reader))
         return show_object(reader);

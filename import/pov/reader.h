@@ -169,6 +169,8 @@ typedef struct PovReader {
 void pov_start(PovReader *reader);
 /* The last one of a name counts; NULL: there is none. */
 PovCell *pov_find(PovReader *reader, const char *name);
+/* Finds what the next word names. */
+PovCell *pov_find_next(PovReader *reader);
 /* Carries out a directive or macro that waits at the word. */
 bool pov_release(PovReader *reader);
 /* Reads `default { ... }`, up to its `}`. */

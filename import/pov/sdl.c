@@ -82,6 +82,12 @@ PovCell *pov_find(PovReader *reader, const char *name)
     return NULL;
 }
 
+PovCell *pov_find_next(PovReader *reader)
+{
+    const ImportWord *word = &reader->words.word;
+    return word->kind == IMPORT_WORD_NAME ? pov_find(reader, word->text) : NULL;
+}
+
 /* Names of the innermost macro or file stand last; others are for all. */
 static PovCell *new_name(PovReader *reader, const char *name, PovCell *cell, bool local)
 {
@@ -185,7 +191,7 @@ static bool do_include(PovReader *reader)
 {
     WordReader *words = &reader->words;
     words_advance(words);
-    PovCell *own = words->word.kind == IMPORT_WORD_NAME ? pov_find(reader, words->word.text) : NULL;
+    PovCell    *own  = pov_find_next(reader);
     const char *name = words->word.kind == IMPORT_WORD_STRING ? words->word.text
                        : own && own->kind == POV_STRING       ? own->string
                                                               : NULL;
@@ -419,7 +425,7 @@ static bool carry_out(PovReader *reader, bool *next)
         directive(reader, next);
         return true;
     }
-    PovCell *own = words->word.kind == IMPORT_WORD_NAME ? pov_find(reader, words->word.text) : NULL;
+    PovCell *own = pov_find_next(reader);
     if (!own || own->kind != POV_MACRO)
         return false;
     if (reader->held_at == reader->open) {

@@ -10,8 +10,6 @@
 
 enum { MAX_ORDER = 24 };
 
-static void comma(PovReader *reader) { word_accept(&reader->words, ","); }
-
 /* Moves a part so that its own origin goes to a point of POV-Ray. */
 static void move_to(Part *part, const double q[3])
 {
@@ -31,7 +29,7 @@ bool pov_sphere(PovReader *reader, unsigned line, Part **part)
     double center[3], radius;
     if (!pov_vector(reader, center))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_number(reader, &radius))
         return false;
     if (radius == 0)
@@ -67,7 +65,7 @@ bool pov_box(PovReader *reader, unsigned line, Part **part)
     double low[3], high[3], size[3], center[3];
     if (!pov_vector(reader, low))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_vector(reader, high))
         return false;
     for (int i = 0; i < 3; i++) {
@@ -122,10 +120,10 @@ bool pov_cylinder(PovReader *reader, unsigned line, Part **part)
     double bottom[3], top[3], radius;
     if (!pov_vector(reader, bottom))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_vector(reader, top))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     return pov_number(reader, &radius) && positive(reader, line, radius) &&
            column(reader, line, bottom, top, radius, radius, part);
 }
@@ -135,13 +133,13 @@ bool pov_cone(PovReader *reader, unsigned line, Part **part)
     double bottom[3], top[3], radius, end;
     if (!pov_vector(reader, bottom))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_number(reader, &radius))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_vector(reader, top))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     return pov_number(reader, &end) && column(reader, line, bottom, top, radius, end, part);
 }
 
@@ -150,7 +148,7 @@ bool pov_torus(PovReader *reader, unsigned line, Part **part)
     double major, minor;
     if (!pov_number(reader, &major))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_number(reader, &minor) || !positive(reader, line, major) ||
         !positive(reader, line, minor))
         return false;
@@ -167,7 +165,7 @@ bool pov_plane(PovReader *reader, unsigned line, Part **part)
     double v[3], normal[3], offset;
     if (!pov_vector(reader, v))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_number(reader, &offset))
         return false;
     pov_point(v, normal);
@@ -245,7 +243,7 @@ bool pov_poly(PovReader *reader, unsigned line, Part **part)
     double order;
     if (!pov_number(reader, &order))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!(order >= 2 && order <= MAX_ORDER && order == floor(order)))
         return import_refuse(reader->import, line, "the order of `poly` is from 2 to %d",
                              MAX_ORDER);
@@ -262,7 +260,7 @@ bool pov_quadric(PovReader *reader, unsigned line, Part **part)
     for (int i = 0; i < 3; i++) {
         if (!pov_vector(reader, v))
             return false;
-        comma(reader);
+        word_accept(&reader->words, ",");
         for (int k = 0; k < 3; k++)
             add_term(reader->import, &terms, v[k], powers[3 * i + k]);
     }

@@ -11,8 +11,6 @@
 
 enum { MAX_POINTS = 10000, PIECES = 12 };
 
-static void comma(PovReader *reader) { word_accept(&reader->words, ","); }
-
 /* ---- splines ---- */
 
 typedef enum Spline { LINEAR, QUADRATIC, CUBIC, BEZIER } Spline;
@@ -57,7 +55,7 @@ static bool read_points(PovReader *reader, Points *points)
                              "a curve has from 2 to %d points", MAX_POINTS);
     for (int i = 0; i < (int)count; i++) {
         double v[3];
-        comma(reader);
+        word_accept(&reader->words, ",");
         if (!pov_vector(reader, v))
             return false;
         add_point(reader, points, v[0], v[1]);
@@ -189,13 +187,13 @@ bool pov_prism(PovReader *reader, unsigned line, Part **part)
         return import_refuse(reader->import, line, "`conic_sweep` is not translated");
     if (!pov_number(reader, &low))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_number(reader, &high))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!read_points(reader, &points))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     Part *figure = figure_of(reader, line, spline, &points);
     if (!figure || low == high)
         return import_refuse(reader->import, line, "this prism has no volume");
@@ -215,7 +213,7 @@ bool pov_lathe(PovReader *reader, unsigned line, Part **part)
     Spline spline = read_spline(reader);
     if (!read_points(reader, &points))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     points              = flattened(reader, spline, &points);
     const double *first = points.items[0], *last = points.items[points.count - 1];
     double        from = first[1], to = last[1];
@@ -245,13 +243,13 @@ bool pov_text(PovReader *reader, unsigned line, Part **part)
     word_accept(words, "ttf");
     if (!pov_string(reader, &font))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_string(reader, &string))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_number(reader, &thickness))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_vector(reader, offset))
         return false;
     if (string[0] == '\0' || !(thickness > 0))
@@ -286,10 +284,10 @@ bool pov_disc(PovReader *reader, unsigned line, Part **part)
     Text   text = {.arena = reader->import->arena};
     if (!pov_vector(reader, center))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_vector(reader, v))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_number(reader, &radius))
         return false;
     if (word_accept(&reader->words, ",") && pov_value_follows(reader) && !pov_number(reader, &hole))
@@ -342,13 +340,13 @@ static bool read_component(BlobReader *blob, bool round)
     words_advance(&reader->words);
     if (!word_expect(&reader->words, "{") || !pov_vector(reader, a))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!round && !pov_vector(reader, b))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     if (!pov_number(reader, &radius))
         return false;
-    comma(reader);
+    word_accept(&reader->words, ",");
     word_accept(&reader->words, "strength");
     if (pov_value_follows(reader) && !pov_number(reader, &strength))
         return false;
@@ -403,7 +401,7 @@ bool pov_blob(PovReader *reader, unsigned line, Part **part)
                              .terms  = {.arena = reader->import->arena},
                              .low    = {INFINITY, INFINITY, INFINITY},
                              .high   = {-INFINITY, -INFINITY, -INFINITY}};
-    for (;; comma(reader)) {
+    for (;; word_accept(&reader->words, ",")) {
         if (word_accept(words, "threshold")) {
             if (!pov_number(reader, &threshold))
                 return false;

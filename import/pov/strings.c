@@ -6,8 +6,8 @@
 
 #include "import/pov/reader.h"
 
-static const char *const string_functions[] = {"concat", "str",    "chr",  "substr",
-                                               "strupr", "strlwr", "vstr", "datetime"};
+static const char *const string_functions[] = {"concat", "str",    "chr", "substr",
+                                               "strupr", "strlwr", "vstr"};
 
 bool pov_string_follows(PovReader *reader)
 {
@@ -21,10 +21,7 @@ bool pov_string_follows(PovReader *reader)
         own = pov_first_element(own);
     if (own)
         return own->kind == POV_STRING;
-    for (size_t i = 0; i < sizeof string_functions / sizeof *string_functions - 1; i++)
-        if (word_is(words, string_functions[i]))
-            return true;
-    return false;
+    return word_among(words, string_functions);
 }
 
 /* Reads `str(number, least length, digits)`. */

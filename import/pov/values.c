@@ -99,7 +99,7 @@ static const struct {
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
 static const char *const vector_functions[] = {"vlength", "vnormalize", "vdot", "vcross"};
-enum { VECTOR_FUNCTIONS = 4 };
+enum { VECTOR_FUNCTIONS = sizeof vector_functions / sizeof *vector_functions };
 
 /* Returns the index of a name in its table, or -1. */
 static int find_constant(const char *name)
@@ -137,7 +137,7 @@ const PovCell *pov_first_element(const PovCell *array)
 static const char *const special[] = {
     "vrotate", "seed",   "rand",           "strlen",     "asc",         "val",
     "strcmp",  "select", "dimension_size", "dimensions", "vaxis_rotate"};
-enum { SPECIAL = 11 };
+enum { SPECIAL = sizeof special / sizeof *special };
 
 static int find_special(const char *name)
 {

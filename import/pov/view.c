@@ -330,14 +330,6 @@ static const char *const technical[] = {"max_trace_level", "adc_bailout",     "m
                                         "noise_generator", "number_of_waves", "irid_wavelength",
                                         "charset",         "mm_per_unit",     "hf_gray_16"};
 
-static bool is_technical(const PovReader *reader)
-{
-    for (size_t i = 0; i < sizeof technical / sizeof *technical; i++)
-        if (word_is(&reader->words, technical[i]))
-            return true;
-    return false;
-}
-
 static bool setting(PovReader *reader)
 {
     double color[5];
@@ -348,7 +340,8 @@ static bool setting(PovReader *reader)
         return word_accept(&reader->words, "srgb") || pov_number(reader, &reader->found_gamma);
     }
     if (!word_accept(&reader->words, "ambient_light"))
-        return pov_leave_out(reader, is_technical(reader) ? NULL : "of `global_settings` is");
+        return pov_leave_out(
+            reader, word_among(&reader->words, technical) ? NULL : "of `global_settings` is");
     if (!pov_color(reader, color))
         return false;
     memcpy(reader->ambient, color, sizeof reader->ambient);

@@ -125,17 +125,16 @@ static bool read_transform(PovReader *reader, Transform *transform)
 
 bool pov_transform(PovReader *reader, Transform *transform, bool *taken)
 {
-    WordReader *words     = &reader->words;
-    Transform   next      = transform_identity();
-    double      v[3]      = {0, 0, 0};
-    bool        translate = word_is(words, "translate"), rotate = word_is(words, "rotate");
+    WordReader *words = &reader->words;
+    Transform   next  = transform_identity();
+    double      v[3]  = {0, 0, 0};
     if (!pov_release(reader))
         return false;
-    translate = word_is(words, "translate"), rotate = word_is(words, "rotate");
-    bool     scale = word_is(words, "scale"), matrix = word_is(words, "matrix");
-    bool     declared = word_is(words, "transform");
-    unsigned line     = words->word.line;
-    *taken            = translate || rotate || scale || matrix || declared;
+    const bool     translate = word_is(words, "translate"), rotate = word_is(words, "rotate");
+    const bool     scale = word_is(words, "scale"), matrix = word_is(words, "matrix");
+    const bool     declared = word_is(words, "transform");
+    const unsigned line     = words->word.line;
+    *taken                  = translate || rotate || scale || matrix || declared;
     if (!*taken)
         return true;
     words_advance(words);

@@ -63,9 +63,8 @@ static double space_factor(const Space *space)
 {
     const double  CLOSE = 1e-4;
     const double *a = space->rows[0], *b = space->rows[1], *c = space->rows[2];
-    double        cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                              a[0] * b[1] - a[1] * b[0]};
-    double        square = dot3(a, a), slack = CLOSE * square;
+    double        cross[3], square = dot3(a, a), slack = CLOSE * square;
+    cross3(a, b, cross);
     bool same_length = fabs(dot3(b, b) - square) <= slack && fabs(dot3(c, c) - square) <= slack;
     bool upright     = fabs(dot3(a, b)) <= slack && fabs(dot3(a, c)) <= slack &&
                    fabs(dot3(b, c)) <= slack;

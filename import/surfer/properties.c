@@ -73,7 +73,7 @@ static const char *read_piece(const JsurfSurface *surface, Reader *reader, bool 
         if (character != '\r')
             text_add_bytes(&text, &(char){(char)character}, 1);
     }
-    return text.bytes ? text.bytes : "";
+    return text.bytes;
 }
 
 bool jsurf_read(JsurfSurface *surface)
