@@ -50,25 +50,25 @@ static KrsStatus write_files(const Options *options, const ExportFiles *files, c
 static KrsStatus export_to(const Options *options, const KrsScene *scene, KrsState *state,
                            const char *path)
 {
-    const char *base = find_base(options, path), *slash = strrchr(base, '/');
-    Text        why   = {.arena = options->arena};
-    ExportFiles files = {0};
-    ExportWish  wish  = {.target = (ExportId)options->export_to,
-                         .name   = scene_name(options->arena, options->files.items[0]),
-                         .stem   = slash ? slash + 1 : base};
-    wish.bake         = options->export_bake;
-    wish.within       = options->within.given;
-    memcpy(wish.low, options->within.low, sizeof wish.low);
-    memcpy(wish.high, options->within.high, sizeof wish.high);
-    KrsStatus status = scene_camera(options, scene, &wish.camera);
+    const char   *base = find_base(options, path), *slash = strrchr(base, '/');
+    Text          why    = {.arena = options->arena};
+    ExportFiles   files  = {0};
+    ExportOptions wanted = {.target = (ExportId)options->export_to,
+                            .name   = scene_name(options->arena, options->files.items[0]),
+                            .stem   = slash ? slash + 1 : base};
+    wanted.bake          = options->export_bake;
+    wanted.within        = options->within.given;
+    memcpy(wanted.low, options->within.low, sizeof wanted.low);
+    memcpy(wanted.high, options->within.high, sizeof wanted.high);
+    KrsStatus status = scene_camera(options, scene, &wanted.camera);
     if (status == KRS_OK)
-        status = scene_component(options, scene, &wish.component);
+        status = scene_component(options, scene, &wanted.component);
     if (status != KRS_OK)
         return status;
-    status = export_scene(state, &wish, &files, &why);
+    status = export_scene(state, &wanted, &files, &why);
     if (status == KRS_BAD_ARGUMENT) {
         say("cannot export `%s` to %s: %s", options->files.items[0],
-            export_targets[wish.target].name, why.bytes);
+            export_targets[wanted.target].name, why.bytes);
         return KRS_BAD_SCENE;
     }
     if (status != KRS_OK) {

@@ -25,7 +25,7 @@ size_t exported_slots(const Export *export)
     return export->baked ? 1 : krs_parameter_slots(export->scene);
 }
 
-/* Told of a brick of samples. */
+/* Copies what a brick has of the box. */
 static bool take_brick(void *user, const KrsGridBrick *brick)
 {
     const Baked  *baked = user;
@@ -45,39 +45,40 @@ static bool take_brick(void *user, const KrsGridBrick *brick)
 }
 
 /* Finds the box that is sampled, and how far samples are apart; false: it has no end. */
-static bool find_options(const Export *export, const ExportWish *wish, KrsGridOptions *options)
+static bool find_sampling(const Export *export, const ExportOptions *options,
+                          KrsGridOptions *sampling)
 {
     double       longest = 0;
     KrsComponent part;
     memcpy(part.low, export->scene->program.low, sizeof part.low);
     memcpy(part.high, export->scene->program.high, sizeof part.high);
-    if (wish->component > 0)
-        krs_component(export->scene, wish->component - 1, &part);
-    options->component = wish->component;
-    options->materials = true;
-    options->within    = wish->within;
+    if (options->component > 0)
+        krs_component(export->scene, options->component - 1, &part);
+    sampling->component = options->component;
+    sampling->materials = true;
+    sampling->within    = options->within;
     for (int k = 0; k < 3; k++) {
-        options->low[k]   = wish->low[k];
-        options->high[k]  = wish->high[k];
-        const double from = wish->within ? fmax(part.low[k], wish->low[k]) : part.low[k];
-        const double to   = wish->within ? fmin(part.high[k], wish->high[k]) : part.high[k];
+        sampling->low[k]  = options->low[k];
+        sampling->high[k] = options->high[k];
+        const double from = options->within ? fmax(part.low[k], options->low[k]) : part.low[k];
+        const double to   = options->within ? fmin(part.high[k], options->high[k]) : part.high[k];
         longest           = fmax(longest, to - from);
     }
-    options->cell = longest / wish->bake;
+    sampling->cell = longest / options->bake;
     return longest < 1e9 && longest > 0;
 }
 
-KrsStatus bake_scene(Export *export, const ExportWish *wish, Arena *arena, Text *why)
+KrsStatus bake_scene(Export *export, const ExportOptions *options, Arena *arena, Text *why)
 {
-    KrsGridOptions options = {0};
-    KrsGrid       *grid    = NULL;
-    Baked         *baked   = arena_new(arena, Baked);
-    KrsStatus      status  = KRS_BAD_ARGUMENT;
-    if (!find_options(export, wish, &options))
+    KrsGridOptions sampling = {0};
+    KrsGrid       *grid     = NULL;
+    Baked         *baked    = arena_new(arena, Baked);
+    KrsStatus      status   = KRS_BAD_ARGUMENT;
+    if (!find_sampling(export, options, &sampling))
         text_add(why, "it has no end, so it cannot be sampled; --component NAME chooses a part, "
                       "--within X,Y,Z,X,Y,Z a box, and --studio off leaves its floor out");
     else
-        status = krs_grid_new(export->state, &options, &grid);
+        status = krs_grid_new(export->state, &sampling, &grid);
     if (status == KRS_OK) {
         baked->shape        = krs_grid_shape(grid);
         const size_t *count = baked->shape.count;

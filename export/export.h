@@ -63,7 +63,7 @@ typedef struct ExportFiles {
 const char *export_ending(ExportId target);
 size_t      export_file_count(ExportId target);
 
-typedef struct ExportWish {
+typedef struct ExportOptions {
     ExportId    target;
     const char *name, *stem; /* of the scene; of the files, without their endings */
     size_t      camera;
@@ -71,10 +71,11 @@ typedef struct ExportWish {
     size_t      component; /* which is sampled alone, from 1; 0: all */
     bool        within;    /* of what is in a box alone */
     double      low[3], high[3];
-} ExportWish;
+} ExportOptions;
 
 /* Adds the files for a target, in memory of the arena of `why`.  KRS_BAD_ARGUMENT: the target cannot have the scene, and
    `why` says why, in words of its author.  KRS_OUT_OF_MEMORY; KRS_IO_ERROR. */
-KrsStatus export_scene(KrsState *state, const ExportWish *wish, ExportFiles *files, Text *why);
+KrsStatus export_scene(KrsState *state, const ExportOptions *options, ExportFiles *files,
+                       Text *why);
 
 #endif

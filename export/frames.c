@@ -23,8 +23,6 @@ typedef struct Frames {
     Words       globals, readers; /* names */
 } Frames;
 
-static bool is_of_word(char c) { return isalnum((unsigned char)c) || c == '_'; }
-
 static bool has_word(const Words *words, const char *at, size_t length)
 {
     for (size_t i = 0; i < words->count; i++)
@@ -134,11 +132,6 @@ static const char *end_of_item(const char *from)
                             : strstr(brace, "\n}");
     const char *last  = close ? strchr(close + (*close == '\n'), '\n') : NULL;
     return last ? last + 1 : from + strlen(from);
-}
-
-static bool begins(const char *from, const char *word)
-{
-    return strncmp(from, word, strlen(word)) == 0;
 }
 
 void add_without_globals(Text *to, const char *text, size_t slots, const char *given,

@@ -4,30 +4,20 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/srgb.h"
+#include "compiler/base/vec.h"
 #include "export/parts.h"
 
 /* ---- parameters ---- */
 
-double encode_light(double light)
-{
-    return light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
-}
-
-/* Tells whether it is one number, of which both ends are there. */
-static bool has_slider(const KrsParameter *parameter)
-{
-    return parameter->components == 1 && isfinite(parameter->low[0]) &&
-           isfinite(parameter->high[0]);
-}
-
 static void add_uniform(Text *to, const Export *export, size_t i)
 {
     const KrsParameter parameter = parameter_of(export, i);
-    const bool         color     = parameter.color && parameter.components >= 3;
+    const bool         color     = is_color(&parameter);
     double             value[4];
     for (int k = 0; k < 4; k++) {
         value[k] = (double)export->block[1 + i][k];
-        value[k] = color && k < 3 ? encode_light(value[k]) : value[k];
+        value[k] = color && k < 3 ? srgb_of_linear(value[k]) : value[k];
     }
     text_add(to, "uniform ");
     if (parameter.components == 1)
@@ -120,28 +110,15 @@ void add_size_numbers(Text *to, const Export *export)
     add_numbers(to, half);
 }
 
-static void unit(double v[3])
-{
-    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; k++)
-        v[k] /= length > 0 ? length : 1;
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int k = 0; k < 3; k++)
-        c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 /* Adds the transform of what stands at a place and looks against an axis: rows of three, and the place. */
 static void add_transform(Text *to, const double back[3], const double up[3], const double at[3])
 {
     double axes[3][3];
     memcpy(axes[2], back, sizeof axes[2]);
-    unit(axes[2]);
-    cross(up, axes[2], axes[0]);
-    unit(axes[0]);
-    cross(axes[2], axes[0], axes[1]);
+    normalize3(axes[2]);
+    cross3(up, axes[2], axes[0]);
+    normalize3(axes[0]);
+    cross3(axes[2], axes[0], axes[1]);
     text_add(to, "transform = Transform3D(");
     for (int i = 0; i < 9; i++) {
         text_number(to, axes[i % 3][i / 3]);
@@ -171,7 +148,7 @@ static void add_color(Text *to, const char *name, const double light[3], double 
 {
     text_format(to, "%s = Color(", name);
     for (int k = 0; k < 3; k++)
-        text_format(to, "%.6g, ", most > 0 ? encode_light(light[k] / most) : 0);
+        text_format(to, "%.6g, ", most > 0 ? srgb_of_linear(light[k] / most) : 0);
     text_add(to, "1)\n");
 }
 

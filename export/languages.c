@@ -108,11 +108,6 @@ static const char *end_of_hlsl(const char *from)
     return end ? end + 1 : from + strlen(from);
 }
 
-static bool begins(const char *text, const char *word)
-{
-    return strncmp(text, word, strlen(word)) == 0;
-}
-
 /* Returns the text without an entry point and what that alone needs. */
 static const char *without_entry(const Text *whole)
 {

@@ -9,11 +9,11 @@
 #include <string.h>
 
 /* The largest number of single precision has too many digits for some languages. */
-#define MOST 3.4e38
+#define MAX_FLOAT 3.4e38
 
 void add_float(Text *to, double number)
 {
-    const float rounded = (float)fmin(fmax(number, -MOST), MOST);
+    const float rounded = (float)fmin(fmax(number, -MAX_FLOAT), MAX_FLOAT);
     char        digits[32];
     for (int count = 6; count <= 9; count++) { /* as few as have this number */
         snprintf(digits, sizeof digits, "%.*g", count, (double)rounded);

@@ -74,8 +74,6 @@ static const char *const functions[] = {"abs",
 /* Functions that the prelude has in its own words. */
 static const char *const own[] = {"krs_sine_small", "krs_reduce", "krs_slope_2", "krs_slope_3"};
 
-static bool is_of_word(char c) { return isalnum((unsigned char)c) || c == '_'; }
-
 static size_t word_length(const char *from)
 {
     size_t length = 0;

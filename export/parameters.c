@@ -29,6 +29,17 @@ void add_parameter_name(Text *to, const char *prefix, const char *name, size_t s
             text_add_bytes(to, name + i, 1);
 }
 
+bool has_slider(const KrsParameter *parameter)
+{
+    return parameter->components == 1 && isfinite(parameter->low[0]) &&
+           isfinite(parameter->high[0]);
+}
+
+bool is_color(const KrsParameter *parameter)
+{
+    return parameter->color && parameter->components >= 3;
+}
+
 static bool has_range(const KrsParameter *parameter)
 {
     return isfinite(parameter->low[0]) || isfinite(parameter->high[0]);

@@ -4,6 +4,10 @@
 #ifndef KRS_EXPORT_PARTS_H
 #define KRS_EXPORT_PARTS_H
 
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+
 #include "compiler/scene/program.h"
 #include "export/export.h"
 
@@ -24,6 +28,15 @@ typedef struct Export {
 
 /* Fills the template of this name. */
 void export_fill(Text *to, const Export *export, const char *template);
+
+/* Tells whether a text begins with a word. */
+static inline bool begins(const char *text, const char *word)
+{
+    return strncmp(text, word, strlen(word)) == 0;
+}
+
+/* Tells whether names have such characters. */
+static inline bool is_of_word(char c) { return isalnum((unsigned char)c) || c == '_'; }
 
 /* ---- numbers.c ---- */
 /* These add a number with a point, and "vec3(1.0, 0.5, 0.0)" in words of the target. */
@@ -48,7 +61,7 @@ void add_camera(Text *to, const Export *export);
 
 /* ---- bake.c ---- */
 /* Samples the scene.  KRS_BAD_ARGUMENT: `why` says what hinders it. */
-KrsStatus bake_scene(Export *export, const ExportWish *wish, Arena *arena, Text *why);
+KrsStatus bake_scene(Export *export, const ExportOptions *options, Arena *arena, Text *why);
 /* Return how many parameters the text has, and how many slots: samples have none, and the time. */
 size_t exported_parameters(const Export *export);
 size_t exported_slots(const Export *export);
@@ -66,6 +79,9 @@ void add_normal_reach(Text *to, const Export *export);
 
 /* ---- parameters.c ---- */
 KrsParameter parameter_of(const Export *export, size_t index);
+/* Tells whether a parameter is one number with both ends, so that a slider sets it; and whether it is a colour. */
+bool has_slider(const KrsParameter *parameter);
+bool is_color(const KrsParameter *parameter);
 /* Adds a name for a parameter, behind a prefix. */
 void add_parameter_name(Text *to, const char *prefix, const char *name, size_t slot);
 void add_constant_parameters(Text *to, const Export *export);
@@ -107,9 +123,6 @@ void add_center(Text *to, const Export *export);
 void add_half(Text *to, const Export *export);
 void add_center_numbers(Text *to, const Export *export);
 void add_size_numbers(Text *to, const Export *export);
-
-/* Returns a number of a colour picker for one of light. */
-double encode_light(double light);
 
 /* ---- unity.c ---- */
 void add_unity_properties(Text *to, const Export *export);

@@ -3,6 +3,7 @@
  */
 #include "export/export.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -175,10 +176,11 @@ static const struct Piece *find_piece(const char *word, size_t length)
 
 static const char *find_template(const char *name)
 {
-    for (const EmbeddedFile *file = export_files; file->name; file++)
-        if (strcmp(file->name, name) == 0)
-            return file->text;
-    return "";
+    const EmbeddedFile *file = export_files;
+    while (file->name && strcmp(file->name, name) != 0)
+        file++;
+    assert(file->name);
+    return file->text;
 }
 
 /* What stands from @if_baked@ to @end@ is left out of a scene that is a text. */
@@ -312,21 +314,21 @@ static KrsStatus write_files(const Export *export, ExportId target, ExportFiles 
     return KRS_BAD_ARGUMENT;
 }
 
-KrsStatus export_scene(KrsState *state, const ExportWish *wish, ExportFiles *files, Text *why)
+KrsStatus export_scene(KrsState *state, const ExportOptions *options, ExportFiles *files, Text *why)
 {
     Export export = {.scene  = state->scene,
                      .state  = state,
-                     .target = &export_targets[wish->target],
-                     .name   = wish->name,
-                     .stem   = wish->stem};
+                     .target = &export_targets[options->target],
+                     .name   = options->name,
+                     .stem   = options->stem};
     export.block = arena_alloc(why->arena, krs_parameter_slots(export.scene), sizeof *export.block);
     krs_state_parameters(state, export.block);
-    KrsStatus status = krs_state_view(state, wish->camera, &export.view);
-    if (status == KRS_OK && refuse(&export, wish->bake > 0, why))
+    KrsStatus status = krs_state_view(state, options->camera, &export.view);
+    if (status == KRS_OK && refuse(&export, options->bake > 0, why))
         status = KRS_BAD_ARGUMENT;
-    if (status == KRS_OK && wish->bake > 0)
-        status = bake_scene(&export, wish, why->arena, why);
+    if (status == KRS_OK && options->bake > 0)
+        status = bake_scene(&export, options, why->arena, why);
     if (status == KRS_OK)
         status = find_scene_text(&export, why->arena, why);
-    return status == KRS_OK ? write_files(&export, wish->target, files, why) : status;
+    return status == KRS_OK ? write_files(&export, options->target, files, why) : status;
 }

@@ -3,18 +3,8 @@
  */
 #include <math.h>
 
+#include "compiler/base/srgb.h"
 #include "export/parts.h"
-
-static bool is_color(const KrsParameter *parameter)
-{
-    return parameter->color && parameter->components >= 3;
-}
-
-static bool has_slider(const KrsParameter *parameter)
-{
-    return parameter->components == 1 && isfinite(parameter->low[0]) &&
-           isfinite(parameter->high[0]);
-}
 
 /* Adds a number, for C# with an f behind. */
 static void add_number(Text *to, double number, bool script)
@@ -29,7 +19,7 @@ static void add_value(Text *to, const Export *export, size_t slot, bool color, b
     for (int k = 0; k < 4; k++) {
         const double number = (double)export->block[slot][k];
         text_add(to, k ? ", " : "");
-        add_number(to, !color ? number : k == 3 ? 1 : encode_light(number), script);
+        add_number(to, !color ? number : k == 3 ? 1 : srgb_of_linear(number), script);
     }
 }
 

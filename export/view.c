@@ -6,11 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static double distance_between(const double a[3], const double b[3])
-{
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
-}
+#include "compiler/base/vec.h"
 
 double find_farthest(const Export *export)
 {
@@ -19,8 +15,8 @@ double find_farthest(const Export *export)
     find_extent(export, low, high);
     for (int k = 0; k < 3; k++)
         far[k] = fmax(fabs(low[k] - camera->eye[k]), fabs(high[k] - camera->eye[k]));
-    const double corner = distance_between(far, (const double[3]){0, 0, 0});
-    const double enough = 1e4 * distance_between(camera->eye, camera->target);
+    const double corner = length3(far);
+    const double enough = 1e4 * distance3(camera->eye, camera->target);
     return corner < enough ? corner : enough;
 }
 
@@ -37,7 +33,7 @@ void find_extent(const Export *export, double low[3], double high[3])
 void find_box(const Export *export, double low[3], double high[3])
 {
     const KrsCamera *camera = &export->view.camera;
-    const double    *eye = camera->eye, way = distance_between(eye, camera->target);
+    const double    *eye = camera->eye, way = distance3(eye, camera->target);
     const double     far = fmin(find_farthest(export),
                                 100 * way); /* rays begin there, in single precision */
     find_extent(export, low, high);
@@ -49,16 +45,12 @@ void find_box(const Export *export, double low[3], double high[3])
 
 void find_upright(const KrsCamera *camera, double up[3])
 {
-    static const double nowhere[3] = {0};
-    double              ahead[3], across[3];
+    double ahead[3], across[3];
     memcpy(up, camera->up, sizeof camera->up);
     for (int k = 0; k < 3; k++)
         ahead[k] = camera->target[k] - camera->eye[k];
-    for (int k = 0; k < 3; k++)
-        across[k] = ahead[(k + 1) % 3] * up[(k + 2) % 3] - ahead[(k + 2) % 3] * up[(k + 1) % 3];
-    const double parallel = distance_between(across, nowhere) /
-                            (distance_between(ahead, nowhere) * distance_between(up, nowhere));
-    if (parallel > 1e-6)
+    cross3(ahead, up, across);
+    if (length3(across) / (length3(ahead) * length3(up)) > 1e-6)
         return;
     up[0] = 0;
     up[1] = fabs(ahead[2]) > fabs(ahead[1]);
@@ -69,7 +61,7 @@ double find_rise(const KrsCamera *camera)
 {
     return camera->projection == KRS_PERSPECTIVE
                ? tan(0.5 * camera->fov)
-               : 0.5 * camera->height / distance_between(camera->eye, camera->target);
+               : 0.5 * camera->height / distance3(camera->eye, camera->target);
 }
 
 /* Four numbers of a light. */
@@ -154,7 +146,7 @@ void add_constants(Text *to, const Export *export)
     add_number_constant(to, "KRS_RISE", find_rise(&view->camera));
     add_farthest(to, export);
     add_number_constant(to, "KRS_OPEN_REACH",
-                        0.1 * distance_between(view->camera.eye, view->camera.target));
+                        0.1 * distance3(view->camera.eye, view->camera.target));
     add_vector_constant(to, export, "KRS_ZENITH", view->sky.zenith);
     add_vector_constant(to, export, "KRS_HORIZON", view->sky.horizon);
     add_vector_constant(to, export, "KRS_GROUND", view->sky.ground);
