@@ -134,8 +134,7 @@ static void join_bodies(const Meshing *meshing, const Bodies *bodies, Joined *jo
 
 unsigned char color_byte(double linear)
 {
-    double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-    return (unsigned char)lrint(255 * fmin(fmax(encoded, 0), 1));
+    return (unsigned char)lrint(255 * fmin(fmax(srgb_of_linear(linear), 0), 1));
 }
 
 enum { PROBES = 256 };

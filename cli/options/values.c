@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/srgb.h"
+
 bool read_whole(const char *word, uint64_t low, uint64_t high, uint64_t *value)
 {
     char *end;
@@ -71,20 +73,14 @@ static bool read_wholes(const char *word, char separator, uint64_t low, uint64_t
     return *word == '\0';
 }
 
-/* Returns linear light of an sRGB byte: all computations are linear, as in the language. */
-static double linear_from_srgb(unsigned byte)
-{
-    double encoded = byte / 255.0;
-    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
-}
-
+/* Computations are linear, as in the language. */
 static bool read_color(const char *word, Setting *setting)
 {
     if (strlen(word) != 7 || strspn(word + 1, "0123456789abcdefABCDEF") != 6)
         return false;
     unsigned long rgb = strtoul(word + 1, NULL, 16);
     for (int i = 0; i < 3; i++)
-        setting->values[i] = linear_from_srgb(rgb >> (16 - 8 * i) & 255);
+        setting->values[i] = linear_of_srgb((rgb >> (16 - 8 * i) & 255) / 255.0);
     setting->count = 3;
     return true;
 }
