@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "compiler/base/allocator.h"
 #include "runtime/tracer/prewarm_thread.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/prewarm.h"
@@ -145,9 +146,9 @@ bool renderer_prepare(KrsRenderer *renderer)
 KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emulation,
                                  KrsRenderer **out)
 {
-    Gpu          allocating = {.allocator = options ? options->allocator : (KrsAllocator){0}};
-    KrsRenderer *renderer   = gpu_alloc(&allocating, 1, sizeof *renderer, "make a renderer");
-    *out                    = renderer;
+    const KrsAllocator allocator = options ? options->allocator : (KrsAllocator){0};
+    KrsRenderer       *renderer  = allocator_new(&allocator, 1, sizeof *renderer);
+    *out                         = renderer;
     if (!renderer)
         return KRS_OUT_OF_MEMORY;
     spirv_start();
@@ -170,24 +171,30 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **rend
     return renderer_new_emulating(options, 0, renderer);
 }
 
-void renderer_release(KrsRenderer *renderer)
+void renderer_visit(KrsRenderer *renderer, void (*visit)(void *user, Shader *shader), void *user)
 {
-    Gpu *gpu = &renderer->gpu;
     for (int kind = 0; kind < RAY_KINDS; kind++) {
         for (int i = 0; i < PIXEL_SHADERS; i++)
-            shader_destroy(gpu, &renderer->pixels[kind][i]);
-        shader_destroy(gpu, &renderer->limits[kind]);
-        shader_destroy(gpu, &renderer->escapes[kind]);
+            visit(user, &renderer->pixels[kind][i]);
+        visit(user, &renderer->limits[kind]);
+        visit(user, &renderer->escapes[kind]);
     }
     for (int i = 0; i < 2 * RAYS_OF_LISTS; i++)
-        shader_destroy(gpu, &renderer->aims[i / 2][i % 2]);
+        visit(user, &renderer->aims[i / 2][i % 2]);
     for (int i = 0; i < 2; i++)
-        shader_destroy(gpu, &renderer->arrivals[i]);
-    shader_destroy(gpu, &renderer->escapes_to_plate);
-    shader_destroy(gpu, &renderer->noise);
-    shader_destroy(gpu, &renderer->plate);
-    shader_destroy(gpu, &renderer->next_dispatch);
-    shader_destroy(gpu, &renderer->clear_shared);
+        visit(user, &renderer->arrivals[i]);
+    visit(user, &renderer->escapes_to_plate);
+    visit(user, &renderer->noise);
+    visit(user, &renderer->plate);
+    visit(user, &renderer->next_dispatch);
+    visit(user, &renderer->clear_shared);
+}
+
+static void destroy_shader(void *gpu, Shader *shader) { shader_destroy(gpu, shader); }
+
+void renderer_release(KrsRenderer *renderer)
+{
+    renderer_visit(renderer, destroy_shader, &renderer->gpu);
     layouts_destroy(renderer);
 }
 
@@ -207,11 +214,11 @@ void krs_renderer_free(KrsRenderer *renderer)
         gpu_wait(gpu);
         renderer_release(renderer);
     }
+    const KrsAllocator allocator = gpu->allocator;
     gpu_close(gpu);
     if (renderer->compiler_started)
         spirv_stop();
-    Gpu allocating = {.allocator = gpu->allocator};
-    gpu_release(&allocating, renderer);
+    allocator_release(&allocator, renderer);
 }
 
 const char *krs_renderer_message(const KrsRenderer *renderer)

@@ -10,6 +10,9 @@
 KrsStatus renderer_new_emulating(const KrsRendererOptions *options, unsigned emulation,
                                  KrsRenderer **out);
 
+/* Visits all shaders without a scene, whether they have been made or not. */
+void renderer_visit(KrsRenderer *renderer, void (*visit)(void *user, Shader *shader), void *user);
+
 /* Lists the shaders of previews without a scene for a rendering, PIXEL_SHADERS at most, that do not
    exist.  Returns how many. */
 size_t renderer_request_pixels(const KrsRendering *rendering, ShaderRequest *requests);

@@ -394,8 +394,9 @@ static void describe(const Gpu *gpu, const Shader *shader, KrsShaderStats *stats
     snprintf(stats->name, sizeof stats->name, "%s%s", shader->file, group);
 }
 
-static void list_shader(ShaderListing *listing, const Shader *shader)
+static void list_shader(void *user, Shader *shader)
 {
+    ShaderListing *listing = user;
     if (!shader->pipeline)
         return;
     if (listing->count < listing->capacity)
@@ -406,19 +407,10 @@ static void list_shader(ShaderListing *listing, const Shader *shader)
 size_t krs_rendering_shaders(const KrsRendering *rendering, KrsShaderStats *shaders,
                              size_t capacity)
 {
-    const KrsRenderer *renderer = rendering->renderer;
-    ShaderListing      listing  = {&renderer->gpu, shaders, capacity, 0};
-    for (int kind = 0; kind < RAY_KINDS; kind++) {
-        for (int i = 0; i < PIXEL_SHADERS; i++)
-            list_shader(&listing, &renderer->pixels[kind][i]);
-        list_shader(&listing, &renderer->escapes[kind]);
-    }
-    list_shader(&listing, &renderer->escapes_to_plate);
-    list_shader(&listing, &renderer->noise);
-    list_shader(&listing, &renderer->plate);
-    list_shader(&listing, &renderer->next_dispatch);
-    list_shader(&listing, &renderer->clear_shared);
-    for (const ShaderEntry *entry = rendering->shaders.first; entry; entry = entry->next)
+    KrsRenderer  *renderer = rendering->renderer;
+    ShaderListing listing  = {&renderer->gpu, shaders, capacity, 0};
+    renderer_visit(renderer, list_shader, &listing);
+    for (ShaderEntry *entry = rendering->shaders.first; entry; entry = entry->next)
         list_shader(&listing, &entry->shader);
     return listing.count;
 }

@@ -341,6 +341,17 @@ static void check_limits(Fixture *fixture, size_t camera)
     krs_picture_free(plain);
 }
 
+/* Tells whether statistics list a shader; they are to list those without a scene as well. */
+static bool is_listed(const KrsRendering *rendering, const char *name)
+{
+    KrsShaderStats shaders[64];
+    const size_t   count = krs_rendering_shaders(rendering, shaders, 64);
+    for (size_t i = 0; i < count && i < 64; i++)
+        if (strcmp(shaders[i].name, name) == 0)
+            return true;
+    return false;
+}
+
 static void depths_end_rays(void **state)
 {
     (void)state;
@@ -349,6 +360,9 @@ static void depths_end_rays(void **state)
         fixture_open_as(&fixture, film_text, emulations[k]);
         for (size_t camera = 0; camera < 3; camera++)
             check_limits(&fixture, camera);
+        assert_true(is_listed(fixture.rendering, "limit.comp"));
+        assert_true(is_listed(fixture.rendering, "shade.comp"));
+        assert_false(is_listed(fixture.rendering, "aim.comp"));
         fixture_close_watched(&fixture);
     }
 }
