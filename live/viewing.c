@@ -10,15 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
-double viewing_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
+#include "compiler/base/clock.h"
+
+double viewing_now(void) { return clock_seconds(CLOCK_MONOTONIC); }
 
 void viewing_show(Viewing *viewing) { viewing->view_changed = true; }
 
@@ -107,7 +103,7 @@ void viewing_open_editor(Viewing *viewing, const char *place)
 }
 
 /* Sets the state to the values, as far as the scene permits them. */
-static void set_frame(Viewing *viewing)
+static void set_state(Viewing *viewing)
 {
     const KrsScene *scene = version_scene(viewing->view.version);
     for (size_t i = 0; i < krs_parameter_count(scene); i++) {
@@ -122,7 +118,7 @@ static void set_frame(Viewing *viewing)
 void viewing_take_camera(Viewing *viewing, size_t camera)
 {
     KrsCamera found;
-    set_frame(viewing);
+    set_state(viewing);
     if (krs_state_camera(viewing->state, camera, &found) != KRS_OK)
         return;
     viewing->camera      = camera;
@@ -133,7 +129,7 @@ void viewing_take_camera(Viewing *viewing, size_t camera)
 
 KrsState *viewing_state(Viewing *viewing)
 {
-    set_frame(viewing);
+    set_state(viewing);
     return viewing->state;
 }
 
@@ -307,6 +303,6 @@ void viewing_adopt(Viewing *viewing, Version *version)
         viewing->moved = viewing->camera_written = false;
     if (!viewing->moved)
         viewing_take_camera(viewing, viewing->camera);
-    set_frame(viewing);
+    set_state(viewing);
     viewing_show(viewing);
 }

@@ -5,8 +5,8 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
+#include "compiler/base/clock.h"
 #include "compiler/passes/compile.h"
 #include "profile/pixels.h"
 #include "profile/rows.h"
@@ -41,14 +41,7 @@ typedef struct FrameTime {
     size_t hits;
 } FrameTime;
 
-static double read_clock(clockid_t clock)
-{
-    struct timespec time;
-    clock_gettime(clock, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-static double elapsed(const Profiling *p) { return read_clock(CLOCK_MONOTONIC) - p->started; }
+static double elapsed(const Profiling *p) { return clock_seconds(CLOCK_MONOTONIC) - p->started; }
 
 /* Tells whether the work goes on; false: someone has asked to stop. */
 static bool report_progress(Profiling *p)
@@ -120,9 +113,9 @@ static KrsStatus time_frame(const Profiling *p, Subject *subject, FrameTime *tim
     const KrsCamera *camera = p->options->camera ? p->options->camera : &p->whole.camera;
     KrsPicture      *made   = NULL;
     krs_film_clear(subject->film);
-    const double begun     = read_clock(CLOCK_PROCESS_CPUTIME_ID);
+    const double begun     = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     KrsStatus    status    = krs_film_add(subject->film, subject->state, camera, 1);
-    const double processor = 1e3 * (read_clock(CLOCK_PROCESS_CPUTIME_ID) - begun);
+    const double processor = 1e3 * (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - begun);
     if (status == KRS_OK)
         status = krs_film_read(subject->film, KRS_AOV_COLOR | KRS_AOV_DEPTH, &made);
     if (status == KRS_OK)
@@ -136,10 +129,10 @@ static KrsStatus time_frame(const Profiling *p, Subject *subject, FrameTime *tim
 
 /* ---- times ---- */
 
-enum { MIN_TURNS = 2, MAX_TURNS = 15 };
+enum { MIN_ROUNDS = 2, MAX_ROUNDS = 15 };
 /* The time that the rounds of a part take about, and the shortest frame that is timed, in
    milliseconds. */
-static const double TURNS_MS = 1500, MIN_FRAME_MS = 25;
+static const double ROUNDS_MS = 1500, MIN_FRAME_MS = 25;
 
 /* Keeps the least time, of rays and of light: what else a machine does makes frames slower, never
    faster. */
@@ -150,9 +143,9 @@ static void take_least(FrameTime *least, const FrameTime *time, bool first)
     least->hits  = time->hits;
 }
 
-static size_t count_turns(double ms)
+static size_t count_rounds(double ms)
 {
-    return (size_t)fmin(fmax(TURNS_MS / fmax(ms, 1e-3), MIN_TURNS), MAX_TURNS);
+    return (size_t)fmin(fmax(ROUNDS_MS / fmax(ms, 1e-3), MIN_ROUNDS), MAX_ROUNDS);
 }
 
 /* Times frames of the whole scene; the first one prepares. */
@@ -162,7 +155,7 @@ static KrsStatus time_whole(Profiling *p)
     KrsStatus status = open_film(p, &p->whole, p->profile->width, p->profile->height);
     if (status == KRS_OK)
         status = time_frame(p, &p->whole, &time, NULL);
-    const size_t count = count_turns(time.rays + time.light);
+    const size_t count = count_rounds(time.rays + time.light);
     for (size_t i = 0; i < count && status == KRS_OK; i++) {
         status = time_frame(p, &p->whole, &time, NULL);
         take_least(&least, &time, i == 0);
@@ -204,7 +197,7 @@ static KrsStatus compare(Profiling *p, Subject *subject, double *saved, KrsPictu
     KrsStatus status = time_frame(p, subject, &time, picture);
     if (status != KRS_OK)
         return status;
-    const size_t count = count_turns(p->profile->frame_ms + time.rays + time.light);
+    const size_t count = count_rounds(p->profile->frame_ms + time.rays + time.light);
     for (size_t i = 0; i < count && status == KRS_OK; i++) {
         status = time_frame(p, &p->whole, &time, NULL);
         if (status == KRS_OK)
@@ -375,7 +368,7 @@ KrsStatus profile_make(const ProfileOptions *options, const KrsScene *scene, Are
                             .of_processors = options->alone &&
                                              krs_renderer_device(options->renderer).kind ==
                                                  KRS_DEVICE_CPU};
-    p.started   = read_clock(CLOCK_MONOTONIC);
+    p.started   = clock_seconds(CLOCK_MONOTONIC);
     p.lanes     = krs_scene_too_large(scene) != NULL;
     p.parts     = parts_of(scene, arena);
     p.found     = arena_new_array(arena, PartProfile, p.parts.count + 1);

@@ -8,9 +8,9 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "compiler/base/clock.h"
 #include "compiler/base/text.h"
 #include "compiler/base/visible.h"
 
@@ -120,12 +120,7 @@ void print_number(FILE *out, double number)
     fputs(text, out);
 }
 
-double clock_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
-}
+double clock_now(void) { return clock_seconds(CLOCK_MONOTONIC); }
 
 void progress_start(Progress *progress, const Options *options, size_t frames)
 {

@@ -6,10 +6,10 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "compiler/passes/compilation.h"
 #include "compiler/base/allocator.h"
+#include "compiler/base/clock.h"
 #include "compiler/front/format.h"
 
 static const Request scene_alone = {.after = PASS_COUNT, .end = PASS_COUNT};
@@ -44,12 +44,7 @@ static PassId find_pass(const char *word)
 
 const KrsPass *krs_find_pass(const char *word) { return krs_pass(find_pass(word)); }
 
-static double now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
+static double now_ms(void) { return 1e3 * clock_seconds(CLOCK_MONOTONIC); }
 
 static KrsStatus run_pass(Compilation *c, const Pass *pass, double *ms)
 {

@@ -7,17 +7,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
+
+#include "compiler/base/clock.h"
 
 /* Something moves if one view follows another so soon. */
 #define MOVING_MS 250.0
 
-double painter_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
+double painter_now(void) { return 1e3 * clock_seconds(CLOCK_MONOTONIC); }
 
 void painter_wake(const Painter *painter)
 {

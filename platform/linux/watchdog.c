@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "compiler/base/clock.h"
 #include "compiler/base/minmax.h"
 
 static double count_work(const ProcessSample *before, const ProcessSample *now)
@@ -31,13 +31,6 @@ void watchdog_add(Watchdog *watchdog, const ProcessSample *sample)
         watchdog->fruitless = 0;
     watchdog->last  = *sample;
     watchdog->begun = true;
-}
-
-static double seconds_of(clockid_t clock)
-{
-    struct timespec now = {0};
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
 /* Returns the letter of proc(5) for what a thread does; 0: nobody knows. */
@@ -79,8 +72,9 @@ static void look_at_threads(pid_t process, ProcessSample *sample)
 void watchdog_sample(pid_t process, const ProcessSample *before, ProcessSample *sample)
 {
     clockid_t processor;
-    sample->now       = seconds_of(CLOCK_MONOTONIC);
-    sample->processor = clock_getcpuclockid(process, &processor) == 0 ? seconds_of(processor) : 0;
+    sample->now       = clock_seconds(CLOCK_MONOTONIC);
+    sample->processor = clock_getcpuclockid(process, &processor) == 0 ? clock_seconds(processor)
+                                                                      : 0;
     sample->stopped   = false;
     sample->runnable  = sample->processor - before->processor >= sample->now - before->now;
     if (!sample->runnable)

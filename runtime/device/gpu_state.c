@@ -7,14 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-double clock_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
+#include "compiler/base/allocator.h"
+#include "compiler/base/clock.h"
+
+double clock_ms(void) { return 1e3 * clock_seconds(CLOCK_MONOTONIC); }
 
 void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt)
 {
@@ -32,13 +29,7 @@ void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt)
     return block;
 }
 
-void gpu_release(Gpu *gpu, void *block)
-{
-    if (block && gpu->allocator.release)
-        gpu->allocator.release(gpu->allocator.user, block);
-    else if (!gpu->allocator.allocate)
-        free(block);
-}
+void gpu_release(Gpu *gpu, void *block) { allocator_release(&gpu->allocator, block); }
 
 void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
 {

@@ -14,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "compiler/base/clock.h"
 #include "compiler/base/embedded.h"
 #include "runtime/device/driver.h"
 #include "runtime/device/shared_shaders.h"
@@ -37,12 +38,7 @@ typedef struct ShaderBuild {
     SharedShader *shared; /* the device has it already: nothing is found or made */
 } ShaderBuild;
 
-static double ms_of(clockid_t clock)
-{
-    struct timespec used;
-    clock_gettime(clock, &used);
-    return (double)used.tv_sec * 1e3 + (double)used.tv_nsec / 1e6;
-}
+static double ms_of(clockid_t clock) { return 1e3 * clock_seconds(clock); }
 
 static void *compile(void *user)
 {
