@@ -17,6 +17,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "compiler/base/allocator.h"
 #include "compiler/base/fingerprints.h"
 
 enum {
@@ -77,20 +78,6 @@ static void make_name(char name[NAME_SIZE], CacheKind kind, CacheKey key)
     for (size_t i = 0; i < sizeof key.bytes; i++)
         snprintf(name + 2 * i, 3, "%02x", key.bytes[i]);
     snprintf(name + KEY_DIGITS, NAME_SIZE - KEY_DIGITS, "%s", endings[kind]);
-}
-
-static void *get_memory(const Cache *cache, size_t size)
-{
-    const KrsAllocator *allocator = &cache->allocator;
-    return allocator->allocate ? allocator->allocate(allocator->user, size) : malloc(size);
-}
-
-static void release_memory(const Cache *cache, void *block)
-{
-    if (block && cache->allocator.release)
-        cache->allocator.release(cache->allocator.user, block);
-    else if (!cache->allocator.allocate)
-        free(block);
 }
 
 /* ---- The folder ---- */
@@ -163,7 +150,7 @@ static void *read_entry(const Cache *cache, int fd, CacheKind kind, CacheKey key
         (uint64_t)info.st_size != sizeof found + found.length)
         return NULL;
     *length     = (size_t)found.length;
-    void *bytes = get_memory(cache, *length > 0 ? *length : 1);
+    void *bytes = allocator_new(&cache->allocator, *length, 1);
     if (!bytes)
         return NULL;
     if (read_fully(fd, bytes, *length)) {
@@ -173,7 +160,7 @@ static void *read_entry(const Cache *cache, int fd, CacheKind kind, CacheKey key
             return bytes;
         }
     }
-    release_memory(cache, bytes);
+    allocator_release(&cache->allocator, bytes);
     return NULL;
 }
 
@@ -280,7 +267,7 @@ static int oldest_first(const void *left, const void *right)
 static void remove_oldest(Cache *cache)
 {
     size_t capacity = cache->files, count = 0;
-    Kept  *kept = get_memory(cache, capacity * sizeof *kept);
+    Kept  *kept = allocator_new(&cache->allocator, capacity, sizeof *kept);
     if (!kept)
         return;
     cache->bytes = 0;
@@ -296,7 +283,7 @@ static void remove_oldest(Cache *cache)
         cache->bytes -= kept[i].bytes;
         cache->files--;
     }
-    release_memory(cache, kept);
+    allocator_release(&cache->allocator, kept);
 }
 
 /* Removes files when one of `bytes` was added.  The folder is looked through for the first one and

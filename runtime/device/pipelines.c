@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "compiler/base/allocator.h"
+
 /* The size at which data that grow with every scene start anew. */
 static const size_t LARGE = CACHE_ENTRY_BYTES / 2;
 
@@ -64,15 +66,14 @@ static void save(Gpu *gpu)
             VK_SUCCESS ||
         length <= gpu->pipelines_loaded)
         return;
-    Gpu   quiet = {.allocator = gpu->allocator}; /* takes the note when there is no memory */
-    void *bytes = gpu_alloc(&quiet, length, 1, "save the pipelines");
+    void *bytes = allocator_new(&gpu->allocator, length, 1); /* without it nothing is saved */
     if (bytes &&
         vkGetPipelineCacheData(gpu->driver->device, gpu->driver->pipelines, &length, bytes) ==
             VK_SUCCESS &&
         pipelines_fit(&gpu->driver->properties, bytes, length))
         cache_store(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->driver->properties), bytes,
                     length);
-    gpu_release(&quiet, bytes);
+    allocator_release(&gpu->allocator, bytes);
 }
 
 void pipelines_close(Gpu *gpu)

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-static bool is_power_of_two(uint32_t number) { return (number & (number - 1)) == 0; }
-
 bool doubling_is_due(uint32_t samples)
 {
     return samples > SAMPLES_OF_BLOCK && is_power_of_two(samples);

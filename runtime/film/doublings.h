@@ -10,6 +10,8 @@
 
 enum { SAMPLES_OF_BLOCK = 64 }; /* a power of two, as errors are estimated at powers of two */
 
+static inline bool is_power_of_two(uint32_t number) { return (number & (number - 1)) == 0; }
+
 /* What the error of a pixel is estimated from, when its samples have doubled. */
 typedef struct Doubling {
     Exact earlier[3]; /* the sums when they had doubled before */

@@ -569,7 +569,7 @@ static bool store_all(KrsFilm *film)
 /* Samples of all pixels together. */
 static uint64_t count_rays(const KrsFilm *film)
 {
-    const size_t    pixels = (size_t)film->options.crop.width * film->options.crop.height;
+    const size_t    pixels = film_pixels(film);
     const uint32_t *ended  = film->sums->pixel_samples;
     uint64_t        rays   = 0;
     for (size_t k = 0; k < pixels; k++)

@@ -10,12 +10,7 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
-static size_t pixels_of(const KrsFilm *film)
-{
-    return (size_t)film->options.crop.width * film->options.crop.height;
-}
-
-size_t lights_numbers(const KrsFilm *film) { return film->light_count * pixels_of(film); }
+size_t lights_numbers(const KrsFilm *film) { return film->light_count * film_pixels(film); }
 
 bool lights_make(KrsFilm *film)
 {
@@ -35,7 +30,7 @@ bool lights_make(KrsFilm *film)
 
 bool lights_finish(const KrsFilm *film, KrsPicture *picture)
 {
-    const size_t pixels = pixels_of(film);
+    const size_t pixels = film_pixels(film);
     const size_t count  = film->light_count - plate_rows(film);
     if (count == 0)
         return true;

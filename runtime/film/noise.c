@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "runtime/film/doublings.h"
+#include "runtime/film/picture.h"
 #include "runtime/tracer/dispatch.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
@@ -71,8 +72,6 @@ bool noise_resume(Job *job, const Plan *plan, const WorkBlock *work, uint32_t sa
            list_pixels(job, plan, work, NOISE_LISTS, samples, unfinished);
 }
 
-static bool is_power_of_two(uint32_t number) { return (number & (number - 1)) == 0; }
-
 bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples,
                 bool *unfinished)
 {
@@ -107,7 +106,7 @@ float noise_since(uint32_t samples)
 
 void noise_finish(KrsPicture *picture)
 {
-    const size_t pixels = (size_t)picture->window.width * picture->window.height;
+    const size_t pixels = picture_pixels(picture);
     const float  since  = noise_since(picture->samples);
     for (size_t k = 0; picture->noise && k < pixels; k++)
         if (picture->pixel_samples[k] == 0) {

@@ -3,11 +3,12 @@
  */
 #include "runtime/film/picture.h"
 
-#include "runtime/film/mattes.h"
-
 #include <assert.h>
 #include <math.h>
 #include <string.h>
+
+#include "compiler/base/allocator.h"
+#include "runtime/film/mattes.h"
 
 /* The arrays of all AOVs; all numbers have 32 bits. */
 static const struct Plane {
@@ -73,7 +74,7 @@ KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow win
     picture->window    = window;
     picture->allocator = gpu->allocator;
 
-    size_t pixels = (size_t)window.width * window.height;
+    const size_t pixels = picture_pixels(picture);
     for (int i = 0; i < ARRAY_COUNT; i++) {
         if (!(wanted & aovs[i].bit))
             continue;
@@ -127,14 +128,9 @@ void picture_take(KrsPicture *picture, uint32_t wanted, const float *results, si
     }
 }
 
-static size_t pixels_of(const KrsPicture *picture)
-{
-    return (size_t)picture->window.width * picture->window.height;
-}
-
 static bool copy_mattes(Gpu *gpu, const KrsPicture *from, KrsPicture *to)
 {
-    const size_t bytes = pixels_of(from) * KRS_MATTE_RANKS * sizeof(KrsMatte);
+    const size_t bytes = picture_pixels(from) * KRS_MATTE_RANKS * sizeof(KrsMatte);
     if (!from->mattes[0])
         return true;
     if (!mattes_new(gpu, to))
@@ -160,23 +156,22 @@ KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t wanted)
     copy->stats.peak_memory_bytes += own_bytes;
     for (int i = 0; i < ARRAY_COUNT; i++)
         if (aov_get(copy, i))
-            memcpy(aov_get(copy, i), aov_get(picture, i), pixels_of(copy) * aovs[i].bytes);
+            memcpy(aov_get(copy, i), aov_get(picture, i), picture_pixels(copy) * aovs[i].bytes);
     return copy;
 }
 
 void picture_drop(KrsPicture *picture, uint32_t unwanted)
 {
-    Gpu allocating = {.allocator = picture->allocator};
     for (int i = 0; i < ARRAY_COUNT; i++)
         if (unwanted & aovs[i].bit) {
-            gpu_release(&allocating, aov_get(picture, i));
+            allocator_release(&picture->allocator, aov_get(picture, i));
             aov_set(picture, i, NULL);
         }
 }
 
 void picture_divide(KrsPicture *picture, const uint32_t *ended, uint32_t samples)
 {
-    const size_t count = picture->color ? pixels_of(picture) : 0;
+    const size_t count = picture->color ? picture_pixels(picture) : 0;
     for (size_t k = 0; samples > 1 && k < count; k++) {
         const float by = (float)(ended && ended[k] > 0 ? ended[k] : samples);
         for (int i = 0; i < 4; i++)
@@ -187,7 +182,7 @@ void picture_divide(KrsPicture *picture, const uint32_t *ended, uint32_t samples
 void picture_compose(KrsPicture *picture, const float *depth, const float (*plate)[4])
 {
     const KrsWindow *window = &picture->window;
-    for (size_t k = 0; k < pixels_of(picture); k++) {
+    for (size_t k = 0; k < picture_pixels(picture); k++) {
         size_t x = window->x + k % window->width, y = window->y + k / window->width;
         size_t whole = y * picture->width + x;
         float *color = picture->color ? &picture->color[4 * k] : NULL;
@@ -292,13 +287,13 @@ void krs_picture_free(KrsPicture *picture)
 {
     if (!picture)
         return;
-    Gpu allocating = {.allocator = picture->allocator};
+    const KrsAllocator allocator = picture->allocator;
     for (int i = 0; i < ARRAY_COUNT; i++)
-        gpu_release(&allocating, aov_get(picture, i));
+        allocator_release(&allocator, aov_get(picture, i));
     for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
-        gpu_release(&allocating, picture->mattes[kind]);
-    gpu_release(&allocating, picture->lights);
-    gpu_release(&allocating, picture->caught);
-    gpu_release(&allocating, picture->mirrored);
-    gpu_release(&allocating, picture);
+        allocator_release(&allocator, picture->mattes[kind]);
+    allocator_release(&allocator, picture->lights);
+    allocator_release(&allocator, picture->caught);
+    allocator_release(&allocator, picture->mirrored);
+    allocator_release(&allocator, picture);
 }

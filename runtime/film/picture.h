@@ -11,6 +11,12 @@
 KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window,
                         uint32_t wanted);
 
+/* Returns how many pixels of the picture are there: those of its window. */
+static inline size_t picture_pixels(const KrsPicture *picture)
+{
+    return (size_t)picture->window.width * picture->window.height;
+}
+
 /* Returns the rows of results (bit ROW_... of each) that the AOVs of a picture come from. */
 uint32_t picture_rows(const KrsPicture *picture);
 

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
+#include "runtime/film/picture.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
@@ -47,10 +48,10 @@ typedef struct PlatePoint {
    such a length that depths count along it. */
 static void find_ray(const Job *job, uint32_t x, uint32_t y, double origin[3], double direction[3])
 {
-    const FrameBlock *f     = &job->frame;
-    const double      right = (2 * x + 1.0) / job->options.width - 1 + (double)f->shift[0];
-    const double      up    = 1 - (2 * y + 1.0) / job->options.height + (double)f->shift[1];
-    const double      pi = acos(-1.0), longitude = pi * right, latitude = 0.5 * pi * up;
+    const FrameBlock *f         = &job->frame;
+    const double      right     = (2 * x + 1.0) / job->options.width - 1 + (double)f->shift[0];
+    const double      up        = 1 - (2 * y + 1.0) / job->options.height + (double)f->shift[1];
+    const double      longitude = M_PI * right, latitude = 0.5 * M_PI * up;
     for (int i = 0; i < 3; i++) {
         const double eye = (double)f->eye[i], r = (double)f->right[i], u = (double)f->up[i],
                      forward = (double)f->forward[i], lateral = right * r + up * u;
@@ -156,7 +157,7 @@ static float ratio_of(float caught, float without) { return without > 0 ? caught
 /* Makes an AOV of a picture; false with the failure noted. */
 static bool make_aov(const KrsFilm *film, KrsPicture *picture, float (**aov)[3])
 {
-    const size_t pixels = (size_t)picture->window.width * picture->window.height;
+    const size_t pixels = picture_pixels(picture);
     *aov = gpu_alloc(&film->rendering->renderer->gpu, pixels, sizeof **aov, "make a picture");
     picture->stats.peak_memory_bytes += *aov ? pixels * sizeof **aov : 0;
     return *aov != NULL;
@@ -180,7 +181,7 @@ static void put_pixel(const KrsFilm *film, KrsPicture *picture, const float (*su
 
 bool plate_finish(const KrsFilm *film, KrsPicture *picture)
 {
-    const size_t pixels = (size_t)picture->window.width * picture->window.height;
+    const size_t pixels = picture_pixels(picture);
     const size_t before = film->light_count - plate_rows(film);
     if (!plate_catches(film))
         return true;

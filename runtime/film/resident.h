@@ -33,6 +33,11 @@ struct KrsFilm {
     KrsRenderStats stats;
 };
 
+static inline size_t film_pixels(const KrsFilm *film)
+{
+    return (size_t)film->options.crop.width * film->options.crop.height;
+}
+
 /* Returns the crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels
    of a tile go on together (noise.comp), which must not depend on the crop. */
 KrsWindow resident_cover(const KrsRenderOptions *options);

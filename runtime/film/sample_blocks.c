@@ -10,11 +10,6 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
-static size_t pixels_of(const KrsFilm *film)
-{
-    return (size_t)film->options.crop.width * film->options.crop.height;
-}
-
 bool film_has_blocks(const KrsFilm *film)
 {
     return film->light_count == 0 && film->options.noise == 0;
@@ -46,7 +41,7 @@ void blocks_clear(KrsFilm *film)
 {
     blocks_free(film);
     film->closed = film->first;
-    memset(film->sums->color, 0, pixels_of(film) * sizeof(float[4]));
+    memset(film->sums->color, 0, film_pixels(film) * sizeof(float[4]));
 }
 
 /* ---- errors ---- */
@@ -57,7 +52,7 @@ static void begin_doublings(KrsFilm *film)
     const KrsWindow cover = resident_cover(&film->options), *crop = &film->options.crop;
     float(*earlier)[4] = film->kept +
                          (size_t)KEPT_EARLIER * cover.width * cover.height; /* whole tiles */
-    for (size_t k = 0; k < pixels_of(film); k++) {
+    for (size_t k = 0; k < film_pixels(film); k++) {
         const size_t x = crop->x - cover.x + k % crop->width,
                      y = crop->y - cover.y + k / crop->width;
         memcpy(film->doublings[k].earlier, film->exact[k], sizeof film->doublings[k].earlier);
@@ -72,9 +67,9 @@ bool blocks_make_room(KrsFilm *film)
 {
     Gpu *gpu = &film->rendering->renderer->gpu;
     if (!film->exact)
-        film->exact = gpu_alloc(gpu, pixels_of(film), sizeof *film->exact, "add samples");
+        film->exact = gpu_alloc(gpu, film_pixels(film), sizeof *film->exact, "add samples");
     if (film->exact && film->kept && !film->doublings)
-        film->doublings = gpu_alloc(gpu, pixels_of(film), sizeof *film->doublings, "add samples");
+        film->doublings = gpu_alloc(gpu, film_pixels(film), sizeof *film->doublings, "add samples");
     return film->exact && (!film->kept || film->doublings);
 }
 
@@ -82,7 +77,7 @@ bool blocks_make_room(KrsFilm *film)
 static bool clear_block(KrsFilm *film)
 {
     const KrsWindow cover = resident_cover(&film->options);
-    memset(film->sums->color, 0, pixels_of(film) * sizeof(float[4]));
+    memset(film->sums->color, 0, film_pixels(film) * sizeof(float[4]));
     if (film->kept)
         memset(film->kept, 0, (size_t)cover.width * cover.height * sizeof *film->kept);
     return film->rendering->resident.film != film ||
@@ -98,14 +93,14 @@ bool blocks_close(KrsFilm *film)
     if (!blocks_make_room(film) ||
         (film->rendering->resident.film == film && !resident_store(film->rendering)))
         return false;
-    for (size_t k = 0; k < pixels_of(film); k++)
+    for (size_t k = 0; k < film_pixels(film); k++)
         for (size_t i = 0; i < 4; i++)
             film->exact[k][i] = exact_sum(film->exact[k][i],
                                           exact_of(film->sums->color[4 * k + i]));
     film->closed = film->samples;
     if (film->kept && film->samples == SAMPLES_OF_BLOCK)
         begin_doublings(film);
-    for (size_t k = 0; film->kept && doubling_is_due(film->samples) && k < pixels_of(film); k++)
+    for (size_t k = 0; film->kept && doubling_is_due(film->samples) && k < film_pixels(film); k++)
         doubling_take(&film->doublings[k], film->exact[k], film->samples,
                       (float)film->options.noise_floor);
     return clear_block(film);
@@ -123,12 +118,12 @@ static void find_sums(const KrsFilm *film, size_t pixel, Exact sums[4])
 void blocks_finish(const KrsFilm *film, KrsPicture *picture)
 {
     Exact sums[4];
-    for (size_t k = 0; film->closed > film->first && picture->color && k < pixels_of(film); k++) {
+    for (size_t k = 0; film->closed > film->first && picture->color && k < film_pixels(film); k++) {
         find_sums(film, k, sums);
         for (size_t i = 0; i < 4; i++)
             picture->color[4 * k + i] = exact_float(sums[i]);
     }
-    for (size_t k = 0; film->closed > film->first && picture->noise && k < pixels_of(film); k++)
+    for (size_t k = 0; film->closed > film->first && picture->noise && k < film_pixels(film); k++)
         picture->noise[k] = film->doublings[k].error;
 }
 
@@ -140,8 +135,8 @@ SampleSums film_sums(const KrsFilm *film)
     SampleSums            all = {.noise       = film->doublings != NULL,
                                  .noise_floor = (float)film->options.noise_floor};
     Exact                 sums[4];
-    all.numbers = malloc(pixels_of(film) * sizeof *all.numbers);
-    for (size_t k = 0; all.numbers && k < pixels_of(film); k++) {
+    all.numbers = malloc(film_pixels(film) * sizeof *all.numbers);
+    for (size_t k = 0; all.numbers && k < film_pixels(film); k++) {
         find_sums(film, k, sums);
         sums_to_numbers(sums, film->doublings ? &film->doublings[k] : &none, all.numbers[k]);
     }

@@ -113,7 +113,7 @@ static bool fits(const KrsFilm *film, const Header *header)
 static bool pass_arrays(const KrsFilm *film, const Way *way)
 {
     const KrsPicture *sums   = film->sums;
-    const size_t      pixels = (size_t)sums->window.width * sums->window.height;
+    const size_t      pixels = picture_pixels(sums);
     void             *numbers;
     size_t            bytes;
     for (int i = 0; (bytes = picture_plane(sums, i, &numbers)) > 0; i++)

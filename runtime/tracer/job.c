@@ -49,11 +49,6 @@ static float normal_reach(const KrsRenderOptions *options)
     return options->methods.no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
 }
 
-static bool is_camera_relative(const Job *job)
-{
-    return job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 || job->rebase_origin[2] != 0;
-}
-
 /* Tells whether the rectangle in which rays of an orthographic camera begin is outside of all solids: balls around
    its parts must be.  The frame is prepared. */
 static bool rectangle_is_outside(const Job *job, KrsState *state)
@@ -201,7 +196,7 @@ bool job_read_frame(Job *job, KrsState *state, const KrsCamera *camera)
     if (job->rendering->program->emits && job->options.integrator != KRS_INTEGRATOR_PREVIEW)
         job->frame.emissive_count = emissive_find(job->rendering->program, &job->view.camera, state,
                                                   job->rebase_origin, job->emissive);
-    const double *rebase_origin = is_camera_relative(job) ? job->rebase_origin : NULL;
+    const double *rebase_origin = job_is_camera_relative(job) ? job->rebase_origin : NULL;
     if (!rendering_set_parameters(job->rendering, state, rebase_origin) ||
         !rendering_set_rays(job->rendering, kind_of_rays(job)) ||
         (rebase_origin && !rendering_rebase(job->rendering, state, rebase_origin)))

@@ -67,6 +67,12 @@ typedef struct Job {
     Chain            chain;
 } Job;
 
+/* Tells whether points on the device are relative to another origin than the scene's. */
+static inline bool job_is_camera_relative(const Job *job)
+{
+    return job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 || job->rebase_origin[2] != 0;
+}
+
 /* Notes why a call is refused; returns false. */
 bool job_refuse(Job *job, const char *words);
 /* Reads a state: lights, parameters, and the camera or the rays of a list.  `camera` may be NULL

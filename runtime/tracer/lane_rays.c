@@ -9,8 +9,8 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
+#include "compiler/base/clock.h"
 #include "runtime/tracer/lane_cameras.h"
 #include "runtime/tracer/lane_deal.h"
 #include "runtime/tracer/methods.h"
@@ -31,8 +31,6 @@ const char *lane_rays_refuse(const Job *job)
 {
     const KrsRendering     *r       = job->rendering;
     const KrsRenderOptions *options = &job->options;
-    const bool              rebased = job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 ||
-                         job->rebase_origin[2] != 0;
     if (!gpu_is_cpu(job->gpu))
         return "the device is not of type CPU";
     if (job->frame.snaps)
@@ -41,7 +39,7 @@ const char *lane_rays_refuse(const Job *job)
         return "there are rays of the caller";
     if (r->program->media)
         return "light goes through something";
-    if (rebased)
+    if (job_is_camera_relative(job))
         return "coordinates are so large that points are relative to another origin";
     if (r->zone_slots > 0 || options->depth || options->noise > 0)
         return "there are zones or depths of the caller, or samples end by noise";
@@ -128,11 +126,10 @@ static void clip(const float low[3], const float high[3], float farthest, RayBlo
 static void begin_block(const Slice *slice, Corner corner, RayBlock *block)
 {
     for (uint32_t i = 0; i < RAYS_OF_BLOCK; i++) {
-        uint32_t   pixel[2];
-        const bool asked = find_pixel(slice->work, corner, i, pixel);
-        const bool there = corner.at[0] + i % BLOCK_SIDE < slice->job->options.width &&
-                           corner.at[1] + i / BLOCK_SIDE < slice->job->options.height;
+        uint32_t       pixel[2];
+        const bool     asked = find_pixel(slice->work, corner, i, pixel);
         const uint32_t at[2] = {corner.at[0] + i % BLOCK_SIDE, corner.at[1] + i / BLOCK_SIDE};
+        const bool there = at[0] < slice->job->options.width && at[1] < slice->job->options.height;
         if (there)
             aim(&slice->rays, at, block, i);
         block->state[i] = asked ? RAY_MARCHES : there ? RAY_IS_BESIDE : RAY_IS_ABSENT;
@@ -397,12 +394,7 @@ bool lane_rays_march(Job *job, RayField *field, const WorkBlock *work, const Lan
 }
 
 /* Returns the milliseconds of this thread. */
-static double thread_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
+static double thread_ms(void) { return 1e3 * clock_seconds(CLOCK_THREAD_CPUTIME_ID); }
 
 /* Quarters of tiles are taken far apart, as some have nothing; before them a smaller part, where a quarter would take too
    long. */

@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* The reach is a column of the table; these are integrals of weights up to x, in [-reach, reach],
    times any constant. */
 typedef double Integral(double x, double reach);
@@ -18,15 +16,15 @@ static double integral_gaussian(double x, double reach)
 {
     const double deviation = 0.5, end = exp(-0.5 * reach * reach / (deviation * deviation));
     const double unit = deviation * sqrt(2);
-    return deviation * sqrt(PI / 2) * (erf(x / unit) + erf(reach / unit)) - end * (x + reach);
+    return deviation * sqrt(M_PI / 2) * (erf(x / unit) + erf(reach / unit)) - end * (x + reach);
 }
 
 /* Returns the window of four terms with the smallest side lobes (Harris 1978). */
 static double integral_blackman_harris(double x, double reach)
 {
-    const double turn = PI * (1 + x / reach);
-    return 0.35875 * turn - 0.48829 * sin(turn) + 0.14128 / 2 * sin(2 * turn) -
-           0.01168 / 3 * sin(3 * turn);
+    const double angle = M_PI * (1 + x / reach);
+    return 0.35875 * angle - 0.48829 * sin(angle) + 0.14128 / 2 * sin(2 * angle) -
+           0.01168 / 3 * sin(3 * angle);
 }
 
 static const struct {

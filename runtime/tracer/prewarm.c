@@ -41,8 +41,8 @@ static bool worth_second_device(const PrewarmQueue *queue)
     return compiled > 1 && gpu_is_cpu(gpu) && !gpu->validates && sysconf(_SC_NPROCESSORS_ONLN) > 1;
 }
 
-/* Returns the second device's thread.  If anything fails, or nothing is kept on disk, the first
-   device compiles what this one should have. */
+/* Takes shaders from the queue, and prewarms them on a device of its own, in a thread.  If anything fails, or nothing is
+   kept on disk, the first device compiles what this one should have. */
 static void *prewarm_on_second_device(void *user)
 {
     PrewarmQueue *queue  = user;
@@ -166,7 +166,7 @@ static bool load_and_prewarm(KrsRenderer *renderer, Handle scene_set, const Shad
     return ready;
 }
 
-/* Makes them likewise, and compiles them before. */
+/* Compiles shaders, loads them and prewarms them, and waits for those that were begun ahead. */
 static bool make(KrsRenderer *renderer, Handle scene_set, const ShaderRequest *asked, size_t count,
                  double *spirv_ms, double *pipeline_ms)
 {

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "runtime/shared/answers.h"
+#include "runtime/tracer/job.h"
 #include "runtime/tracer/shaders.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/methods.h"
@@ -20,7 +21,7 @@
 #include "runtime/tracer/rendering.h"
 #include "runtime/tracer/slots.h"
 
-enum { MAX_STEPS = 8192, MAX_LANE_STEPS = 16384 };
+enum { MAX_STEPS = 8192 };
 
 /* Tells whether single precision can square the vectors. */
 static bool is_in_reach(const double (*vectors)[3], size_t count)

@@ -83,7 +83,7 @@ static bool upload(KrsRendering *rendering, const KrsState *state, const double 
     return done;
 }
 
-/* The tables are those of the state, unless they are so already. */
+/* Brings the tables of a state to the device, unless it has them already. */
 static bool renew(KrsRendering *rendering, const KrsState *state, const double *rebase_origin)
 {
     Gpu   *gpu         = &rendering->renderer->gpu;

@@ -14,8 +14,6 @@
 
 #define TABLE "table of the sky"
 
-static const double PI = 3.14159265358979323846;
-
 /* A picture of all directions: rows of red, green, blue and more. */
 typedef struct Directions {
     uint32_t width, height;
@@ -32,7 +30,7 @@ static float *texel_of(const Directions *of, uint32_t x, uint32_t y)
 /* Returns the solid angle of a texel of a row. */
 static double texel_angle(const Directions *of, uint32_t y)
 {
-    return 2 * PI / of->width * (cos(PI * y / of->height) - cos(PI * (y + 1) / of->height));
+    return 2 * M_PI / of->width * (cos(M_PI * y / of->height) - cos(M_PI * (y + 1) / of->height));
 }
 
 /* ---- The sky itself, and sums to choose by ---- */
@@ -57,7 +55,7 @@ static double mean_of_cell(const Directions *sky, uint32_t column, uint32_t line
 static double cell_angle(const Directions *of, uint32_t line)
 {
     const double from = fmax(line - 0.5, 0), to = fmin(line + 0.5, of->height);
-    return 2 * PI / of->width * (cos(PI * from / of->height) - cos(PI * to / of->height));
+    return 2 * M_PI / of->width * (cos(M_PI * from / of->height) - cos(M_PI * to / of->height));
 }
 
 /* Sets the weight of each cell.  Returns the sum of all. */
@@ -175,13 +173,13 @@ static double lobe(double cosine, double roughness)
    middle of a texel of row `at`. */
 static void find_lobe(const Directions *of, uint32_t at, double roughness, double *weights)
 {
-    const double latitude = PI * (at + 0.5) / of->height;
+    const double latitude = M_PI * (at + 0.5) / of->height;
     double       sum      = 0;
     for (uint32_t y = 0; y < of->height; y++)
         for (uint32_t x = 0; x < of->width; x++) {
-            const double other  = PI * (y + 0.5) / of->height;
+            const double other  = M_PI * (y + 0.5) / of->height;
             const double cosine = cos(latitude) * cos(other) +
-                                  sin(latitude) * sin(other) * cos(2 * PI * x / of->width);
+                                  sin(latitude) * sin(other) * cos(2 * M_PI * x / of->width);
             double *weight = &weights[(size_t)y * of->width + x];
             *weight        = lobe(fmin(cosine, 1), roughness);
             *weight = *weight > MIN_OF_LOBE * lobe(1, roughness) ? *weight * texel_angle(of, y) : 0;

@@ -26,17 +26,18 @@ static void define(ShaderVariant *to, const char *format, ...)
     va_end(arguments);
 }
 
-static void want(ShaderVariant *to, KrsFunction function)
-{
-    to->scene.wanted[to->scene.wanted_count++] = function;
-}
-
 static bool wants(const ShaderVariant *of, KrsFunction function)
 {
     bool found = false;
     for (size_t i = 0; i < of->scene.wanted_count; i++)
         found = found || of->scene.wanted[i] == function;
     return found;
+}
+
+static void want(ShaderVariant *to, KrsFunction function)
+{
+    if (!wants(to, function))
+        to->scene.wanted[to->scene.wanted_count++] = function;
 }
 
 /* Chooses that distances and surfaces are those that a ray sees from inside of glass, or from
@@ -99,8 +100,7 @@ static void want_sky(ShaderVariant *to, const KrsRendering *rendering)
     if (!rendering->program->sky_map)
         return;
     define(to, SKY_MAP);
-    if (!wants(to, KRS_FUNCTION_SINES))
-        want(to, KRS_FUNCTION_SINES);
+    want(to, KRS_FUNCTION_SINES);
     want(to, KRS_FUNCTION_ARCS);
 }
 
@@ -111,8 +111,7 @@ static void want_plate(ShaderVariant *to, const KrsRendering *rendering)
     if (!rendering->catches)
         return;
     define(to, CATCHES);
-    if (!wants(to, KRS_FUNCTION_SINES))
-        want(to, KRS_FUNCTION_SINES);
+    want(to, KRS_FUNCTION_SINES);
 }
 
 /* Sets what is known of materials before one is looked at.  Phases of waves need cosines. */
@@ -125,8 +124,7 @@ static void want_materials(ShaderVariant *to, const KrsRendering *rendering)
     if (!rendering->program->films)
         return;
     define(to, "#define FILM\n");
-    if (!wants(to, KRS_FUNCTION_SINES))
-        want(to, KRS_FUNCTION_SINES);
+    want(to, KRS_FUNCTION_SINES);
 }
 
 /* ---- variants for a rendering ---- */
@@ -387,8 +385,7 @@ ShaderVariant variant_of_collide(const KrsRendering *rendering, KrsIntegrator in
     want(&to, KRS_FUNCTION_EMISSION);
     want_media(&to, rendering);
     want_sky(&to, rendering);
-    if (!wants(&to, KRS_FUNCTION_ARCS))
-        want(&to, KRS_FUNCTION_ARCS);
+    want(&to, KRS_FUNCTION_ARCS);
     define_choices(&to);
     return to;
 }

@@ -10,8 +10,6 @@
 /* The depth at which z is 0 in the NDC of a perspective picture; z is 1 at infinity. */
 static const double NDC_NEAR = 1e-3;
 
-static const double PI = 3.14159265358979323846;
-
 /* Stands for infinity in the boxes of shaders: divided by 1e-18 it is still a float (clip_to in
    frame.glsl). */
 #define UNBOUNDED KRS_MAX_COORDINATE
@@ -66,7 +64,7 @@ static bool camera_is_valid(const KrsCamera *camera)
         !isfinite(camera->shift[0]) || !isfinite(camera->shift[1]) || !isfinite(camera->eyes))
         return false;
     if (camera->projection == KRS_PERSPECTIVE)
-        return camera->fov > 0 && camera->fov < PI;
+        return camera->fov > 0 && camera->fov < M_PI;
     if (camera->projection == KRS_ORTHOGRAPHIC)
         return camera->height > 0 && isfinite(camera->height);
     return true;
@@ -220,7 +218,7 @@ double view_pixel(const KrsCamera *camera, uint32_t height, double distance)
     half_extent(camera, 1, 1, extent);
     switch (camera->projection) {
     case KRS_ORTHOGRAPHIC: return 2 * extent[1] / height;
-    case KRS_PANORAMA: return PI / height * distance;
+    case KRS_PANORAMA: return M_PI / height * distance;
     case KRS_PERSPECTIVE: break;
     }
     return 2 * extent[1] / height * distance;
@@ -301,7 +299,7 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
     if (view->sky.map) {
         block->sky_map[0] = (float)view->sky.map->width;
         block->sky_map[1] = (float)view->sky.map->height;
-        block->sky_map[2] = (float)fmod(view->sky.rotation, 2 * PI);
+        block->sky_map[2] = (float)fmod(view->sky.rotation, 2 * M_PI);
         block->sky_map[3] = (float)view->sky.intensity;
     }
     to_floats(view->fog.color, block->fog);
