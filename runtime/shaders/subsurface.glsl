@@ -105,7 +105,7 @@ vec3 find_gradient_below(vec3 position, float reach)
 }
 
 // Moves a place near the surface onto it.
-void leave(inout Walk walk, HitPoint hit, vec3 facing)
+void leave(inout Walk walk, HitPoint hit)
 {
     float reach = max(0.5 * hit.width, 3e-4 * largest(walk.position) + hit.rounding);
     vec3  gradient = find_gradient_below(walk.position, reach);
@@ -167,7 +167,7 @@ Walk walk_below(HitPoint hit, vec3 facing, vec3 color, vec3 radius)
             float back = step * -depth / max(before - depth, 1e-30);
             walk.position -= back * direction;
             walk.weight = weigh_wall(inside, walk.weight, gone - back);
-            leave(walk, hit, facing);
+            leave(walk, hit);
             return walk;
         }
         if (left <= 0.0 && i > 0u) {

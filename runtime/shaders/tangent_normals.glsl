@@ -57,12 +57,12 @@ void begin_nearer()
 // Moves a point, or looks at what it has found.
 void take_nearer(vec3 uphill, float distance, vec3 facing)
 {
-    uint turn = (taps - 3u) % POINT_TAPS;
-    if (turn < MOVES) {
+    uint phase = (taps - 3u) % POINT_TAPS;
+    if (phase < MOVES) {
 #ifndef OPEN_SURFACES // distances do not tell the side of an open surface
         place -= clamp(distance, -t, t) * uphill;
 #endif
-    } else if (turn == MOVES) {
+    } else if (phase == MOVES) {
         normal = facing;
         before = distance;
         place += OUTSIDE * t * normal;

@@ -74,8 +74,9 @@ Crossing begin_crossing(Volume volume, vec3 origin, vec3 direction, float end)
     return Crossing(range.x, volume.exists ? range.y : -1.0, 0.0, 0.0, 0.0);
 }
 
-// Goes on to the next point that is chosen at random, as often as `most` less `least` says; or to the end, if `rest`,
-// which takes the least density into account, is not.  Returns whether there is such a point.
+// Goes on to the next point that is chosen at random, or to the end; returns whether there is such a point before it.
+// Points are as dense as the medium at its densest in each cell; with `rest` as that less the least density there, of which
+// the caller takes account by `depth`.
 bool find_point(Volume volume, vec3 origin, vec3 direction, bool rest, inout Crossing crossing,
                 inout float depth)
 {

@@ -3,8 +3,8 @@
  *
  * C and GLSL read this one file, as they do blocks.h.
  */
-#ifndef KRS_ANSWERS_H
-#define KRS_ANSWERS_H
+#ifndef KRS_SHARED_ANSWERS_H
+#define KRS_SHARED_ANSWERS_H
 
 #include "runtime/shared/blocks.h"
 

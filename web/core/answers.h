@@ -1,8 +1,8 @@
 /*
  * answers.h: answers to a page, in JSON.
  */
-#ifndef KRS_ANSWERS_H
-#define KRS_ANSWERS_H
+#ifndef KRS_WEB_ANSWERS_H
+#define KRS_WEB_ANSWERS_H
 
 #include "krs/krs.h"
 

@@ -110,8 +110,8 @@ void main()
     // First the material of what closes the sky, then that of the hit: in a loop, so that it is compiled once.
     KrsSurface surface;
     float albedo = 0.0;
-    for (uint turn = occluder > 0.0 ? 0u : 1u; turn < 2u; turn++) {
-        bool closes = turn == 0u;
+    for (uint i = occluder > 0.0 ? 0u : 1u; i < 2u; i++) {
+        bool closes = i == 0u;
 #ifdef KRS_VIEW
         krs_view = closes ? over : hit.direction;
 #endif
