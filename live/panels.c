@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "compiler/base/srgb.h"
 #include "live/actions.h"
 #include "live/window/gui.h"
 
@@ -16,28 +17,17 @@
 /* Keys in the first column of the help, below the mouse. */
 #define FIRST_KEYS 12
 
-static double encode_srgb(double linear)
-{
-    linear = fmin(fmax(linear, 0), 1);
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-}
-
-static double decode_srgb(double value)
-{
-    return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
-}
-
 /* ---- parameters ---- */
 
 static bool draw_color(const KrsParameter *parameter, double *value)
 {
     double shown[3];
     for (int i = 0; i < 3; i++)
-        shown[i] = encode_srgb(value[i]);
+        shown[i] = srgb_of_linear(fmax(value[i], 0));
     if (!gui_color(parameter->name, shown))
         return false;
     for (int i = 0; i < 3; i++)
-        value[i] = fmin(fmax(decode_srgb(shown[i]), parameter->low[i]), parameter->high[i]);
+        value[i] = fmin(fmax(linear_of_srgb(shown[i]), parameter->low[i]), parameter->high[i]);
     return true;
 }
 

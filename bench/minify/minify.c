@@ -17,6 +17,7 @@
 #include "bench/sheet.h"
 #include "bench/fixture.h"
 #include "compiler/passes/compile.h"
+#include "compiler/base/srgb.h"
 #include "runtime/display/display.h"
 #include "krs/vulkan.h"
 
@@ -90,7 +91,7 @@ static void shoot(const Fixture *fixture, int frame, uint32_t samples, bool plai
             shot->linear[i][k] = picture->color[4 * i + k];
         tone_map_apply(TONE_NEUTRAL, shot->linear[i], mapped);
         for (int k = 0; k < 3; k++)
-            shot->color[i][k] = 255 * srgb_encode(mapped[k]);
+            shot->color[i][k] = 255 * srgb_of_linear(mapped[k]);
         shot->alpha[i] = picture->color[4 * i + 3];
     }
     krs_picture_free(picture);
@@ -127,7 +128,7 @@ static void cover(const Shot *shot, const Shot *truth, const Shot *sky, Shot *co
         }
         tone_map_apply(TONE_NEUTRAL, seen, mapped);
         for (int k = 0; k < 3; k++)
-            covered->color[i][k] = 255 * srgb_encode(mapped[k]);
+            covered->color[i][k] = 255 * srgb_of_linear(mapped[k]);
     }
 }
 

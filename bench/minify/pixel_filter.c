@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "compiler/base/srgb.h"
 #include "runtime/display/display.h"
 
 typedef struct Filter {
@@ -100,7 +101,7 @@ static double error_of(const Filtered *picture, const Filtered *truth)
         tone_map_apply(TONE_NEUTRAL, found, shown);
         tone_map_apply(TONE_NEUTRAL, right, wanted);
         for (int k = 0; k < 3; k++)
-            sum += pow(255 * (srgb_encode(shown[k]) - srgb_encode(wanted[k])), 2);
+            sum += pow(255 * (srgb_of_linear(shown[k]) - srgb_of_linear(wanted[k])), 2);
         count += 3;
     }
     return sqrt(sum / (double)(count ? count : 1));

@@ -210,7 +210,7 @@ static uint8_t *screen_pixels(const KrsPicture *source, const DisplayOptions *di
     *length      = (size_t)source->window.width * source->window.height * 3;
     uint8_t *rgb = malloc(*length);
     if (rgb)
-        display_to_srgb8(source, display, rgb);
+        display_to_srgb8(source, display, 3, rgb);
     return rgb;
 }
 

@@ -1,5 +1,5 @@
 /*
- * srgb.h: the transfer function of sRGB, IEC 61966-2-1.
+ * srgb.h: the transfer function of sRGB, IEC 61966-2-1, and its inverse.
  */
 #ifndef KRS_SRGB_H
 #define KRS_SRGB_H
@@ -7,6 +7,14 @@
 #include <math.h>
 
 #include "compiler/base/elementary.h"
+
+/* From [0, 1] to [0, 1]. */
+static inline double srgb_of_linear(double linear)
+{
+    if (linear >= 1) /* the formula gives a little less */
+        return 1;
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
 
 static inline double linear_of_srgb(double value)
 {

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/srgb.h"
 #include "live/text/text_file.h"
 
 /* ---- values ---- */
@@ -18,11 +19,9 @@ static bool print_color(FILE *out, const double *value)
 {
     unsigned bytes[3];
     for (int i = 0; i < 3; i++) {
-        const double v = value[i];
-        if (!(v >= 0 && v <= 1))
+        if (!(value[i] >= 0 && value[i] <= 1))
             return false;
-        const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
-        bytes[i]             = (unsigned)lround(255 * encoded);
+        bytes[i] = (unsigned)lround(255 * srgb_of_linear(value[i]));
     }
     fprintf(out, "#%02x%02x%02x", bytes[0], bytes[1], bytes[2]);
     return true;

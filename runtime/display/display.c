@@ -6,15 +6,9 @@
 #include <math.h>
 
 #include "compiler/base/parallel.h"
+#include "compiler/base/srgb.h"
 
-double srgb_encode(double linear)
-{
-    if (linear >= 1) /* the formula gives a little less */
-        return 1;
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-}
-
-/* A table of srgb_encode over the square root of its argument, in which the curve is nearly
+/* A table of srgb_of_linear over the square root of its argument, in which the curve is nearly
    straight.  It is linear in each of PIECES pieces; the error is below 3e-7. */
 enum { PIECES = 4096 };
 typedef struct Encoding {
@@ -24,7 +18,7 @@ typedef struct Encoding {
 static void encoding_fill(Encoding *encoding)
 {
     for (int i = 0; i <= PIECES + 1; i++)
-        encoding->at[i] = srgb_encode((double)i / PIECES * i / PIECES);
+        encoding->at[i] = srgb_of_linear((double)i / PIECES * i / PIECES);
 }
 
 /* Returns the encoded value of a number in [0, 1], by the table. */
@@ -37,13 +31,13 @@ static double encode(const Encoding *encoding, double linear)
 }
 
 /* Returns the byte that the definition of sRGB gives.  Where an error of the table could change it,
-   srgb_encode itself decides. */
+   srgb_of_linear itself decides. */
 static uint8_t to_byte(const Encoding *encoding, double linear, double step)
 {
     const double doubt = 1e-3;
     double       value = 255 * encode(encoding, linear) + step, behind = value - (int)value;
     if (behind < doubt || behind > 1 - doubt)
-        value = 255 * srgb_encode(linear) + step;
+        value = 255 * srgb_of_linear(linear) + step;
     return (uint8_t)value;
 }
 
@@ -55,11 +49,6 @@ static double fraction(double value) { return value - (double)(int64_t)value; }
 static double noise(double x, double y)
 {
     return fraction(52.9829189 * fraction(0.06711056 * x + 0.00583715 * y));
-}
-
-void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, uint8_t *rgb)
-{
-    display_to_channels(picture, options, 3, rgb);
 }
 
 /* A picture that all processors convert, each some rows. */
@@ -102,8 +91,8 @@ static void convert_rows(void *task, size_t part, size_t parts)
             convert_pixel(c, x, (uint32_t)y);
 }
 
-void display_to_channels(const KrsPicture *picture, const DisplayOptions *options,
-                         uint32_t channels, uint8_t *pixels)
+void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, uint32_t channels,
+                      uint8_t *pixels)
 {
     Conversion conversion = {.picture  = picture,
                              .options  = options,

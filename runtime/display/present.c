@@ -14,6 +14,6 @@ KrsStatus krs_picture_to_srgb8(const KrsPicture *picture, const KrsScene *scene,
                             .white_balance = {image.white_balance[0], image.white_balance[1]}};
     if (image.tone_map)
         tone_map_find(image.tone_map, &how.tone_map); /* the compiler knows its name */
-    display_to_channels(picture, &how, channels, pixels);
+    display_to_srgb8(picture, &how, channels, pixels);
     return KRS_OK;
 }

@@ -8,24 +8,20 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/minmax.h"
 #include "runtime/display/white_balance.h"
 
 /* Far beyond any curve's shoulder.  It keeps infinity from becoming infinity / infinity. */
 static const double BRIGHTEST = 1e9;
-
-/* Returns the lesser number.  fmin and fmax are calls, since they must treat NaN; here there is
-   none. */
-static double min_of(double a, double b) { return a < b ? a : b; }
-static double max_of(double a, double b) { return a > b ? a : b; }
 
 /* Khronos PBR Neutral (2024).  It subtracts the 4 % that a dielectric reflects head-on, leaves
    colours up to 0.76 as they are, and compresses and whitens brighter ones. */
 static void curve_neutral(const double color[3], double out[3])
 {
     const double start = 0.8 - 0.04, desaturation = 0.15;
-    double       least  = min_of(color[0], min_of(color[1], color[2]));
+    double       least  = min2(color[0], min2(color[1], color[2]));
     double       offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
-    double       peak   = max_of(color[0], max_of(color[1], color[2])) - offset;
+    double       peak   = max2(color[0], max2(color[1], color[2])) - offset;
     double       top = peak, white = 0;
     if (peak >= start) {
         double room = 1 - start;
@@ -71,8 +67,8 @@ static double agx_curve(double x)
 static double agx_logarithm(double light)
 {
     const double low = -12.47393, high = 4.026069;
-    double       stops = log2(max_of(light, 1e-10));
-    return (min_of(max_of(stops, low), high) - low) / (high - low);
+    double       stops = log2(max2(light, 1e-10));
+    return (min2(max2(stops, low), high) - low) / (high - low);
 }
 
 /* The matrices go to Rec.2020 and to a narrower gamut within, and back to a wider one. */
@@ -98,7 +94,7 @@ static void curve_agx(const double color[3], double out[3])
         curved[i] = agx_curve(agx_logarithm(curved[i]));
     color_multiply(outset, curved, shown);
     for (int i = 0; i < 3; i++)
-        shown[i] = pow(max_of(shown[i], 0), 2.2);
+        shown[i] = pow(max2(shown[i], 0), 2.2);
     color_multiply(narrow, shown, out);
 }
 
@@ -127,13 +123,13 @@ bool tone_map_find(const char *name, ToneMap *tone_map)
     return false;
 }
 
-static double clamp_unit(double value) { return value > 0 ? min_of(value, 1) : 0; }
+static double clamp_unit(double value) { return value > 0 ? min2(value, 1) : 0; }
 
 void tone_map_apply(ToneMap tone_map, const double color[3], double out[3])
 {
     double light[3];
     for (int i = 0; i < 3; i++)
-        light[i] = color[i] > 0 ? min_of(color[i], BRIGHTEST) : 0;
+        light[i] = color[i] > 0 ? min2(color[i], BRIGHTEST) : 0;
     tone_maps[tone_map].curve(light, out);
     for (int i = 0; i < 3; i++)
         out[i] = clamp_unit(out[i]);

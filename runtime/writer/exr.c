@@ -13,12 +13,12 @@
 
 #include <OpenEXR/openexr.h>
 #include <pthread.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "compiler/base/half.h"
+#include "compiler/base/parallel.h"
 #include "runtime/writer/exr_zip.h"
 
 enum {
@@ -269,11 +269,8 @@ static void *work(void *user)
    chunk. */
 static uint32_t count_workers(const Chunks *chunks)
 {
-    cpu_set_t processors;
-    uint32_t  count = MAX_WORKERS;
-    if (sched_getaffinity(0, sizeof processors, &processors) == 0 &&
-        (uint32_t)CPU_COUNT(&processors) < count)
-        count = (uint32_t)CPU_COUNT(&processors);
+    const uint32_t parts = (uint32_t)parallel_parts();
+    const uint32_t count = parts < MAX_WORKERS ? parts : MAX_WORKERS;
     return count < chunks->count ? count : chunks->count;
 }
 

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
+#include "compiler/base/srgb.h"
 #include "runtime/display/display.h"
 #include "tests/oracle/shadow_fixture.h"
 
@@ -38,7 +39,7 @@ static void to_screen(const KrsImage *image, const float color[4], double out[3]
         light[i] = (double)color[i] * exp2(image->exposure);
     tone_map_apply(curve, light, out);
     for (int i = 0; i < 3; i++)
-        out[i] = 255 * srgb_encode(out[i]);
+        out[i] = 255 * srgb_of_linear(out[i]);
 }
 
 static Difference compare_pictures(const KrsImage *image, const KrsPicture *a, const KrsPicture *b)
