@@ -259,17 +259,14 @@ static void act_write_values(Viewing *viewing)
 /* Opens the editor at the first mistake of the text; if there is none, at what is under the mouse. */
 static void act_edit(Viewing *viewing)
 {
-    char        place[300];
-    const Found found = viewing_find(viewing);
+    char                 place[300];
+    const Found          found = viewing_find(viewing);
+    const KrsDiagnostic *error = diagnostics_first_error(&viewing->diagnostics);
     if (!is_writable(viewing))
         return;
-    for (size_t i = 0; i < viewing->diagnostics.count; i++)
-        if (viewing->diagnostics.items[i].error) {
-            diagnostic_location(&viewing->diagnostics.items[i], place);
-            viewing_open_editor(viewing, place);
-            return;
-        }
-    if (found.hit && viewing_place(viewing, found.component, place))
+    if (error)
+        diagnostic_location(error, place);
+    if (error || (found.hit && viewing_place(viewing, found.component, place)))
         viewing_open_editor(viewing, place);
 }
 

@@ -21,15 +21,15 @@ static void choose_name(const char *kind, const char *ending, char name[200])
     } while (access(path, F_OK) == 0 && number < 10000);
 }
 
-/* Writes what is seen as every output is written: whole, and through no link where those are forbidden. */
-static bool write_png(png_image *image, const uint8_t *pixels, const char *path)
+/* Writes what is seen as every output is written: whole, and through no link where those are forbidden.  False: error->message
+   has the reason, or is empty where memory has run out. */
+static bool write_png(png_image *image, const uint8_t *pixels, const char *path, OutputError *error)
 {
-    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(*image);
-    char            *text = malloc(size);
-    OutputError      error;
+    png_alloc_size_t size    = PNG_IMAGE_PNG_SIZE_MAX(*image);
+    char            *text    = malloc(size);
     const bool       written = text &&
                          png_image_write_to_memory(image, text, &size, 0, pixels, 0, NULL) &&
-                         output_text(path, text, size, NULL, &error) == KRS_OK;
+                         output_text(path, text, size, NULL, error) == KRS_OK;
     free(text);
     return written;
 }
@@ -38,14 +38,17 @@ void saving_keep_shot(Viewing *viewing)
 {
     const Shot *shot = &viewing->shot;
     char        name[200], path[260];
+    OutputError error = {0};
     png_image   image = {.version = PNG_IMAGE_VERSION,
                          .width   = shot->width,
                          .height  = shot->height,
                          .format  = PNG_FORMAT_RGBA};
     choose_name("view", ".png", name);
     snprintf(path, sizeof path, "%s.png", name);
-    if (viewing->pixels && write_png(&image, viewing->pixels, path))
+    if (viewing->pixels && write_png(&image, viewing->pixels, path, &error))
         viewing_notice(viewing, "saved %s", path);
+    else if (error.message[0])
+        viewing_notice(viewing, "%s", error.message);
     else
         viewing_notice(viewing, "%s cannot be written", path);
 }

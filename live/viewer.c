@@ -251,10 +251,11 @@ static void draw_help_lines(Viewing *viewing)
    comes first. */
 static void draw_terminal(Viewing *viewing)
 {
-    const Shot         *shot     = &viewing->shot;
-    const PainterState *painting = &viewing->painting;
-    char                first[400], second[600] = "";
-    const char         *lines[] = {first, second};
+    const Shot          *shot     = &viewing->shot;
+    const PainterState  *painting = &viewing->painting;
+    const KrsDiagnostic *error    = diagnostics_first_error(&viewing->diagnostics);
+    char                 first[400], second[600] = "";
+    const char          *lines[] = {first, second};
     if (viewing->help) {
         draw_help_lines(viewing);
         return;
@@ -264,9 +265,8 @@ static void draw_terminal(Viewing *viewing)
              shading_mode_names[viewing->view.shading]);
     if (viewing->reads_slowly)
         snprintf(second, sizeof second, "%s", viewing->notice);
-    else if (viewing->diagnostics.errors > 0)
-        snprintf(second, sizeof second, "%s:%u: %s", viewing->diagnostics.items[0].source,
-                 viewing->diagnostics.items[0].line, viewing->diagnostics.items[0].text);
+    else if (error)
+        snprintf(second, sizeof second, "%s:%u: %s", error->source, error->line, error->text);
     else if (painting->compiling)
         snprintf(second, sizeof second, "compiling the shaders: %.0f %%", 100 * painting->compiled);
     else if (viewing->costing.busy)

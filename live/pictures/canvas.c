@@ -218,7 +218,7 @@ static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool path
     return KRS_OK;
 }
 
-/* Updates frame and rendering to one scene, whatever fails. */
+/* Updates the state and the rendering to another scene: both, or neither where something fails. */
 static KrsStatus update(Canvas *canvas, const KrsScene *scene)
 {
     KrsState *state  = NULL;

@@ -86,7 +86,7 @@ KrsStatus canvas_set(Canvas *canvas, const View *view);
 /* Finds a camera of the scene, as it is at the values and the time. */
 KrsStatus canvas_camera(Canvas *canvas, size_t index, KrsCamera *camera);
 
-/* Samples of a film of this size, which begins anew when `again`.  `progress` is asked between slices. */
+/* Adds samples to a film of this size, which begins anew when `again`.  `progress` is asked between slices. */
 KrsStatus canvas_add(Canvas *canvas, FilmKind kind, const View *view, uint32_t width,
                      uint32_t height, uint32_t samples, bool again, KrsProgressCallback *progress,
                      void *user);

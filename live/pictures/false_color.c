@@ -82,7 +82,7 @@ static Range find_range(const KrsPicture *picture, ShadingMode shading)
     return range;
 }
 
-/* Tells how much a surface faces the viewer tells the shape where the colour is flat. */
+/* Returns a grey by how much a surface faces the viewer, which shows its shape where the colour is flat. */
 static double shade_of(const KrsPicture *picture, size_t at)
 {
     const float *n = &picture->normal[3 * at];

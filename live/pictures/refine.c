@@ -164,7 +164,7 @@ static double find_pause(const Painter *painter, uint32_t samples)
                : 0;
 }
 
-/* Samples that take about as long as it may be until the picture is seen to improve. */
+/* Returns how many samples take about as long as it may be until the picture is seen to improve. */
 static uint32_t choose_portion(Painter *painter, uint32_t missing)
 {
     const double ms      = resolution_of(painter)->whole_ms;

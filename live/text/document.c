@@ -113,6 +113,14 @@ static void diagnostics_add(Diagnostics *diagnostics, const KrsDiagnostic *diagn
         diagnostic_free(added);
 }
 
+const KrsDiagnostic *diagnostics_first_error(const Diagnostics *diagnostics)
+{
+    for (size_t i = 0; i < diagnostics->count; i++)
+        if (diagnostics->items[i].error)
+            return &diagnostics->items[i];
+    return NULL;
+}
+
 static void hear(void *user, const KrsDiagnostic *diagnostic)
 {
     Document *document = user;

@@ -64,6 +64,8 @@ Version *document_version(Document *document);
    thread. */
 Diagnostics document_diagnostics(Document *document);
 void        diagnostics_free(Diagnostics *diagnostics);
+/* Returns the first that is an error, not a warning; NULL: none is there. */
+const KrsDiagnostic *diagnostics_first_error(const Diagnostics *diagnostics);
 /* Tells how often the file was read; for any thread. */
 unsigned document_readings(Document *document);
 

@@ -246,6 +246,13 @@ static void mistakes_leave_the_version(void **state)
     assert_ptr_equal(same, first);
     assert_int_equal(diagnostics.errors, 1);
     assert_int_equal(diagnostics.items[0].line, 2);
+    assert_ptr_equal(diagnostics_first_error(&diagnostics), &diagnostics.items[0]);
+    diagnostics_free(&diagnostics);
+    write_file(path, "let x = 1;\nshow spere(x);"); /* a warning comes before the error */
+    assert_int_equal(document_read(document), KRS_BAD_SCENE);
+    diagnostics = document_diagnostics(document);
+    assert_false(diagnostics.items[0].error);
+    assert_int_equal(diagnostics_first_error(&diagnostics)->line, 2);
     diagnostics_free(&diagnostics);
     write_file(path, "show sphere(2);");
     assert_int_equal(document_read(document), KRS_OK);
