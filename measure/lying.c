@@ -27,7 +27,7 @@ typedef struct Lying {
     KrsOrientation *result;
 } Lying;
 
-static void find_axes(const double up[3], double right[3], double front[3])
+void measure_axes(const double up[3], double right[3], double front[3])
 {
     double axis[3]                                          = {0};
     axis[fabs(up[0]) < 0.6 ? 0 : fabs(up[1]) < 0.6 ? 1 : 2] = 1;
@@ -81,7 +81,7 @@ static KrsOrientation lie(const Measurer *m, const double up[3], double *angles)
     Lying          lying  = {.m = m, .angles = angles, .result = &result};
     double low, high, steepest = real_sin(m->options->overhang > 0 ? m->options->overhang : M_PI_4);
     memcpy(result.up, up, sizeof result.up);
-    find_axes(up, lying.right, lying.front);
+    measure_axes(up, lying.right, lying.front);
     find_heights(m, up, &low, &high);
     for (size_t i = 0; i < m->samples.count; i++) {
         const Sample *sample = &m->samples.items[i];

@@ -46,6 +46,9 @@ typedef struct Measurer {
 /* Tells whether to go on; the first thread reports progress, and all stop if that says so. */
 bool measurer_progress(Measurer *m, size_t part, double fraction);
 
+/* Finds two unit vectors at right angles to a unit vector and to each other. */
+void measure_axes(const double up[3], double right[3], double front[3]);
+
 /* Each of these sets its members of the measures. */
 void measure_volume(Measurer *m);
 void measure_samples(Measurer *m);

@@ -253,13 +253,9 @@ static void slide_to_thinnest(const Searcher *s, Sample *sample, double step)
     enum { DIRECTIONS = 8, HALVINGS = 40, MAX_SLIDES = 200 };
     for (int halvings = 0, slides = 0; halvings < HALVINGS && slides < MAX_SLIDES; slides++) {
         Sample around[DIRECTIONS];
-        double u[3], v[3], least[3] = {0};
-        int    axis = fabs(sample->normal[0]) < 0.6 ? 0 : fabs(sample->normal[1]) < 0.6 ? 1 : 2;
+        double u[3], v[3];
         int    best = -1;
-        least[axis] = 1;
-        cross3(sample->normal, least, u);
-        normalize3(u);
-        cross3(sample->normal, u, v);
+        measure_axes(sample->normal, u, v);
         for (int i = 0; i < DIRECTIONS; i++) {
             double angle      = 2 * M_PI * i / DIRECTIONS;
             around[i]         = *sample;

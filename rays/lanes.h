@@ -22,9 +22,9 @@ typedef struct RaySet {
     /* Takes the distances for rays of hits. */
     void (*take_blocked)(RayBlock *block, const BlockRule *rule, const float at[RAYS_OF_BLOCK],
                          const float distances[RAYS_OF_BLOCK]);
-    /* Adds origins and directions of rays that march, and of those beside, and their number, */
+    /* Adds up origins and directions of rays that march, and of those beside, and counts them. */
     void (*sum)(const RayBlock *block, float sums[RAY_SUMS][RAYS_OF_BLOCK]);
-    /* and finds the greatest squares of how far these are from others, and the widest pixels. */
+    /* Finds the greatest squares of how far these origins and directions are from given ones, and the widest pixels. */
     void (*spread)(const RayBlock *block, const float origin[3], const float direction[3],
                    float most[RAY_SPREADS][RAYS_OF_BLOCK]);
     /* Tells whether some ray marches between. */

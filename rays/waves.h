@@ -1,5 +1,5 @@
 /*
- * waves.h: rays of hits that are marched together.
+ * waves.h: rays of hits, to lights and from mirrors, that are marched together.
  */
 #ifndef KRS_RAYS_WAVES_H
 #define KRS_RAYS_WAVES_H
@@ -7,17 +7,17 @@
 #include "rays/lanes.h"
 #include "rays/space.h"
 
-/* Rays of hits that are marched together, all by one step at a time. */
+/* Blocks of such rays, all of which go by one step at a time. */
 typedef struct Wave {
     RayField        *field;
     size_t           part;
     Space           *space;
     CellWork        *work;
-    const BlockRule *rule;  /* of rays that are blocked or not; */
-    const RayRule   *march; /* or, if not NULL, of those that look for surfaces */
-    RayBlock        *blocks;
-    uint64_t         evaluations;
-    float            at[BLOCKS_OF_WAVE][RAYS_OF_BLOCK], points[BLOCKS_OF_WAVE][3][RAYS_OF_BLOCK],
+    const BlockRule *rule; /* of rays that are blocked or not */
+    const RayRule *march; /* of rays that look for surfaces; NULL: these do not, and go by `rule` */
+    RayBlock      *blocks;
+    uint64_t       evaluations;
+    float          at[BLOCKS_OF_WAVE][RAYS_OF_BLOCK], points[BLOCKS_OF_WAVE][3][RAYS_OF_BLOCK],
         distances[BLOCKS_OF_WAVE][RAYS_OF_BLOCK];
     bool     marched[BLOCKS_OF_WAVE][RAYS_OF_BLOCK]; /* of rays of hits: they were to be marched, */
     float    ends[BLOCKS_OF_WAVE][RAYS_OF_BLOCK];    /* as far as here */
