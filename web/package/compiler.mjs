@@ -166,7 +166,7 @@ export class Scene extends EventTarget {
             });
             return this.#compiling;
         }
-        this.#next ??= Object.assign({}, newPromise());
+        this.#next ??= newPromise();
         this.#next.text = text;
         return this.#next.promise;
     }
@@ -210,7 +210,7 @@ export class Scene extends EventTarget {
     #changed(change) { this.dispatchEvent(new CustomEvent('change', { detail: change })); }
 
     async set(name, value) {
-        const numbers = [].concat(Array.from(value[Symbol.iterator] ? value : [value]));
+        const numbers = typeof value === 'number' ? [value] : Array.from(value);
         await this.#ask('set', { name, value: numbers });
         const parameter = this.parameters.find(p => p.name === name);
         if (parameter) { // the text may be another by now

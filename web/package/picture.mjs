@@ -430,7 +430,7 @@ export class Picture {
 
     // ---- pictures that are kept ----
 
-    // A picture of this size: its bytes, rows from the top, and depths along the view with components if `answers`.
+    // Makes a picture of this size: its bytes, rows from the top, and where the first ray of each pixel ends.
     shoot({ width, height, samples }) {
         return new Promise((resolve, reject) => {
             this.shots.push({ width, height, samples, resolve, reject });

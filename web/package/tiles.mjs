@@ -61,8 +61,8 @@ export class Costs {
         return pixels + draws * this.overhead < time && this.dearest * size.width * size.height < surprise * time;
     }
 
-    // A picture has all its tiles, and another begins.
-    turn() {
+    // Tells that a picture has all its tiles, and another begins.
+    beginPicture() {
         const { pixels, times } = this.before;
         this.now.pixels.forEach((count, part) => {
             if (count > 0)
@@ -92,7 +92,7 @@ export class Costs {
 export class Tiles {
     constructor(costs, width, height) {
         Object.assign(this, { costs, size: { width, height }, x: 0, y: 0, rows: 0, expected: 0, taken: 0 });
-        costs.turn();
+        costs.beginPicture();
     }
 
     get isOver() { return this.y >= this.size.height; }

@@ -53,7 +53,8 @@ export class KrsViewElement extends HTMLElement {
     #shots = 0;
     #number = 0;       // of the last state that the painter was sent
     #first = 0;        // of the first state of the scene
-    #done = null;
+    #done = null;      // resolves `ready`
+    #settled = false;  // it has
     #changed = event => this.#update(event.detail === 'structure' ? 'scene' : 'state');
     #resizing = new ResizeObserver(() => this.#resize());
 
@@ -150,13 +151,11 @@ export class KrsViewElement extends HTMLElement {
     }
 
     #restartReady() {
-        if (!this.ready || this.#done === null || this.#settled) {
+        if (this.#done === null || this.#settled) {
             this.#settled = false;
             this.ready = new Promise(resolve => { this.#done = () => { this.#settled = true; resolve(); }; });
         }
     }
-
-    #settled = false;
 
     // ---- properties ----
 
