@@ -7,6 +7,7 @@
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
+import { picturedScenes } from '../web/playground/pictured.mjs';
 import { pack } from '../web/playground/share.mjs';
 import { block, escaped } from './code.mjs';
 import { frame, way } from './frame.mjs';
@@ -98,22 +99,18 @@ const markdown = new Markdown({ link, titleOf, picture, scene });
 
 // ---- pages ----
 
+const entities = { amp: '&', lt: '<', gt: '>', quot: '"' };
+const unescaped = html => html.replace(/&(\w+);/g, (whole, name) => entities[name] ?? whole);
+
 const firstSentences = html => {
     const text = /<p[^>]*>(.*?)<\/p>/s.exec(html)?.[1].replace(/<[^>]+>/g, '').replace(/\s+/g, ' ').replace(/&(?!\w+;)/g, 'and') ?? '';
-    return (text.length < 170 ? text : `${text.slice(0, 170).replace(/\s+\S*$/, '')} ...`).replace(/&(\w+);/g, (entity, name) => ({ amp: '&', lt: '<', gt: '>', quot: '"' }[name] ?? entity));
+    return unescaped(text.length < 170 ? text : `${text.slice(0, 170).replace(/\s+\S*$/, '')} ...`);
 };
 
-const examples = () => {
-    const seen = new Set();
-    return read('tools/pictures.txt').split('\n').map(line => line.split(' | ')).filter(([kind, , name]) =>
-        (kind === 'picture' || kind === 'exr') && !seen.has(name) && seen.add(name)).map(([, picture, name, , , about]) => {
-        const title = name.replace(/^\d+-/, '').replaceAll('-', ' ');
-        return { picture, name, title: title[0].toUpperCase() + title.slice(1), about: about[0].toUpperCase() + about.slice(1) };
-    });
-};
+const examples = [...picturedScenes(root).values()];
 
 function gallery(place) {
-    const cards = examples().map(({ picture, name, title, about }) => `<li><a class="card" href="${way(place, 'playground/index.html')}#example=${name}">
+    const cards = examples.map(({ picture, name, title, about }) => `<li><a class="card" href="${way(place, 'playground/index.html')}#example=${name}">
 ${image(pictures.ofFile(path.join(root, `docs/pictures/${picture}.png`), { width: 800 }), '', place)}<b>${escaped(title)}</b><span>${escaped(about)}</span></a>
 <a class="text" href="${way(place, sourcePlace(`examples/${name}.krs`))}">Its text</a></li>`);
     return { title: 'Gallery', wide: true, html: `<h1>Gallery</h1>\n<p class="lead">A click opens the scene in the playground, where it is compiled and drawn by your browser.</p>\n<ul class="cards">${cards.join('\n')}</ul>` };
@@ -122,8 +119,7 @@ ${image(pictures.ofFile(path.join(root, `docs/pictures/${picture}.png`), { width
 const reference = new Reference({ root, krs: path.join(build, 'krs'), words: path.join(build, 'site-words'), scene, markdown, pictures });
 
 function documentPage(document, place) {
-    const made = markdown.render(read(document), { place, document });
-    return { ...made, title: made.title };
+    return markdown.render(read(document), { place, document });
 }
 
 function headingsOf(html) {
@@ -146,9 +142,8 @@ function sourcePage(file, place) {
 
 // ---- searching ----
 
-const entities = { amp: '&', lt: '<', gt: '>', quot: '"' };
-const plain = html => html.replace(/<a class="anchor".*?<\/a>/gs, '').replace(/<figure class="scene.*?<\/figure>/gs, figure => figure.replace(/<div class="shown">.*/s, ''))
-    .replace(/<\/?(?:span|code|b|em|strong|a)\b[^>]*>/g, '').replace(/<[^>]+>/g, ' ').replace(/&(\w+);/g, (whole, name) => entities[name] ?? whole).replace(/\s+/g, ' ').trim();
+const plain = html => unescaped(html.replace(/<a class="anchor".*?<\/a>/gs, '').replace(/<figure class="scene.*?<\/figure>/gs, figure => figure.replace(/<div class="shown">.*/s, ''))
+    .replace(/<\/?(?:span|code|b|em|strong|a)\b[^>]*>/g, '').replace(/<[^>]+>/g, ' ')).replace(/\s+/g, ' ').trim();
 
 // A row for each heading of a page: its title, the page's, its place, and the text below it.
 function found({ place, title, html }) {
@@ -177,7 +172,7 @@ for (const { place, title, document, part } of pages) {
     index.push(...found({ place, title, html: made.html }));
     await write(place, frame({ place, title: made.title ?? title, about: firstSentences(made.html), html: made.html, sections, wide: made.wide }));
 }
-await write('index.html', frame({ ...landing({ way, image, pictures, root, block, read, playgroundLink, examples: examples() }), place: 'index.html' }));
+await write('index.html', frame({ ...landing({ way, image, pictures, root, block, read, playgroundLink, examples }), place: 'index.html' }));
 for (const [file, place] of sources) { // more are found on the way
     const made = sourcePage(file, place);
     await write(place, frame({ place, title: made.title ?? file, about: `${file} of krs`, html: made.html, sections: headingsOf(made.html) }));

@@ -20,17 +20,17 @@ export class Markdown {
     constructor({ link, titleOf, picture, scene }) {
         Object.assign(this, { link, titleOf, picture, scene });
         this.parser = new MarkdownIt();
-        const { rules } = this.parser.renderer, usual = (tokens, i, options, _, renderer) => renderer.renderToken(tokens, i, options);
+        const { rules } = this.parser.renderer;
         rules.heading_open = (tokens, i, options, env, renderer) => {
             const level = Number(tokens[i].tag[1]), title = textOf(tokens[i + 1]);
             const id = unique(slugOf(title), env.ids);
             tokens[i].attrSet('id', id);
             if (level > 1)
-                env.sections.push({ level, title, id, html: renderer.renderInline(tokens[i + 1].children, options, env) });
+                env.heading = { level, title, id };
             return renderer.renderToken(tokens, i, options);
         };
         rules.heading_close = (tokens, i, options, env, renderer) => {
-            const { level, title, id } = env.sections.at(-1) ?? {};
+            const { level, title, id } = env.heading ?? {};
             return (tokens[i].tag === `h${level}` ? ` <a class="anchor" href="#${id}" aria-label="Link to ${escaped(title)}">#</a>` : '') +
                 renderer.renderToken(tokens, i, options);
         };
@@ -47,13 +47,11 @@ export class Markdown {
             return `<div class="table ${form.kind}"${form.kind === 'wide' ? ' tabindex="0" role="region" aria-label="Table"' : ''}><table>\n`;
         };
         rules.table_close = () => '</table></div>\n';
-        for (const part of ['th_open', 'td_open'])
-            rules[part] = usual;
     }
 
-    // The HTML of a text, its title, and its sections with the text of each, for searching.
+    // The HTML of a text, and its title.
     render(text, env) {
-        Object.assign(env, { ids: new Map(), sections: [] });
+        Object.assign(env, { ids: new Map(), heading: null });
         const tokens = this.parser.parse(text, env);
         const title = tokens[0]?.type === 'heading_open' && tokens[0].tag === 'h1' ? textOf(tokens[1]) : null;
         formTables(tokens);
@@ -72,7 +70,7 @@ export class Markdown {
             from = i + 1;
         }
         plain(tokens.length);
-        return { html, title, sections: env.sections };
+        return { html, title };
     }
 
     // A link that shows the name of a document shows its title.

@@ -7,7 +7,7 @@ SITE      := $(wildcard site/*.mjs)
 site: $(B)/krs $(B)/site-words $(NPM)/site.mjs playground
 	@node $(NPM)/site.mjs $(CURDIR) $(B) $(S) $(SITE_OPTIONS)
 # Packages are found beside it.
-$(NPM)/site.mjs: $(SITE) $(addprefix $(PLAY)/,language.mjs share.mjs smaller.mjs) $(NPM)/words.json $(NPM)/.package-lock
+$(NPM)/site.mjs: $(SITE) $(addprefix $(PLAY)/,language.mjs pictured.mjs share.mjs smaller.mjs) $(NPM)/words.json $(NPM)/.package-lock
 	@echo "bundle $@"
 	@esbuild site/build.mjs --bundle --platform=node --format=esm --packages=external --alias:krs-words=$(abspath $(NPM)/words.json) \
 	    --log-level=warning --outfile=$@

@@ -9,6 +9,7 @@ import crypto from 'node:crypto';
 import fs from 'node:fs';
 import { createRequire } from 'node:module';
 import path from 'node:path';
+import { picturedScenes } from './pictured.mjs';
 import { smaller } from './smaller.mjs';
 
 const [task, ...args] = process.argv.slice(2);
@@ -20,29 +21,17 @@ const filesOf = folder => fs.readdirSync(folder, { withFileTypes: true, recursiv
 
 const WIDTH = 320, HEIGHT = 180, QUALITY = 82;
 
-// The rows of tools/pictures.txt that show a scene first: a picture's name, and what it shows.
-function pictured(root) {
-    const found = new Map();
-    for (const line of fs.readFileSync(path.join(root, 'tools/pictures.txt'), 'utf8').split('\n')) {
-        const [kind, picture, scene, , , about] = line.split(' | ');
-        if ((kind === 'picture' || kind === 'exr') && !found.has(scene))
-            found.set(scene, { picture, about });
-    }
-    return found;
-}
-
 function examples(root, folder) {
     const { PNG } = require('pngjs'), jpeg = require('jpeg-js');
-    const from = path.join(root, 'examples'), to = path.join(folder, 'examples'), shown = pictured(root);
+    const from = path.join(root, 'examples'), to = path.join(folder, 'examples'), shown = picturedScenes(root);
     fs.mkdirSync(path.join(to, 'parts'), { recursive: true });
     for (const file of ['frieze.png', 'relief.png', 'logo.svg', ...fs.readdirSync(path.join(from, 'parts')).map(name => `parts/${name}`)])
         fs.copyFileSync(path.join(from, file), path.join(to, file));
     const list = fs.readdirSync(from).filter(file => file.endsWith('.krs')).map(file => path.basename(file, '.krs')).map(name => {
-        const { picture, about } = shown.get(name), title = name.replace(/^\d+-/, '').replaceAll('-', ' ');
+        const { picture, title, about } = shown.get(name);
         const read = PNG.sync.read(fs.readFileSync(path.join(root, `docs/pictures/${picture}.png`)));
         fs.writeFileSync(path.join(to, `${name}.jpg`), jpeg.encode(smaller(read, WIDTH, HEIGHT), QUALITY).data);
-        return { name, title: title[0].toUpperCase() + title.slice(1), about: about[0].toUpperCase() + about.slice(1),
-                 text: fs.readFileSync(path.join(from, `${name}.krs`), 'utf8') };
+        return { name, title, about, text: fs.readFileSync(path.join(from, `${name}.krs`), 'utf8') };
     });
     fs.writeFileSync(path.join(folder, 'examples.json'), JSON.stringify(list));
 }

@@ -3,6 +3,7 @@
 import { autocompletion, snippet } from '@codemirror/autocomplete';
 import { StateEffect, StateField } from '@codemirror/state';
 import { hoverTooltip, showTooltip, ViewPlugin } from '@codemirror/view';
+import { make } from './element.mjs';
 
 const kinds = { 2: 'method', 3: 'function', 5: 'property', 6: 'variable', 7: 'class', 10: 'property', 14: 'keyword', 16: 'constant', 21: 'constant' };
 const called = new Set(['method', 'function', 'class']);
@@ -18,13 +19,6 @@ export function offsetOf(doc, { line, character }) {
         return doc.length;
     const { from, to } = doc.line(line + 1);
     return Math.min(from + character, to);
-}
-
-function make(name, className, ...children) {
-    const element = document.createElement(name);
-    element.className = className;
-    element.append(...children);
-    return element;
 }
 
 // ---- text with marks ----

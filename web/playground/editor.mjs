@@ -2,7 +2,7 @@
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, history, historyKeymap, indentWithTab } from '@codemirror/commands';
 import { bracketMatching, indentOnInput, indentUnit } from '@codemirror/language';
-import { forEachDiagnostic, lintGutter, nextDiagnostic, setDiagnostics } from '@codemirror/lint';
+import { lintGutter, nextDiagnostic, setDiagnostics } from '@codemirror/lint';
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search';
 import { EditorState, Prec } from '@codemirror/state';
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers, tooltips } from '@codemirror/view';
@@ -95,24 +95,16 @@ export class Editor {
             severity: severities[diagnostic.severity],
             source: diagnostic.code,
             message: [diagnostic.message, diagnostic.data.help].filter(Boolean).join('\n'),
-            actions: fixOf(diagnostic, doc).map(fix => ({ name: fix.name, apply: () => this.#apply(fix) })),
+            actions: fixOf(diagnostic, doc).map(fix => ({ name: fix.name, apply: () => this.apply(fix) })),
         }))));
     }
 
-    #apply({ from, to, insert }) {
+    apply({ from, to, insert }) {
         this.view.dispatch({ changes: { from, to, insert }, selection: { anchor: from + insert.length }, userEvent: 'input.fix' });
         this.view.focus();
     }
 
     fixes(diagnostic) { return fixOf(diagnostic, this.view.state.doc); }
-    apply(fix) { this.#apply(fix); }
-
-    // How many marks are seen.
-    get marks() {
-        let count = 0;
-        forEachDiagnostic(this.view.state, () => count++);
-        return count;
-    }
 
     // Goes to a place.
     go(position) {

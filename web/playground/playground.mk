@@ -22,7 +22,7 @@ $(Y)/app.js: $(wildcard $(PLAY)/*.mjs) $(NPM)/words.json $(NPM)/.package-lock
 	@mkdir -p $(Y)
 	@NODE_PATH=$(NPM)/node_modules esbuild $(PLAY)/app.mjs --bundle --minify --format=esm --target=es2022 --charset=utf8 \
 	    --external:./krs/index.mjs --alias:krs-words=$(abspath $(NPM)/words.json) --log-level=warning --outfile=$@
-$(Y)/examples.json: $(PLAY)/build.mjs tools/pictures.txt $(EXAMPLES) $(wildcard examples/parts/* docs/pictures/*.png) $(NPM)/.package-lock
+$(Y)/examples.json: $(addprefix $(PLAY)/,build.mjs pictured.mjs smaller.mjs) tools/pictures.txt $(EXAMPLES) $(wildcard examples/parts/* docs/pictures/*.png) $(NPM)/.package-lock
 	@echo "thumbs $(Y)/examples"
 	@mkdir -p $(Y)
 	@cd $(NPM) && node $(abspath $<) examples $(CURDIR) $(abspath $(Y))

@@ -1,13 +1,8 @@
 // problems.mjs: the list of what the compiler says of a text.
+import { make } from './element.mjs';
+
 const kinds = { 1: 'error', 2: 'warning', 3: 'info' };
 const numbers = { 1: ['mistake', 'mistakes'], 2: ['warning', 'warnings'], 3: ['note', 'notes'] };
-
-function make(name, className, ...children) {
-    const element = document.createElement(name);
-    element.className = className;
-    element.append(...children);
-    return element;
-}
 
 // What stands between backquotes is of a text.
 const quoted = text => text.split('`').map((piece, i) => (i % 2 ? make('code', '', piece) : piece));
