@@ -1,7 +1,9 @@
-/* sides.c: flips sides of points in a region, and counts connected parts by union-find. */
+/* sides.c: flips sides of points in a region, and counts connected parts by union-find, or by a
+   search where one point is left out. */
 #include "mesh/contour/sides.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "compiler/base/vec.h"
 
@@ -35,6 +37,11 @@ typedef struct Region {
     Numbering numbers;
     bool     *inside, *before;
     uint32_t  parts[2]; /* connected parts before, outside and inside */
+    /* The points next to each point, from `first_next[number]` to below `end_next[number]`; NULL
+       until they are needed. */
+    uint32_t *first_next, *end_next, *next;
+    /* In a search: the points to be visited, and the search that has met each point last. */
+    uint32_t *queue, *met, search;
 } Region;
 
 /* Longest edges of tetrahedra around points that are moved, over the radius: with longer ones the
@@ -176,6 +183,95 @@ static void count_parts(const Region *region, uint32_t *leaders, uint32_t parts[
     }
 }
 
+/* ---- neighbours ---- */
+
+/* Calls `use` with each two points of the region that an edge joins, some of them often. */
+static void visit_edges(Region *region, void (*use)(Region *region, uint32_t a, uint32_t b))
+{
+    for (uint32_t i = 0; i < region->links.count; i++) {
+        const Link *link = &region->links.items[i];
+        for (uint32_t k = link->first_edge; k < link->first_edge + link->edge_count; k++)
+            use(region, region->edges.items[k][0], region->edges.items[k][1]);
+        for (uint32_t k = link->first_point; k < link->first_point + link->point_count; k++)
+            use(region, i, region->around.items[k]);
+    }
+}
+
+static void count_neighbours(Region *region, uint32_t a, uint32_t b)
+{
+    region->first_next[a + 1]++;
+    region->first_next[b + 1]++;
+}
+
+static void add_neighbour(Region *region, uint32_t point, uint32_t other)
+{
+    uint32_t at = region->first_next[point];
+    while (at < region->end_next[point] && region->next[at] != other)
+        at++;
+    if (at == region->end_next[point])
+        region->next[region->end_next[point]++] = other;
+}
+
+static void add_neighbours(Region *region, uint32_t a, uint32_t b)
+{
+    add_neighbour(region, a, b);
+    add_neighbour(region, b, a);
+}
+
+static void find_neighbours(Region *region)
+{
+    size_t count       = region->points.count;
+    region->first_next = arena_new_array(region->arena, uint32_t, count + 1);
+    region->end_next   = arena_new_array(region->arena, uint32_t, count + 1);
+    region->queue      = arena_new_array(region->arena, uint32_t, count + 1);
+    region->met        = arena_new_array(region->arena, uint32_t, count + 1);
+    memset(region->first_next, 0, (count + 1) * sizeof *region->first_next);
+    memset(region->met, 0, (count + 1) * sizeof *region->met);
+    visit_edges(region, count_neighbours);
+    for (size_t i = 0; i < count; i++)
+        region->first_next[i + 1] += region->first_next[i];
+    memcpy(region->end_next, region->first_next, (count + 1) * sizeof *region->first_next);
+    region->next = arena_new_array(region->arena, uint32_t, region->first_next[count] + 1);
+    visit_edges(region, add_neighbours);
+}
+
+/* Has a search meet all points of a side that are connected with one, but for `without`. */
+static void meet_part(Region *region, uint32_t start, uint32_t without)
+{
+    size_t count       = 1;
+    region->queue[0]   = start;
+    region->met[start] = region->search;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t point = region->queue[i];
+        for (uint32_t at = region->first_next[point]; at < region->end_next[point]; at++) {
+            uint32_t other = region->next[at];
+            if (other == without || region->met[other] == region->search ||
+                region->inside[other] != region->inside[start])
+                continue;
+            region->met[other]     = region->search;
+            region->queue[count++] = other;
+        }
+    }
+}
+
+/* Returns how many connected parts of its side the points around a point would be, without it. */
+static uint32_t parts_without(Region *region, uint32_t number)
+{
+    const Link *link  = &region->links.items[number];
+    uint32_t    parts = 0;
+    if (!region->next)
+        find_neighbours(region);
+    region->search++;
+    for (uint32_t i = link->first_point; i < link->first_point + link->point_count; i++) {
+        uint32_t other = region->around.items[i];
+        if (region->inside[other] != region->inside[number] || region->met[other] == region->search)
+            continue;
+        meet_part(region, other, number);
+        parts++;
+    }
+    return parts;
+}
+
 /* Returns how much the Euler number of the inside grows if a point becomes inside: a cone is added
    over the inside of its sphere. */
 static long euler_of_cone(const uint32_t parts[2])
@@ -224,19 +320,16 @@ static long flip(Region *region, uint32_t number, bool inside, uint32_t *leaders
     return inside ? euler_of_cone(parts) : -euler_of_cone(parts);
 }
 
-/* Flips a point that closes a hole, unless this divides the other side into more parts than before;
-   returns as flip. */
+/* Flips a point that closes a hole, unless this divides the other side, which has `*parts`, into
+   more parts than before; returns as flip. */
 static long close_hole(Region *region, uint32_t number, bool inside, uint32_t *leaders,
-                       uint32_t *wholes)
+                       uint32_t *wholes, uint32_t *parts)
 {
-    uint32_t parts[2];
-    long     euler = flip(region, number, inside, leaders, wholes);
-    count_parts(region, wholes, parts);
-    if (parts[!inside] <= region->parts[!inside])
-        return euler;
-    region->inside[number] = !inside;
-    count_parts(region, wholes, parts);
-    return 0;
+    uint32_t more = parts_without(region, number) - 1;
+    if (*parts + more > region->parts[!inside])
+        return 0;
+    *parts += more;
+    return flip(region, number, inside, leaders, wholes);
 }
 
 /* Moves all to one side, and those back that were on the other, as long as no handle appears.
@@ -258,7 +351,7 @@ static long sweep(Region *region, bool inside, uint32_t *leaders, uint32_t *whol
                 !may_flip(region, &region->links.items[i], !inside, leaders, wholes, &other) ||
                 (other > 1 && !closing))
                 continue;
-            euler += other > 1 ? close_hole(region, i, !inside, leaders, wholes)
+            euler += other > 1 ? close_hole(region, i, !inside, leaders, wholes, &parts[inside])
                                : flip(region, i, !inside, leaders, wholes);
             any = any || region->inside[i] != inside;
         }
