@@ -7,10 +7,12 @@
 
 #include "compiler/base/elementary.h"
 
+/* The cells of a small figure far away have larger numbers than integers can be. */
+static uint64_t bits_of(double cell) { return (uint64_t)(int64_t)fmod(cell, 0x1p62); }
+
 static size_t slot_of(const Knots *knots, double x, double y)
 {
-    uint64_t hash = (uint64_t)(int64_t)x * 0x9e3779b97f4a7c15u ^
-                    (uint64_t)(int64_t)y * 0xc2b2ae3d27d4eb4fu;
+    uint64_t hash = bits_of(x) * 0x9e3779b97f4a7c15u ^ bits_of(y) * 0xc2b2ae3d27d4eb4fu;
     hash ^= hash >> 29;
     return (hash * 0x9e3779b97f4a7c15u >> 20) & (knots->slot_count - 1);
 }

@@ -142,6 +142,32 @@ static void numbers_are_short_and_exact(void **state)
     reading_free(r);
 }
 
+/* 1 + 2^-53 is halfway between two doubles, so digits behind it decide, however many zeros are between.
+   strtod reads the same texts where points are decimal. */
+static void decimals_of_many_digits_are_exact(void **state)
+{
+    static const char halfway[] = "100000000000000011102230246251565404236316680908203125";
+    static const struct {
+        const char *beginning;
+        int exponent; /* puts the first digit before the point; 0: that of all but one digit */
+    } forms[]                 = {{"", 0}, {"000", 0}, {"0.", 1}, {".00000", 6}};
+    static const int counts[] = {54, 799, 800, 801, 802, 1500};
+    (void)state;
+    for (int form = 0; form < 4; form++)
+        for (int i = 0; i < 6; i++)
+            for (char last = '0'; last <= '5'; last++) {
+                char text[2000], digits[1501];
+                memset(digits, '0', sizeof digits);
+                memcpy(digits, halfway, sizeof halfway - 1);
+                digits[counts[i] - 1] = last;
+                snprintf(text, sizeof text, "%s%.*se%d", forms[form].beginning, counts[i], digits,
+                         forms[form].exponent > 0 ? forms[form].exponent : 1 - counts[i]);
+                const double read = text_decimal(text, strlen(text)), wanted = strtod(text, NULL);
+                if (read != wanted)
+                    fail_msg("%s: %a, not %a", text, read, wanted);
+            }
+}
+
 static void json_is_escaped(void **state)
 {
     (void)state;
@@ -256,6 +282,7 @@ int main(void)
         cmocka_unit_test(arena_is_cleared),
         cmocka_unit_test(arena_refuses_products_that_overflow),
         cmocka_unit_test(numbers_are_short_and_exact),
+        cmocka_unit_test(decimals_of_many_digits_are_exact),
         cmocka_unit_test(json_is_escaped),
         cmocka_unit_test(names_are_kept_once),
         cmocka_unit_test(misspelt_names_are_recognised),
