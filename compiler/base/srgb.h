@@ -21,9 +21,4 @@ static inline double linear_of_srgb(double value)
     return value <= 0.04045 ? value / 12.92 : real_pow((value + 0.055) / 1.055, 2.4);
 }
 
-static inline double srgb_of_linear(double light)
-{
-    return light <= 0.0031308 ? 12.92 * light : 1.055 * real_pow(light, 1 / 2.4) - 0.055;
-}
-
 #endif
