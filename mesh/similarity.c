@@ -5,7 +5,7 @@
 
 const double similarity_identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
-/* Maps x to Maps x to Maps x to x - 2 (normal . x - offset) normal... */
+/* Maps x to x - 2 (normal . x - offset) normal. */
 void similarity_mirror(const double normal[3], double offset, double matrix[3][4])
 {
     for (int i = 0; i < 3; i++) {

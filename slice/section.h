@@ -1,15 +1,15 @@
 /*
  * section.h: the steps that make one section.
  *
- * 1.  A quadtree is refined where the outline may be, down to cells in which a derivative is proven
- * to keep its sign, and the other one as well, or what matters of it at two edges; or to cells of
- * the error (tree.c).  In the former signs at corners tell all of the topology.  In others what is
- * thinner is looked for along gradients, and cells are refined there, or counted. 2.  Each edge of
- * cells whose ends differ in sign has a crossing, an exact root.  Cells join their crossings by
- * chords: next to each other along the cell's border, so that chords do not cross (chords.c). 3.
- * Chords are bent to the outline by exact roots across them; corners are where tangents of both
- * ends meet (bend.c). 4.  Contours are followed from crossing to crossing, and lose the points that
- * the error permits to leave out, or become lines and arcs (contours.c, fit.c).
+ * - A quadtree is refined where the outline may be, down to cells in which a derivative is proven to keep its sign, and
+ *   the other one as well, or what matters of it at two edges; or to cells of the error (tree.c).  In the former, signs at
+ *   corners tell all of the topology.  In others what is thinner is looked for along gradients, and cells are refined
+ *   there, or counted.
+ * - Each edge of cells whose ends differ in sign has a crossing, an exact root.  Cells join their crossings by chords:
+ *   next to each other along the cell's border, so that chords do not cross (chords.c).
+ * - Chords are bent to the outline by exact roots across them; corners are where tangents of both ends meet (bend.c).
+ * - Contours are followed from crossing to crossing, and lose the points that the error permits to leave out, or become
+ *   lines and arcs (contours.c, fit.c).
  */
 #ifndef KRS_SLICE_SECTION_H
 #define KRS_SLICE_SECTION_H

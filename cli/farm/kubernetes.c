@@ -8,7 +8,6 @@
 
 #include <ctype.h>
 #include <string.h>
-#define XXH_STATIC_LINKING_ONLY
 #include <xxhash.h>
 
 #include "cli/shell/console.h"

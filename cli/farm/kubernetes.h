@@ -6,8 +6,8 @@
 
 #include "cli/farm/job.h"
 
-/* Writes kubernetes.yaml into the folder: an Indexed Job whose containers have this image.  Nodes must see the folders of the job and
-   of its pictures under the same paths. */
+/* Writes kubernetes.yaml into the folder: an Indexed Job whose containers have this image.  Nodes must see the folders
+   of the job and of its pictures under the same paths. */
 KrsStatus kubernetes_write(const FarmJob *job, const Options *options, const char *image);
 
 #endif

@@ -28,11 +28,12 @@ typedef struct RangeSums {
 /* These need so many pixels; false: no memory is left. */
 bool ranges_new(RangeSums *sums, size_t pixels);
 void ranges_free(RangeSums *sums);
-/* Adds `count` pixels of a file, in the order of ranges, to those from `pixel` on.  `planes` are those of its channels, from
-   `from` on; `begins`: no range has been added to them. */
+/* Adds `count` pixels of a file, in the order of ranges, to those from `pixel` on.  `planes` are those of its channels,
+   from `from` on; `begins`: no range has been added to them. */
 void ranges_add(RangeSums *sums, size_t pixel, size_t count, const SampleRange *range,
                 const Picture *picture, float *const *planes, size_t from, bool begins);
-/* Writes what they make of the samples from `first` to `last` to the planes of the picture.  `noise`: they have estimates of errors. */
+/* Writes what they make of the samples from `first` to `last` to the planes of the picture.  `noise`: they have estimates
+   of errors. */
 void ranges_finish(const RangeSums *sums, size_t pixels, uint32_t first, uint32_t last, bool noise,
                    const Picture *picture, float *const *planes);
 

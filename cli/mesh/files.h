@@ -38,10 +38,9 @@ typedef struct MeshFormat {
 
 /* Returns the format by the ending of a path; NULL: there is none. */
 const MeshFormat *mesh_format(const char *path);
-/* ".stl, .ply, .obj, .glb or .3mf" */
 #define MESH_ENDINGS ".stl, .ply, .obj, .glb or .3mf"
 
-/* Writes all but what the writer left in the buffer, and that. */
+/* Writes a mesh in a format, to its last byte; false: file->error tells why not. */
 bool mesh_file_write(MeshFile *file, const MeshFormat *format);
 
 #endif

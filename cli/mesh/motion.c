@@ -96,7 +96,7 @@ static double distance_between(const Motion *motion, size_t copy, const MeshPose
     return most;
 }
 
-/* Tells how far a copy is from where it belongs between two keyframes. */
+/* Returns how far a copy is from where it belongs between two keyframes. */
 static double distance_of(const Motion *motion, size_t copy, Matrix *const ends[2],
                           Matrix *const places[PLACES])
 {
@@ -143,7 +143,7 @@ static bool can_be_halved(const Motion *motion, const double frames[2])
            middle < (float)seconds_of(motion, frames[1]);
 }
 
-/* Keyframes between two of the copies that are `asked`. */
+/* Adds keyframes between two, for the copies that are `asked`. */
 static KrsStatus refine(Motion *motion, const double frames[2], Matrix *const ends[2],
                         const bool *asked, int depth)
 {

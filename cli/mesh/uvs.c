@@ -92,7 +92,7 @@ static bool continue_places(const Meshing *meshing, const Triangle *triangle, do
     return true;
 }
 
-/* Places of all points, some at once. */
+/* Finds the places of all points, some at once. */
 static KrsStatus find_all(const Meshing *meshing, const double (*points)[3], size_t count,
                           double (*places)[2])
 {

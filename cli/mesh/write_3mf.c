@@ -1,7 +1,8 @@
 /*
  * write_3mf.c: 3MF, an archive of three files in XML: what there is, where the model is, and the model, by
  * the core specification 1.3.  Where the color of a material varies triangles have those of their corners, by the
- * materials extension 1.2.1; beams are those of the beam lattice extension 1.0 (2017/02).  It has neither times nor random names: equal meshes are equal files.
+ * materials extension 1.2.1; beams are those of the beam lattice extension 1.0 (2017/02).  It has neither times nor
+ * random names: equal meshes are equal files.
  */
 #include <math.h>
 #include <stdio.h>

@@ -1,10 +1,10 @@
 /*
  * checkpoint.c: a file beside the first output that says how far `krs render --resume` has come.
  *
- * It has a key, which is a hash of the program's sources, the options that change pictures, the scene and the device; the number of the
- * frame at hand; and the film of that frame, unless the frame has not begun.  A hash of all stands at
- * the end.  The file is written whenever rendering has gone on for some seconds, as every output: it
- * appears whole or not at all.
+ * It has a key, which is a hash of the program's sources, the options that change pictures, the scene and the device; the
+ * number of the frame at hand; and the film of that frame, unless the frame has not begun.  A hash of all stands at the
+ * end.  The file is written whenever rendering has gone on for some seconds, as every output: it appears whole or not at
+ * all.
  */
 #include "cli/picture/checkpoint.h"
 

@@ -217,24 +217,15 @@ static void catch_signal(int number)
         sigaction(number, &action, NULL);
 }
 
-/* Limits the memory that is written to, for drivers of cards reserve far more than they use. */
-static void limit_memory(uint64_t bytes)
+/* Lowers a limit of the process: of memory that is written to (drivers of cards reserve far more than they use), or of
+   the length of files, where SIGXFSZ is ignored, so that writing fails. */
+static void lower_limit(int resource, uint64_t bytes)
 {
     struct rlimit limit;
-    if (bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur <= bytes)
+    if (bytes == 0 || getrlimit(resource, &limit) != 0 || limit.rlim_cur <= bytes)
         return;
     limit.rlim_cur = bytes;
-    setrlimit(RLIMIT_DATA, &limit);
-}
-
-/* Limits how long files may be that are written; SIGXFSZ is ignored, so that writing fails. */
-static void limit_files(uint64_t bytes)
-{
-    struct rlimit limit;
-    if (bytes == 0 || getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur <= bytes)
-        return;
-    limit.rlim_cur = bytes;
-    setrlimit(RLIMIT_FSIZE, &limit);
+    setrlimit(resource, &limit);
 }
 
 /* Libraries in C may use what they could not allocate.  Where nothing has failed since, that has left its mark;
@@ -268,8 +259,8 @@ static _Noreturn void run_child(Options *options, Work *work, Outputs *outputs,
         say("no sandbox for untrusted scenes: its files cannot be closed: %s", strerror(errno));
         _exit(KRS_INTERNAL);
     }
-    limit_memory(options->limits.memory);
-    limit_files(options->limits.file);
+    lower_limit(RLIMIT_DATA, options->limits.memory);
+    lower_limit(RLIMIT_FSIZE, options->limits.file);
     atomic_store(&shared->unchecked, 0);
     unchecked_count_at(&shared->unchecked);
     note_crashes();

@@ -7,7 +7,7 @@
 
 enum { MAX_CORNERS = 2000 };
 
-/* Corners of a polygon whose sides are moved outwards; false where sides vanish. */
+/* Finds the corners of a polygon whose sides are moved outwards; false where sides vanish. */
 static bool move_sides(const double (*corners)[3], size_t count, double by, double (*to)[3])
 {
     double area = 0;

@@ -45,7 +45,7 @@ static bool accept_sign(Equation *equation, char sign)
     return true;
 }
 
-/* Digits on both sides of the point, which SURFER does not ask for. */
+/* Reads a number.  The language wants digits on both sides of the point, SURFER does not: they are added. */
 static bool parse_number(Equation *equation)
 {
     char       *end;
