@@ -23,7 +23,7 @@ static bool draw_color(const KrsParameter *parameter, double *value)
 {
     double shown[3];
     for (int i = 0; i < 3; i++)
-        shown[i] = srgb_of_linear(fmax(value[i], 0));
+        shown[i] = srgb_of_linear(fmin(fmax(value[i], 0), 1));
     if (!gui_color(parameter->name, shown))
         return false;
     for (int i = 0; i < 3; i++)

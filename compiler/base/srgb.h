@@ -8,12 +8,12 @@
 
 #include "compiler/base/elementary.h"
 
-/* From [0, 1] to [0, 1]. */
+/* Light that is brighter than white goes on beyond 1. */
 static inline double srgb_of_linear(double linear)
 {
-    if (linear >= 1) /* the formula gives a little less */
-        return 1;
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+    if (linear <= 0.0031308)
+        return 12.92 * linear;
+    return linear == 1 ? 1 : 1.055 * pow(linear, 1 / 2.4) - 0.055; /* a little less for 1 */
 }
 
 static inline double linear_of_srgb(double value)

@@ -26,7 +26,8 @@ static void srgb_is_its_definition(void **state)
 {
     (void)state;
     assert_near(srgb_of_linear(0), 0, 0);
-    assert_near(srgb_of_linear(1), 1, 1e-15);
+    assert_near(srgb_of_linear(1), 1, 0);
+    assert_near(srgb_decode(srgb_of_linear(4)), 4, 1e-12); /* as exports write it */
     assert_near(srgb_of_linear(0.5), 0.735356983052449, 1e-12);
     for (int i = 0; i <= 1000; i++)
         assert_near(srgb_decode(srgb_of_linear(i / 1000.0)), i / 1000.0, 1e-7);
