@@ -46,7 +46,7 @@ ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite grap
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Clients of the compiler: it knows nothing of them.
-CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays export,$(call sources,$(room)))
+CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure denoise rays export,$(call sources,$(room)))
 # What the system is asked for.
 PLATFORM := $(call sources,platform/linux)
 # Points and rays side by side, once for each instruction set.
@@ -62,7 +62,7 @@ API      := $(call sources,api)
 IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
 LIVE     := $(foreach room,profile live/text live/pictures live/window live,$(call sources,$(room)))
 LIVE_BRIDGE := live/window/gui.cpp
-CLI      := $(foreach room,cli/options cli/pack cli/sandbox cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/lsp cli,$(call sources,$(room)))
+CLI      := $(foreach room,cli/options cli/pack cli/sandbox cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/denoise cli/lsp cli,$(call sources,$(room)))
 CLI_BRIDGE := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cpp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
 VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)

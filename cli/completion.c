@@ -25,7 +25,7 @@ static const char *find_endings(CommandId command)
 {
     if (command == COMMAND_IMPORT)
         return import_endings();
-    if (command == COMMAND_MERGE)
+    if (command == COMMAND_MERGE || command == COMMAND_DENOISE)
         return ".exr";
     return takes_scenes(command) ? ".krs .krsz" : "";
 }

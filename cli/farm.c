@@ -44,6 +44,7 @@ static KrsStatus check_passed_on(const Options *options, OptionId id)
     case OPTION_STAMP:
     case OPTION_STATS:
     case OPTION_DEPTH_IN:
+    case OPTION_DENOISE:
     case OPTION_PLATE:
         return say_usage(options, "farm cannot divide a render with --%s", option_info[id].name);
     default: return KRS_OK;

@@ -12,6 +12,7 @@
 #include "cli/shell/commands.h"
 #include "cli/options/choices.h"
 #include "cli/shell/console.h"
+#include "cli/picture/denoised.h"
 #include "cli/picture/frame_paths.h"
 #include "cli/picture/picture.h"
 #include "cli/picture/read_exr.h"
@@ -131,6 +132,8 @@ static KrsStatus choose_how(Render *render)
     how->aovs          = picture_aovs(options, writes_exr(render));
     if (render->noise <= 0)
         how->aovs &= known_aovs(options);
+    if (options->denoise)
+        how->aovs |= DENOISING_AOVS;
     if (!isnan(options->exposure))
         how->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-options->exposure);
     how->light_groups = options->light_groups;
@@ -143,6 +146,8 @@ static KrsStatus choose_how(Render *render)
     if (options->first_sample > 0)
         how->aovs = KRS_AOV_COLOR; /* the others come from the first sample */
     status = check_how(render);
+    if (status == KRS_OK && options->denoise)
+        status = denoised_check(options, how->light_groups);
     return status == KRS_OK ? samples_check(options, how, render->noise) : status;
 }
 
@@ -179,14 +184,20 @@ static KrsStatus write_outputs(Render *render, const KrsPicture *picture, double
     else if (view.image.tone_map)
         tone_map_find(view.image.tone_map,
                       &notes.display.tone_map); /* the compiler knows its name */
+    notes.noise_floor = render->how.noise_floor > 0
+                            ? render->how.noise_floor
+                            : KRS_DEFAULT_NOISE_FLOOR * exp2(-view.image.exposure);
+    if (options->denoise && status == KRS_OK)
+        status = denoised_frame(options, picture, notes.noise_floor, &notes.denoised);
     if (options->raw && status == KRS_OK)
-        status = picture_write_raw(picture, &notes.display);
+        status = picture_write_raw(picture, &notes);
     if (options->light_groups && status == KRS_OK)
         status = make_groups(render, picture, &notes.groups);
     for (size_t i = 0; i < render->output_count && status == KRS_OK; i++)
         status = picture_write(options, picture, &notes,
                                frame_path(options, render->outputs[i], frame));
     free(notes.groups.values);
+    free(notes.denoised);
     return status;
 }
 

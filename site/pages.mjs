@@ -28,6 +28,7 @@ export const chapters = [
         { place: 'docs/grids.html', title: 'Grids', document: 'docs/grids.md' },
         { place: 'docs/exports.html', title: 'Other programs', document: 'docs/exports.md' },
         { place: 'docs/printing.html', title: 'Figures of a part', document: 'docs/printing.md' },
+        { place: 'docs/denoising.html', title: 'Less noise', document: 'docs/denoising.md' },
         { place: 'docs/cost.html', title: 'What parts cost', document: 'docs/cost.md' },
         { place: 'docs/farm.html', title: 'Many machines', document: 'docs/farm.md' },
     ] },

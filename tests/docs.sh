@@ -10,8 +10,8 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 pages="README.md CONTRIBUTING.md SECURITY.md docs/features.md docs/figures.md docs/code.md docs/building.md
 docs/tutorial.md docs/coming-from.md docs/language.md docs/library.md docs/python.md docs/architecture.md
-docs/viewer.md docs/editors.md docs/playground.md docs/meshes.md docs/slices.md docs/grids.md docs/exports.md docs/cost.md docs/farm.md docs/reliability.md docs/how-it-works.md docs/glossary.md bench/tables.md bench/measurements.md"
-rooms=$(find api bench compiler mesh slice grid measure export include import platform profile runtime live cli tools web python site -name README.md | sort)
+docs/viewer.md docs/editors.md docs/playground.md docs/meshes.md docs/slices.md docs/grids.md docs/exports.md docs/cost.md docs/farm.md docs/denoising.md docs/reliability.md docs/how-it-works.md docs/glossary.md bench/tables.md bench/measurements.md"
+rooms=$(find api bench compiler mesh slice grid measure denoise export include import platform profile runtime live cli tools web python site -name README.md | sort)
 pages="$pages $rooms"
 failed=0
 report() { # status, name

@@ -9,14 +9,14 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/bounds compiler/graph/lanes compiler/graph/rewrite compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/lower/research compiler/family compiler/front
         compiler/eval compiler/eval/declared compiler/eval/view compiler/eval/data compiler/eval/hulls compiler/eval/builtins compiler/print compiler/print/glsl compiler/print/essl compiler/print/wgsl compiler/target compiler/scene compiler/passes compiler/refute compiler/field compiler/service
-        mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure rays export
+        mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure denoise rays export
         platform/linux platform/web web/letters web/core
         runtime/device runtime/shared runtime/tracer/research runtime/tracer runtime/integrators runtime/film runtime/display
-        runtime/writer runtime api import/common import/csg import/surfer import/pov import profile live/text live/pictures live/window live cli/options cli/pack cli/sandbox cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/lsp cli site"
+        runtime/writer runtime api import/common import/csg import/surfer import/pov import profile live/text live/pictures live/window live cli/options cli/pack cli/sandbox cli/shell cli/picture cli/farm cli/mesh cli/grid cli/slice cli/denoise cli/lsp cli site"
 public="include/krs/krs.h include/krs/camera.h include/krs/mesh.h include/krs/slice.h include/krs/grid.h
         include/krs/measure.h include/krs/light.h include/krs/surface.def include/krs/choices.def include/krs/camera.def include/krs/lights.def
         include/krs/light_types.def include/krs/targets.def"
-api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/service/service.h compiler/print/variant.h compiler/target/spirv.h rays/rays.h rays/surfaces.h export/export.h export/targets.def"
+api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/service/service.h compiler/print/variant.h compiler/target/spirv.h rays/rays.h rays/surfaces.h denoise/denoise.h export/export.h export/targets.def"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 

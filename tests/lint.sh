@@ -81,7 +81,7 @@ unlisted=$(grep -lE '^int main' tests/*/*.c | sed 's/\.c$//' | grep -vE '^tests/
 status=$?
 [ $status -eq 0 ] || echo "$unlisted" | sed 's/^/# no list has it: /'
 report "every program of a test is run" $status
-formatted=$(find api bench cli compiler examples export grid import include live measure mesh platform rays runtime site slice tests web -name '*.[ch]' -o -name '*.cpp')
+formatted=$(find api bench cli compiler denoise examples export grid import include live measure mesh platform rays runtime site slice tests web -name '*.[ch]' -o -name '*.cpp')
 # The style is that of version 14; what others think of it is heard only where they agree.
 styled() { # the command
     # shellcheck disable=SC2086 # the list is words
@@ -101,7 +101,7 @@ else
     echo "ok - $style # SKIP clang-format ${version:-of no version} has other tastes than 14"
 fi
 # A file of more than 700 lines may have two subjects: look whether it has.
-find Makefile .ci api bench cli compiler export grammar grid import include live measure mesh platform python rays runtime site slice tests tools web -name results -prune -o \
+find Makefile .ci api bench cli compiler denoise export grammar grid import include live measure mesh platform python rays runtime site slice tests tools web -name results -prune -o \
     -type f ! -path 'tests/golden/*.glsl' \( -name Makefile -o -name run -o -name '*.[ch]' \
     -o -name '*.cpp' -o -name '*.def' -o -name '*.glsl' -o -name '*.comp' -o -name '*.sh' \
     -o -name '*.mk' -o -name '*.py' \) -exec wc -l {} + |

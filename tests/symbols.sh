@@ -68,7 +68,7 @@ report $? "none of ours takes the place of a name of a shared library"
 
 # What C libraries round each in its own way is our own (base/elementary.h), but for the runtime's.
 others='^(a?(sin|cos|tan)h?|atan2|exp(2|10|m1)?|log(2|10|1p)?|pow|cbrt|hypot|sincos|[lt]gamma|erfc?)[fl]?$'
-find "$build/compiler" "$build/mesh" "$build/rays" "$build/grid" "$build/slice" "$build/measure" -name '*.o' -exec nm -u -A {} + 2>/dev/null |
+find "$build/compiler" "$build/mesh" "$build/rays" "$build/grid" "$build/slice" "$build/measure" "$build/denoise" -name '*.o' -exec nm -u -A {} + 2>/dev/null |
     awk -v others="$others" '$NF ~ others' >"$work/said"
 [ ! -s "$work/said" ]
 report $? "functions of numbers are our own"

@@ -19,7 +19,7 @@ PROPERTY_SHARED := $(addprefix tests/property/, instance_parts.c garden.c op_tri
 UNIT        := specks exact texts watchdog front service service_random synonyms arguments visibility diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute state state_floor framing query zones surroundings cache cache_limits \
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid instance_grid instances \
-               instance_shaders instance_ends instance_pictures few_parts tables device_tables table_files printing printers elementary gathered_noises answers structure update coordinates reload live saved_texts camera_text resolution painter saver profile profiler edits values lane_math mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly
+               instance_shaders instance_ends instance_pictures few_parts tables device_tables table_files printing printers elementary gathered_noises answers structure update coordinates reload live saved_texts camera_text resolution painter saver profile profiler edits values lane_math mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly denoise
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees iteration_boxes instances instances_apart instances_deformed instance_sums blends_of_many fillets moving_instances moving_scenes overlaps lanes lane_rows lane_instances lane_balls lane_cells found_surfaces csg_nodes iterations
 ORACLES     := research/moebius_images research/enhanced self distant patterns bumps primitives krs_expand folds trees maps moebius operators cells \
@@ -40,7 +40,7 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
 SANITIZED   := $(addprefix tests/, unit/texts unit/watchdog unit/front unit/service unit/service_random unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
                unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/instance_grid unit/instances unit/few_parts unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/state unit/state_floor unit/framing unit/query \
-               unit/zones unit/printers unit/elementary unit/gathered_noises unit/structure unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/profile unit/values unit/lane_math unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/mesh_handles unit/mesh_sides unit/mesh_flat_proofs unit/assembly property/ops property/noise property/textures property/graph property/simplify \
+               unit/zones unit/printers unit/elementary unit/gathered_noises unit/structure unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/profile unit/values unit/lane_math unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/mesh_handles unit/mesh_sides unit/mesh_flat_proofs unit/assembly unit/denoise property/ops property/noise property/textures property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
                property/reach_trees property/iteration_boxes property/instances property/instances_apart property/instances_deformed property/instance_sums property/blends_of_many property/fillets property/moving_instances property/moving_scenes property/overlaps property/lanes property/lane_rows property/lane_instances property/lane_balls property/lane_cells property/found_surfaces property/csg_nodes property/iterations oracle/primitives \
@@ -208,7 +208,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format -i $$(find api bench cli compiler examples export grid import include live measure mesh platform rays runtime site slice tests web -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find api bench cli compiler denoise examples export grid import include live measure mesh platform rays runtime site slice tests web -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

@@ -397,7 +397,7 @@ static KrsStatus make_picture(Reading *r)
 
 static bool is_of_range(const char *name)
 {
-    static const char *const texts[SAMPLE_TEXTS] = {SAMPLES_TEXT, SETTINGS_TEXT, NOISE_FLOOR_TEXT};
+    static const char *const texts[SAMPLE_TEXTS] = {SAMPLES_TEXT, SETTINGS_TEXT};
     for (size_t i = 0; i < SAMPLE_TEXTS; i++)
         if (strcmp(name, texts[i]) == 0)
             return true;

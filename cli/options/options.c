@@ -16,7 +16,7 @@
 #define ON_SCENE        (ON_SHOWN | ON(VALIDATE) | ON(QUERY))
 #define ON_SOLID        (ON(MESH) | ON(SLICE) | ON(GRID) | ON(INFO))
 #define ON_READING      (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(HELP)))
-#define ON_COMPILING    (ON_READING & ~(ON(IMPORT) | ON(MERGE)))
+#define ON_COMPILING    (ON_READING & ~(ON(IMPORT) | ON(MERGE) | ON(DENOISE)))
 #define TEXT_OF(macro)  TEXT_OF_(macro)
 #define TEXT_OF_(words) #words
 
@@ -39,7 +39,7 @@ bool takes_scenes(CommandId command)
 {
     const int files = command_table[command].files;
     return files != 0 && files != MAYBE_A_WORD && command != COMMAND_IMPORT &&
-           command != COMMAND_MERGE;
+           command != COMMAND_MERGE && command != COMMAND_DENOISE;
 }
 
 const char *nearest_command(const char *name)

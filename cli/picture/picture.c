@@ -13,6 +13,7 @@
 
 #include "cli/shell/console.h"
 #include "cli/picture/cryptomatte.h"
+#include "cli/picture/denoised.h"
 #include "cli/shell/supervise.h"
 #include "runtime/writer/exr.h"
 #include "runtime/writer/picture_aovs.h"
@@ -20,7 +21,7 @@
 
 enum {
     CHANNELS = AOV_CHANNELS + MATTE_CHANNELS, /* at most */
-    TEXTS    = 8 + MATTE_TEXTS
+    TEXTS    = 9 + MATTE_TEXTS
 };
 
 FileForm file_form(const char *path)
@@ -87,6 +88,13 @@ static const char *describe_now(const Options *options)
     return arena_copy_text(options->arena, date, strlen(date));
 }
 
+/* Tells whether files have an estimate of the noise, or those of the first samples do. */
+static bool writes_noise(const Options *options, const KrsPicture *source)
+{
+    return options->samples_divided ? options->aovs != KRS_AOV_ALL && options->aovs & KRS_AOV_NOISE
+                                    : source->noise && picture_aovs(options, true) & KRS_AOV_NOISE;
+}
+
 static size_t collect_texts(const Options *options, const KrsPicture *source,
                             const PictureNotes *notes, PictureText texts[TEXTS + SAMPLE_TEXTS])
 {
@@ -104,7 +112,10 @@ static size_t collect_texts(const Options *options, const KrsPicture *source,
                                        describe_number(options, source->stats.wall_ms / 1000)};
     }
     if (options->samples_divided)
-        count = samples_texts(options, &notes->sums, source->stats.device, texts, count);
+        count = samples_texts(options, source->stats.device, texts, count);
+    if (writes_noise(options, source))
+        texts[count++] = (PictureText){NOISE_FLOOR_TEXT,
+                                       describe_number(options, (double)(float)notes->noise_floor)};
     return count;
 }
 
@@ -175,6 +186,15 @@ static void add_caught(const Options *options, const KrsPicture *source, Picture
     add_colors(mirrored, (const float(*)[3])source->mirrored, channels, picture);
 }
 
+static void add_denoised(const PictureNotes *notes, PictureChannel *channels, Picture *picture)
+{
+    for (size_t i = 0; notes->denoised && i < 3; i++)
+        channels[picture->channel_count++] = (PictureChannel){.name    = denoised_channels[i],
+                                                              .type    = SAMPLE_HALF,
+                                                              .samples = notes->denoised[0] + i,
+                                                              .stride  = 4};
+}
+
 static KrsStatus write_exr(const Options *options, const KrsPicture *source,
                            const PictureNotes *notes, PictureText *texts, Picture *picture,
                            const char *path)
@@ -182,7 +202,7 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
     const LightGroups *groups   = &notes->groups;
     PictureChannel    *channels = arena_new_array(options->arena, PictureChannel,
                                                   CHANNELS + groups->channel_count + CAUGHT_CHANNELS +
-                                                      SUM_AND_NOISE_NUMBERS);
+                                                      3 + SUM_AND_NOISE_NUMBERS);
     PictureMatrix      to_camera, to_ndc;
     float             *values = NULL;
     memcpy(to_camera.m, source->world_to_camera, sizeof to_camera.m);
@@ -194,6 +214,7 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
     for (size_t i = 0; i < groups->channel_count; i++)
         channels[picture->channel_count++] = groups->channels[i];
     add_caught(options, source, channels, picture);
+    add_denoised(notes, channels, picture);
     if (notes->sums.numbers)
         picture->channel_count += samples_channels(&notes->sums, channels + picture->channel_count);
     if (!add_mattes(options, source, notes, channels, texts, picture, &values))
@@ -204,13 +225,15 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
 }
 
 /* Returns the pixels as a screen shows them, for free(); NULL: out of memory. */
-static uint8_t *screen_pixels(const KrsPicture *source, const DisplayOptions *display,
-                              size_t *length)
+static uint8_t *screen_pixels(const KrsPicture *source, const PictureNotes *notes, size_t *length)
 {
-    *length      = (size_t)source->window.width * source->window.height * 3;
-    uint8_t *rgb = malloc(*length);
+    KrsPicture shown = *source;
+    *length          = (size_t)source->window.width * source->window.height * 3;
+    uint8_t *rgb     = malloc(*length);
+    if (notes->denoised)
+        shown.color = notes->denoised[0];
     if (rgb)
-        display_to_srgb8(source, display, 3, rgb);
+        display_to_srgb8(&shown, &notes->display, 3, rgb);
     return rgb;
 }
 
@@ -231,10 +254,10 @@ static KrsStatus write_bytes(const uint8_t *bytes, size_t length)
     return KRS_OK;
 }
 
-KrsStatus picture_write_raw(const KrsPicture *picture, const DisplayOptions *display)
+KrsStatus picture_write_raw(const KrsPicture *picture, const PictureNotes *notes)
 {
     size_t   length;
-    uint8_t *rgb = screen_pixels(picture, display, &length);
+    uint8_t *rgb = screen_pixels(picture, notes, &length);
     if (!rgb)
         return say_status(KRS_OUT_OF_MEMORY, "standard output");
     stage_enter(STAGE_WRITE);
@@ -245,10 +268,10 @@ KrsStatus picture_write_raw(const KrsPicture *picture, const DisplayOptions *dis
 }
 
 static KrsStatus write_png(const Options *options, const KrsPicture *source, const Picture *picture,
-                           const DisplayOptions *display, const char *path)
+                           const PictureNotes *notes, const char *path)
 {
     size_t   length;
-    uint8_t *rgb = screen_pixels(source, display, &length);
+    uint8_t *rgb = screen_pixels(source, notes, &length);
     if (!rgb)
         return say_status(KRS_OUT_OF_MEMORY, path);
     KrsStatus status = write_output(path, fill_png, &(Contents){options, picture, rgb});
@@ -268,7 +291,6 @@ KrsStatus picture_write(const Options *options, const KrsPicture *source, const 
                            .crop_height = source->window.height,
                            .texts       = texts,
                            .text_count  = collect_texts(options, source, notes, texts)};
-    return file_form(path) == FORM_EXR
-               ? write_exr(options, source, notes, texts, &picture, path)
-               : write_png(options, source, &picture, &notes->display, path);
+    return file_form(path) == FORM_EXR ? write_exr(options, source, notes, texts, &picture, path)
+                                       : write_png(options, source, &picture, notes, path);
 }

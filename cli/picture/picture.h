@@ -19,14 +19,16 @@ uint32_t picture_aovs(const Options *options, bool exr);
 /* The texts that stand in the files beside the pixels. */
 typedef struct PictureNotes {
     const KrsScene *scene;
-    double          time;    /* of the scene */
-    DisplayOptions  display; /* for PNG */
-    LightGroups     groups;  /* further channels for EXR, or none */
-    SampleSums      sums;    /* likewise */
+    double          time;        /* of the scene */
+    DisplayOptions  display;     /* for PNG */
+    LightGroups     groups;      /* further channels for EXR, or none */
+    SampleSums      sums;        /* likewise */
+    double          noise_floor; /* of the AOV noise */
+    float (*denoised)[4];        /* NULL: not wanted */
 } PictureNotes;
 
 /* Writes the pixels to standard output, as a PNG shows them: rows from the top, R G B, a byte each. */
-KrsStatus picture_write_raw(const KrsPicture *picture, const DisplayOptions *display);
+KrsStatus picture_write_raw(const KrsPicture *picture, const PictureNotes *notes);
 
 /* Writes the picture to a file in the form its name tells. */
 KrsStatus picture_write(const Options *options, const KrsPicture *picture,

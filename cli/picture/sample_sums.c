@@ -80,17 +80,13 @@ static const char *describe_settings(const Options *options, const char *device)
     return text.bytes;
 }
 
-size_t samples_texts(const Options *options, const SampleSums *sums, const char *device,
-                     PictureText *texts, size_t count)
+size_t samples_texts(const Options *options, const char *device, PictureText *texts, size_t count)
 {
-    Text range = {.arena = options->arena}, floor = {.arena = options->arena};
+    Text range = {.arena = options->arena};
     text_format(&range, "%u..%u/%u", options->first_sample, options->last_sample,
                 options->how.samples);
-    text_number(&floor, (double)sums->noise_floor);
     texts[count++] = (PictureText){SAMPLES_TEXT, range.bytes};
     texts[count++] = (PictureText){SETTINGS_TEXT, describe_settings(options, device)};
-    if (options->aovs != KRS_AOV_ALL && options->aovs & KRS_AOV_NOISE)
-        texts[count++] = (PictureText){NOISE_FLOOR_TEXT, floor.bytes};
     return count;
 }
 

@@ -14,17 +14,17 @@
 #define SUM_LAYER "sum."
 extern const char *const sum_channels[SUM_AND_NOISE_NUMBERS];
 
-/* The texts of such a file: "0..63/256"; options and device; KrsRenderOptions.noise_floor, where noise is estimated. */
-#define SAMPLES_TEXT     "krs:samples"
-#define SETTINGS_TEXT    "krs:settings"
+/* The texts of such a file: "0..63/256"; options and device. */
+#define SAMPLES_TEXT  "krs:samples"
+#define SETTINGS_TEXT "krs:settings"
+enum { SAMPLE_TEXTS = 2 };
+/* That of every file with an estimate of the noise: KrsRenderOptions.noise_floor. */
 #define NOISE_FLOOR_TEXT "krs:noise_floor"
-enum { SAMPLE_TEXTS = 3 };
 
 /* Refuses ranges of samples that do not begin and end with blocks, or with options whose pictures cannot be divided so. */
 KrsStatus samples_check(const Options *options, const KrsRenderOptions *how, double noise);
 /* Adds these texts, and returns how many there are then. */
-size_t samples_texts(const Options *options, const SampleSums *sums, const char *device,
-                     PictureText *texts, size_t count);
+size_t samples_texts(const Options *options, const char *device, PictureText *texts, size_t count);
 /* Describes the channels; returns their number. */
 size_t samples_channels(const SampleSums *sums, PictureChannel channels[SUM_AND_NOISE_NUMBERS]);
 

@@ -73,6 +73,8 @@ KrsStatus scene_component(const Options *options, const KrsScene *scene, size_t 
 KrsStatus scene_set_time(const Options *options, KrsState *state, double time);
 /* Returns the name of a scene: that of "a/ring.krs" is "ring". */
 const char *scene_name(Arena *arena, const char *path);
+/* Returns the name of what `krs denoise` writes without -o: of "a/ring.exr" it is "ring-denoised.exr". */
+const char *denoised_name(const Options *options);
 /* Says what a status means after a call of the library that has no words of its own. */
 KrsStatus say_status(KrsStatus status, const char *path);
 

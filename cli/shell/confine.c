@@ -34,7 +34,7 @@ static void collect_readable(const Options *options)
 {
     for (size_t i = 0; i < options->files.count; i++) {
         const char *path  = options->files.items[i];
-        const bool  alone = options->command == COMMAND_MERGE || pack_is_named(path);
+        const bool  alone = !takes_scenes(options->command) || pack_is_named(path);
         add_readable(options, alone ? path : scene_root(options, path));
     }
     add_picture(options, options->depth_in);
@@ -111,6 +111,8 @@ static void collect_outputs(const Options *options)
     }
     if (options->outputs.count == 0 && scene)
         permit(options, scene_name(options->arena, first));
+    if (options->outputs.count == 0 && options->command == COMMAND_DENOISE)
+        permit_whole(options, denoised_name(options));
     for (size_t i = 0; i < options->files.count && options->command == COMMAND_FORMAT; i++)
         permit_whole(options, options->files.items[i]);
     if (options->command == COMMAND_VIEW)

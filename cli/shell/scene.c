@@ -249,6 +249,17 @@ void say_renderer(const Options *options, const KrsScene *scene, const KrsRender
     say("%s", krs_renderer_message(renderer));
 }
 
+const char *denoised_name(const Options *options)
+{
+    Text        name   = {.arena = options->arena};
+    const char *slash  = strrchr(options->files.items[0], '/');
+    const char *file   = slash ? slash + 1 : options->files.items[0];
+    const char *dot    = strrchr(file, '.');
+    const int   length = (int)(dot && dot > file ? (size_t)(dot - file) : strlen(file));
+    text_format(&name, "%.*s-denoised.exr", length, file);
+    return name.bytes;
+}
+
 const char *scene_name(Arena *arena, const char *path)
 {
     const char *slash  = strrchr(path, '/');

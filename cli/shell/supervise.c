@@ -68,6 +68,7 @@ static const StageInfo stage_info[STAGE_COUNT] = {
     [STAGE_MESH]     = {"mesh", "making the mesh", 0, false, true, false},
     [STAGE_SLICE]    = {"slice", "making sections", 0, false, true, false},
     [STAGE_GRID]     = {"grid", "making the grid", 0, false, true, false},
+    [STAGE_DENOISE]  = {"denoise", "denoising", 0, false, true, false},
     [STAGE_WRITE]    = {"write", "writing", 0, false, true, false},
     [STAGE_ANSWER]   = {"answer", "printing the answer", 0, false, false, false},
     [STAGE_WAIT]     = {"wait", "waiting for changes", 0, false, true, true},

@@ -21,6 +21,7 @@ typedef enum RunStage {
     STAGE_MESH,
     STAGE_SLICE,
     STAGE_GRID,
+    STAGE_DENOISE,
     STAGE_WRITE,
     STAGE_ANSWER,
     STAGE_WAIT,
@@ -46,7 +47,7 @@ int supervise(Options *options, Work *work);
 
 /* Tells the parent.  For the tests, the environment variable KRS_TEST_CRASH=STAGE makes the
    process crash on entering a stage (start, compile, shaders, device, render, validate, mesh,
-   slice, grid, write, answer, wait); STAGE:9 sends itself that signal instead, STAGE:hang never returns. */
+   slice, grid, denoise, write, answer, wait); STAGE:9 sends itself that signal instead, STAGE:hang never returns. */
 void stage_enter(RunStage stage);
 
 /* Tells the parent that the work of this stage goes on: the deadline begins anew. */
@@ -68,7 +69,7 @@ typedef bool VisitRead(void *user, const char *path);
 bool         stage_again(VisitRead *visit, void *user, bool *changed);
 
 /* Is nonzero once the user has asked to stop.  In STAGE_RENDER, STAGE_VALIDATE, STAGE_MESH,
-   STAGE_SLICE, STAGE_GRID, STAGE_WRITE and STAGE_WAIT it is for the work to notice; in the others
+   STAGE_SLICE, STAGE_GRID, STAGE_DENOISE, STAGE_WRITE and STAGE_WAIT it is for the work to notice; in the others
    the process just ends. */
 const volatile sig_atomic_t *interrupted(void);
 

@@ -27,10 +27,12 @@ enum {
 };
 
 typedef struct ExrWriter {
-    const Picture *picture;
-    OutputFile    *file;
-    OutputError   *error;
-    exr_context_t  context;
+    const Picture      *picture;
+    exr_const_context_t like; /* a file whose attributes are taken; NULL: none */
+    exr_attr_box2i_t    display, data;
+    OutputFile         *file;
+    OutputError        *error;
+    exr_context_t       context;
 } ExrWriter;
 
 /* The chunks of a picture.  Threads take them from the top on, under the lock, and write them in
@@ -85,20 +87,30 @@ static bool exr_try(ExrWriter *writer, exr_result_t result)
     return false;
 }
 
+static void find_windows(ExrWriter *writer)
+{
+    const Picture *picture = writer->picture;
+    writer->display        = (exr_attr_box2i_t){
+               .max = {.x = (int32_t)picture->width - 1, .y = (int32_t)picture->height - 1}};
+    writer->data = (exr_attr_box2i_t){
+        .min = {.x = (int32_t)picture->crop_x, .y = (int32_t)picture->crop_y},
+        .max = {.x = (int32_t)(picture->crop_x + picture->crop_width) - 1,
+                .y = (int32_t)(picture->crop_y + picture->crop_height) - 1}};
+    if (writer->like) {
+        exr_get_display_window(writer->like, 0, &writer->display);
+        exr_get_data_window(writer->like, 0, &writer->data);
+    }
+}
+
 static bool write_layout(ExrWriter *writer)
 {
-    const Picture   *picture = writer->picture;
-    exr_attr_box2i_t display = {
-        .max = {.x = (int32_t)picture->width - 1, .y = (int32_t)picture->height - 1}};
-    exr_attr_box2i_t data = {.min = {.x = (int32_t)picture->crop_x, .y = (int32_t)picture->crop_y},
-                             .max = {.x = (int32_t)(picture->crop_x + picture->crop_width) - 1,
-                                     .y = (int32_t)(picture->crop_y + picture->crop_height) - 1}};
-    exr_attr_v2f_t   center = {.x = 0, .y = 0};
-    int              part;
+    const Picture *picture = writer->picture;
+    exr_attr_v2f_t center  = {.x = 0, .y = 0};
+    int            part;
     if (!exr_try(writer, exr_add_part(writer->context, "krs", EXR_STORAGE_SCANLINE, &part)) ||
-        !exr_try(writer,
-                 exr_initialize_required_attr(writer->context, 0, &display, &data, 1, &center, 1,
-                                              EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP)))
+        !exr_try(writer, exr_initialize_required_attr(
+                             writer->context, 0, &writer->display, &writer->data, 1, &center, 1,
+                             EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP)))
         return false;
 
     static const exr_pixel_type_t types[] = {[SAMPLE_HALF]  = EXR_PIXEL_HALF,
@@ -121,6 +133,50 @@ static bool write_matrix(ExrWriter *writer, const char *name, const PictureMatri
     return exr_try(writer, exr_attr_set_m44f(writer->context, 0, name, &attribute));
 }
 
+static exr_result_t copy_attribute(exr_context_t to, const exr_attribute_t *a)
+{
+    switch (a->type) {
+    case EXR_ATTR_BOX2I: return exr_attr_set_box2i(to, 0, a->name, a->box2i);
+    case EXR_ATTR_BOX2F: return exr_attr_set_box2f(to, 0, a->name, a->box2f);
+    case EXR_ATTR_CHROMATICITIES:
+        return exr_attr_set_chromaticities(to, 0, a->name, a->chromaticities);
+    case EXR_ATTR_DOUBLE: return exr_attr_set_double(to, 0, a->name, a->d);
+    case EXR_ATTR_FLOAT: return exr_attr_set_float(to, 0, a->name, a->f);
+    case EXR_ATTR_INT: return exr_attr_set_int(to, 0, a->name, a->i);
+    case EXR_ATTR_KEYCODE: return exr_attr_set_keycode(to, 0, a->name, a->keycode);
+    case EXR_ATTR_M33F: return exr_attr_set_m33f(to, 0, a->name, a->m33f);
+    case EXR_ATTR_M44F: return exr_attr_set_m44f(to, 0, a->name, a->m44f);
+    case EXR_ATTR_RATIONAL: return exr_attr_set_rational(to, 0, a->name, a->rational);
+    case EXR_ATTR_STRING: return exr_attr_set_string(to, 0, a->name, a->string->str);
+    case EXR_ATTR_TIMECODE: return exr_attr_set_timecode(to, 0, a->name, a->timecode);
+    case EXR_ATTR_V2I: return exr_attr_set_v2i(to, 0, a->name, a->v2i);
+    case EXR_ATTR_V2F: return exr_attr_set_v2f(to, 0, a->name, a->v2f);
+    case EXR_ATTR_V3I: return exr_attr_set_v3i(to, 0, a->name, a->v3i);
+    case EXR_ATTR_V3F: return exr_attr_set_v3f(to, 0, a->name, a->v3f);
+    default: return EXR_ERR_SUCCESS; /* of the other file's form, or known to few */
+    }
+}
+
+/* Copies what another file says but for its form, which is that of all files here. */
+static bool copy_attributes(ExrWriter *writer)
+{
+    static const char *const own[] = {"name",       "type",       "version",
+                                      "chunkCount", "dataWindow", "displayWindow"};
+    int32_t                  count = 0;
+    bool good = exr_try(writer, exr_get_attribute_count(writer->like, 0, &count));
+    for (int32_t i = 0; i < count && good; i++) {
+        const exr_attribute_t *attribute;
+        bool                   copied = true;
+        good = exr_try(writer, exr_get_attribute_by_index(writer->like, 0, EXR_ATTR_LIST_FILE_ORDER,
+                                                          i, &attribute));
+        for (size_t k = 0; k < sizeof own / sizeof *own && good; k++)
+            copied = copied && strcmp(attribute->name, own[k]) != 0;
+        if (good && copied)
+            good = exr_try(writer, copy_attribute(writer->context, attribute));
+    }
+    return good;
+}
+
 static bool write_attributes(ExrWriter *writer)
 {
     const Picture                  *picture = writer->picture;
@@ -132,6 +188,8 @@ static bool write_attributes(ExrWriter *writer)
                                                .blue_y  = 0.06f,
                                                .white_x = 0.3127f,
                                                .white_y = 0.329f};
+    if (writer->like)
+        return copy_attributes(writer);
     if (!exr_try(writer,
                  exr_attr_set_chromaticities(writer->context, 0, "chromaticities", &rec709)) ||
         !write_matrix(writer, "worldToCamera", picture->world_to_camera) ||
@@ -174,7 +232,7 @@ static void pack_chunk(Worker *worker)
 {
     const Picture         *picture  = worker->chunks->writer->picture;
     exr_encode_pipeline_t *pipeline = &worker->pipeline;
-    size_t                 first    = (size_t)pipeline->chunk.start_y - picture->crop_y;
+    size_t first = (size_t)(pipeline->chunk.start_y - worker->chunks->writer->data.min.y);
     for (int c = 0; c < pipeline->channel_count; c++) {
         exr_coding_channel_info_t *target = &pipeline->channels[c];
         size_t                     i      = 0;
@@ -226,9 +284,9 @@ static exr_result_t write_chunk(Worker *worker)
     const Chunks          *chunks   = worker->chunks;
     exr_context_t          context  = chunks->writer->context;
     exr_encode_pipeline_t *pipeline = &worker->pipeline;
-    uint32_t               y = chunks->writer->picture->crop_y + worker->chunk * chunks->lines;
+    const int              y = chunks->writer->data.min.y + (int)(worker->chunk * chunks->lines);
     exr_chunk_info_t       info;
-    exr_result_t           result = exr_write_scanline_chunk_info(context, 0, (int)y, &info);
+    exr_result_t           result = exr_write_scanline_chunk_info(context, 0, y, &info);
     if (result != EXR_ERR_SUCCESS)
         return result;
     result = worker->begun ? exr_encoding_update(context, 0, &info, pipeline)
@@ -326,12 +384,19 @@ static bool write_chunks(ExrWriter *writer)
 
 bool exr_write(const Picture *picture, OutputFile *file, OutputError *error)
 {
-    ExrWriter                 writer = {.picture = picture, .file = file, .error = error};
-    exr_context_initializer_t setup  = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    setup.error_handler_fn           = ignore_message;
-    setup.user_data                  = &writer;
-    setup.write_fn                   = write_callback;
+    return exr_write_like(picture, NULL, file, error);
+}
 
+bool exr_write_like(const Picture *picture, exr_const_context_t like, OutputFile *file,
+                    OutputError *error)
+{
+    ExrWriter writer = {.picture = picture, .like = like, .file = file, .error = error};
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn          = ignore_message;
+    setup.user_data                 = &writer;
+    setup.write_fn                  = write_callback;
+
+    find_windows(&writer);
     bool done = exr_try(
         &writer, exr_start_write(&writer.context, "picture", EXR_WRITE_FILE_DIRECTLY, &setup));
     if (done) {
