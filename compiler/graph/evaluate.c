@@ -124,10 +124,9 @@ bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values
 /* Finds a number of the frame that OP_row may read and that is not finite. */
 static Node column_infinite(const Graph *graph, const Expr *row, const NodeValue *values)
 {
-    uint32_t             id    = (uint32_t)graph->items[row->operands[0]].number[0];
-    const InstanceTable *table = &graph->instances->tables.items[row_table(id)];
-    const Node          *nodes = column_nodes(graph->instances, table, row_column(id));
-    for (uint32_t i = 0; nodes && i < table->rows; i++)
+    uint32_t    count;
+    const Node *nodes = row_nodes(graph, row, &count);
+    for (uint32_t i = 0; i < count; i++)
         if (!node_value_is_finite(graph, nodes[i], values))
             return nodes[i];
     return NODE_NONE;

@@ -14,8 +14,7 @@ static Node copy_node(Graph *part, const Tape *tape, const Node *copies, Node no
         return graph_copy_leaf(part, e);
     for (int i = 0; i < e->operand_count; i++)
         operands[i] = copies[tape_index(tape, e->operands[i])];
-    return e->op == OP_COMPONENT ? graph_component(part, operands[0], e->index)
-                                 : graph_op(part, e->op, operands);
+    return graph_like(part, e, operands);
 }
 
 /* Copies nodes in their order: of the two that come next on the tape, of the frame and of the

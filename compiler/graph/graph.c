@@ -61,8 +61,6 @@ bool op_has_setting(Op op, int operand)
 const char *graph_op_name(Op op) { return op_info[op].name; }
 const char *op_glsl(Op op) { return op_info[op].glsl; }
 
-static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
-
 /* Cost of one component; of OP rows, of the whole. */
 #define RULES(name, cost, ...) \
     static double cost_of_##name(double n) { return (void)n, (cost); }
@@ -207,10 +205,12 @@ Node graph_parameterised(Graph *graph, GraphType type, const double *numbers, ui
     return node_intern(graph, e);
 }
 
-Node graph_leaf(Graph *graph, Op op)
+Node graph_leaf(Graph *graph, Op op) { return graph_leaf_of(graph, op, 0); }
+
+Node graph_leaf_of(Graph *graph, Op op, uint32_t index)
 {
     assert(op_info[op].type != ANY_TYPE);
-    return graph_indexed_leaf(graph, op, op_info[op].type, 0);
+    return graph_indexed_leaf(graph, op, op_info[op].type, index);
 }
 
 Node graph_indexed_leaf(Graph *graph, Op op, GraphType type, uint32_t index)
@@ -365,6 +365,12 @@ Node graph_component(Graph *graph, Node vector, uint32_t index)
                                    .index         = index,
                                    .operand_count = 1,
                                    .operands      = {vector}});
+}
+
+Node graph_like(Graph *graph, const Expr *e, const Node *operands)
+{
+    return e->op == OP_COMPONENT ? graph_component(graph, operands[0], e->index)
+                                 : graph_op(graph, (Op)e->op, operands);
 }
 
 /* ---- powers ---- */

@@ -26,6 +26,9 @@ typedef enum GraphType {
     TYPE_UINT
 } GraphType;
 
+/* Returns how many numbers a value of a type has. */
+static inline uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
+
 /* The time at which a node's value is known; a node is as late as its latest operand. */
 typedef enum BindingTime { TIME_COMPILE, TIME_FRAME, TIME_POINT } BindingTime;
 
@@ -141,7 +144,9 @@ Node graph_parameterised(Graph *graph, GraphType type, const double *numbers, ui
 /* Copies a leaf of another graph. */
 Node graph_copy_leaf(Graph *graph, const Expr *leaf);
 Node graph_leaf(Graph *graph, Op op); /* one whose type is the same everywhere */
-/* Returns a leaf of point time that is told apart from others by its index. */
+/* These return a leaf of point time that is told apart from others by its index: of the type of its
+   row, and of any. */
+Node graph_leaf_of(Graph *graph, Op op, uint32_t index);
 Node graph_indexed_leaf(Graph *graph, Op op, GraphType type, uint32_t index);
 
 /* These return an operation on as many operands as its row says (asserted, with their types).
@@ -154,6 +159,8 @@ Node graph_op1(Graph *graph, Op op, Node a);
 Node graph_op2(Graph *graph, Op op, Node a, Node b);
 Node graph_op3(Graph *graph, Op op, Node a, Node b, Node c);
 Node graph_op4(Graph *graph, Op op, Node a, Node b, Node c, Node d);
+/* Returns the operation of an expression, which may be of another graph, on other operands. */
+Node graph_like(Graph *graph, const Expr *e, const Node *operands);
 /* Returns component `index` (0..3) of a vector; component 0 of a FLOAT is itself. */
 Node graph_component(Graph *graph, Node vector, uint32_t index);
 /* Returns base ^ exponent: by multiplication where the exponent is a small constant integer, by

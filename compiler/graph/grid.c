@@ -36,6 +36,17 @@ double distance_to_box(const Box *box, const double point[3])
     return sqrt(square);
 }
 
+double distance_of_boxes(const Box *box, const Range *sides)
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        const Range  axis = box->axis[k];
+        const double away = max2(max2(axis.low - sides[k].high, sides[k].low - axis.high), 0);
+        square += away * away;
+    }
+    return sqrt(square) * (1 - 1e-12);
+}
+
 const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
                           double *clearance)
 {

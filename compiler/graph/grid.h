@@ -36,9 +36,16 @@ const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *cou
                           double *clearance);
 
 size_t grid_cell_count(const Grid *grid);
+/* Returns the number of the cell at a place along each axis. */
+static inline size_t grid_cell_number(const Grid *grid, const uint32_t at[3])
+{
+    return ((size_t)at[2] * grid->cells[1] + at[1]) * grid->cells[0] + at[0];
+}
 
 /* Tells how far a point is from a box. */
 double distance_to_box(const Box *box, const double point[3]);
+/* Tells how far a box is from one with these three sides, at least. */
+double distance_of_boxes(const Box *box, const Range *sides);
 
 /* The instances that are asked for at once: bit i % 64 of bits[i / 64] tells whether instance first
    + i is near a point. */

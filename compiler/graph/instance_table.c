@@ -89,7 +89,7 @@ void hand_on_instances(Graph *to, const Graph *from, const Node *all, Node *root
 
 static void keep_grid(Grid *grid, Arena *arena)
 {
-    size_t cells    = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    size_t cells    = grid_cell_count(grid);
     grid->instances = COPY_ITEMS(arena, grid->instances, grid->first[cells]);
     grid->first     = COPY_ITEMS(arena, grid->first, cells + 1);
     grid->clearance = COPY_ITEMS(arena, grid->clearance, cells);
@@ -164,17 +164,21 @@ const Node *column_nodes(const Instances *instances, const InstanceTable *table,
     return instances->frame_numbers.items + table->frame_columns[column];
 }
 
+const Node *row_nodes(const Graph *graph, const Expr *row, uint32_t *count)
+{
+    const uint32_t       id    = (uint32_t)graph->items[row->operands[0]].number[0];
+    const InstanceTable *table = &graph->instances->tables.items[row_table(id)];
+    const Node          *nodes = column_nodes(graph->instances, table, row_column(id));
+    *count                     = nodes ? table->rows : 0;
+    return nodes;
+}
+
 /* ---- nodes ---- */
 
 Node graph_instance_leaf(Graph *graph, Op op, uint32_t table_number)
 {
-    static const GraphType types[OP_COUNT] = {[OP_INSTANCE_POINT]     = TYPE_VEC3,
-                                              [OP_INSTANCE_NORMAL]    = TYPE_VEC3,
-                                              [OP_INSTANCE_FOOTPRINT] = TYPE_FLOAT,
-                                              [OP_INSTANCE_THRESHOLD] = TYPE_FLOAT,
-                                              [OP_INSTANCE_ROW]       = TYPE_UINT};
-    assert(types[op] != 0);
-    return graph_indexed_leaf(graph, op, types[op], table_number);
+    assert(is_of_instances(op) && op != OP_STATE);
+    return graph_leaf_of(graph, op, table_number);
 }
 
 Node graph_state(Graph *graph, GraphType type, uint32_t function, uint32_t state)

@@ -104,17 +104,17 @@ typedef struct InstanceFunction {
     uint32_t  table_number; /* index of the table */
     GraphType type;         /* of the result */
     bool      clear;        /* the result is at most the clearance: it is a distance */
-    bool either; /* the instance nearest to 0 decides, the first of several, and the result is at
-                          most as far from 0 as the clearance, which has a sign: where no
-                          instance is in a cell, that of all points in it */
-    bool
-        joins; /* behind the bodies is an operation on all states, in their order: the result, or, of
-                   a VEC4 and with `listed`, what is at most the clearance.  Then the
-                   result is state `listed`, which is what it began as where that is not so,
-                   but for a first number of state 0: the clearance */
-    bool sums; /* the result is the first state less the third times the logarithm of the second */
-    bool
-        ends; /* and shaders add up the fourth state along lists with tails, as far as that counts */
+    /* The instance nearest to 0 decides, the first of several.  The result is at most as far from 0
+       as the clearance, which has a sign: where no instance is in a cell, that of all its points. */
+    bool either;
+    /* Behind the bodies is an operation on all states, in their order: the result, or, of a VEC4 and
+       with `listed`, what is at most the clearance.  Then the result is state `listed`, which is
+       what it began as where that is not so, but for a first number of state 0: the clearance. */
+    bool joins;
+    /* The result is the first state less the third times the logarithm of the second. */
+    bool sums;
+    /* Of `sums`: shaders add up the fourth state along lists with tails, as far as that counts. */
+    bool          ends;
     InstanceState states[MAX_INSTANCE_STATES];
     uint32_t      state_count;
     uint32_t      listed;   /* of `joins`; NOT_LISTED: the operation is the result */
@@ -164,6 +164,9 @@ bool relocates_along(const InstanceTable *table, int axis);
 /* Returns the nodes of a column, one for each row; NULL: its numbers are known. */
 const Node *column_nodes(const Instances *instances, const InstanceTable *table, uint32_t column);
 
+/* Returns the nodes of the frame that OP_row may read, *count of them. */
+const Node *row_nodes(const Graph *graph, const Expr *row, uint32_t *count);
+
 /* ---- Leaves and calls; `table_number` is the index of the table, `function` that of the function ---- */
 
 Node graph_instance_leaf(Graph *graph, Op op, uint32_t table_number); /* but OP_STATE */
@@ -183,6 +186,11 @@ static inline uint32_t row_column(uint32_t id) { return id % MAX_TABLE_COLUMNS; 
 /* Returns the function and its state behind the index of OP_STATE. */
 static inline uint32_t function_of(uint32_t index) { return index / MAX_INSTANCE_STATES; }
 static inline uint32_t state_of(uint32_t index) { return index % MAX_INSTANCE_STATES; }
+/* Returns the number of the function that a call names. */
+static inline uint32_t called_function(const Graph *graph, const Expr *call)
+{
+    return (uint32_t)graph->items[call->operands[0]].number[0];
+}
 /* Tells how many bodies a function has. */
 static inline uint32_t body_count(const InstanceFunction *function)
 {

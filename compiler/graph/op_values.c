@@ -146,15 +146,6 @@ static NodeValue evaluate_cell_polar(const NodeValue *o, uint32_t size)
     return vector3(c * p[0] + s * p[2], p[1], c * p[2] - s * p[0]);
 }
 
-/* Returns the same integer arithmetic as in print/glsl/identity.glsl; every input gives another
-   output. */
-static uint32_t scramble(uint32_t x)
-{
-    x = (x ^ (x >> 16)) * 0x7feb352du;
-    x = (x ^ (x >> 15)) * 0x846ca68bu;
-    return x ^ (x >> 16);
-}
-
 /*
  * Gradient noise (Perlin, "Improving noise", 2002): at each point of the lattice of whole numbers
  * stands a linear function, 0 there, in one of twelve directions (eight in the plane); between

@@ -11,8 +11,6 @@
 #include "compiler/base/elementary.h"
 #include "compiler/graph/graph.h"
 
-static inline uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
-
 /* The value of a MAP row for `size` components of its operands; zero has no sign.  NULL: it is no such row. */
 typedef void MapValue(const double *a, const double *b, const double *c, uint32_t size, double *to);
 extern MapValue *const map_values[OP_COUNT];
@@ -27,6 +25,14 @@ static inline bool guard_decides(double bound, double least, double far)
     return bound >= fmin(least, far) && bound > fmin(far, 0);
 }
 
+/* Mixes the bits of a number, as print/glsl/identity.glsl does; every input gives another output. */
+static inline uint32_t scramble(uint32_t x)
+{
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
 /* ---- the `value` column of MAP rows ---- */
 
 static inline double value_sign(double a) { return (a > 0) - (a < 0); }
@@ -39,7 +45,7 @@ static inline double value_mod(double a, double b)
     return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
 }
 
-/* Returns the sign of a zero means nothing here. */
+/* The sign of a zero means nothing in these two. */
 static inline double value_pow(double a, double b) { return real_pow(a + 0.0, b); }
 static inline double value_atan2(double a, double b) { return real_atan2(a + 0.0, b + 0.0); }
 

@@ -33,6 +33,15 @@ void box_halve(Box box, Box halves[2])
     halves[0].axis[axis].high = halves[1].axis[axis].low = middle;
 }
 
+double range_cut(Range a)
+{
+    if (a.low > -HUGE_VAL && a.high < HUGE_VAL)
+        return a.low / 2 + a.high / 2;
+    if (a.low == -HUGE_VAL && a.high == HUGE_VAL)
+        return 0;
+    return a.high == HUGE_VAL ? fmax(2 * a.low, 1) : fmin(2 * a.high, -1);
+}
+
 /* ---- directed rounding ---- */
 
 /* Returns the next number below.  Those of one sign are in the order of their bits. */

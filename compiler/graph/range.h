@@ -25,6 +25,8 @@ typedef struct Box {
 int box_longest_axis(const Box *box);
 /* Cuts a box in the middle of that axis: the half of lesser coordinates comes first. */
 void box_halve(Box box, Box halves[2]);
+/* Returns where to cut a range in two: in the middle, or further and further out where there is none. */
+double range_cut(Range a);
 
 #define ANYTHING ((Range){-HUGE_VAL, HUGE_VAL})
 

@@ -24,13 +24,11 @@ static Node substitute_leaf(const Expr *e, Node node, Substitution with)
     return other == NODE_NONE ? node : other;
 }
 
-/* Returns the operation on other operands.  The graph grows meanwhile, so the expression is handed
-   over as a copy. */
-static Node with_operands(Graph *graph, Expr e)
+/* Returns the node of an operation whose operands were replaced. */
+static Node with_operands(Graph *graph, const Expr *e)
 {
-    graph->here = e.span;
-    return e.op == OP_COMPONENT ? graph_component(graph, e.operands[0], e.index)
-                                : graph_op(graph, e.op, e.operands);
+    graph->here = e->span;
+    return graph_like(graph, e, e->operands);
 }
 
 static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tape,
@@ -42,7 +40,7 @@ static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tap
         changed       = changed || copy != e.operands[i];
         e.operands[i] = copy;
     }
-    return changed ? with_operands(graph, e) : node;
+    return changed ? with_operands(graph, &e) : node;
 }
 
 /* Copies what a tape has; copies of leaves are given. */
@@ -157,7 +155,7 @@ static Node substitute_operation(Graph *graph, const Window *window, Node node, 
         changed       = changed || copy != e.operands[k];
         e.operands[k] = copy;
     }
-    return changed ? with_operands(graph, e) : node;
+    return changed ? with_operands(graph, &e) : node;
 }
 
 static Node substitute_in_window(Graph *graph, Window *window, Node root, Substitution with)

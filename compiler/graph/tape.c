@@ -94,10 +94,9 @@ static void sort_nodes(NodeSet *set, Arena *arena)
 /* Adds the frame's numbers in the column that OP_row reads. */
 static void add_column(NodeSet *set, const Graph *graph, const Expr *row, Arena *arena)
 {
-    uint32_t             id    = (uint32_t)graph->items[row->operands[0]].number[0];
-    const InstanceTable *table = &graph->instances->tables.items[row_table(id)];
-    const Node          *nodes = column_nodes(graph->instances, table, row_column(id));
-    for (uint32_t i = 0; nodes && i < table->rows; i++)
+    uint32_t    count;
+    const Node *nodes = row_nodes(graph, row, &count);
+    for (uint32_t i = 0; i < count; i++)
         set_add(set, nodes[i], arena);
 }
 
@@ -119,12 +118,6 @@ static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_co
 }
 
 /* ---- instance functions ---- */
-
-/* Returns the number of the function that a call names. */
-static uint32_t called_function(const Graph *graph, const Expr *call)
-{
-    return (uint32_t)graph->items[call->operands[0]].number[0];
-}
 
 /* Gives functions that are called here a tape, which is still empty; their numbers are below `end`. */
 static void note_calls(Tape *functions, size_t end, const Graph *graph, const Node *nodes,
@@ -275,7 +268,7 @@ static double call_flops(const Tape *tape, uint32_t function, bool separate)
 {
     const InstanceTable *table = table_of(tape, function);
     const Grid          *grid  = &table->cells;
-    size_t               cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    size_t               cells = grid_cell_count(grid);
     double               mean  = (double)grid->first[cells] / (double)cells;
     return (separate ? table->rows : mean + 1) * flops_of(&tape->functions[function], separate);
 }

@@ -32,8 +32,8 @@ static bool is_timed_table(const Instances *instances, const InstanceTable *tabl
 
 static bool is_timed_call(const Graph *graph, const Expr *call, const bool *timed)
 {
-    const uint32_t          number   = (uint32_t)graph->items[call->operands[0]].number[0];
-    const InstanceFunction *function = &graph->instances->functions.items[number];
+    const InstanceFunction *function =
+        &graph->instances->functions.items[called_function(graph, call)];
     return any_timed(timed, graph->instances->bodies.items + function->first_body,
                      body_count(function)) ||
            is_timed_table(graph->instances, &graph->instances->tables.items[function->table_number],

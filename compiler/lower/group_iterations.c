@@ -10,8 +10,6 @@
 #include "compiler/graph/instances/iterations.h"
 #include "compiler/lower/instance_group.h"
 
-static uint32_t elements(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
-
 static bool of_one_loop(const Shape *a, const Shape *b)
 {
     return a->iterated == b->iterated && (a->shown > 0) == (b->shown > 0);
@@ -122,7 +120,7 @@ static bool fill_iterated(const PartFinder *finder, InstanceGroup *group, const 
     for (uint32_t i = 0; i < template->slot_count; i++) {
         if (!iterations(t, template->slots[i]))
             continue;
-        for (uint32_t k = 0; k < elements(template->slot_types[i]); k++)
+        for (uint32_t k = 0; k < components(template->slot_types[i]); k++)
             if (!fill_element(&group->elements[4 * i + k], numbers++, width, count, scratch))
                 return false;
         template->slots[i] = graph_in_iteration(graph, template->slots[i], t->iteration->iteration,

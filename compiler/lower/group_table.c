@@ -8,8 +8,7 @@
 
 static uint32_t elements(const InstanceGroup *group, uint32_t slot)
 {
-    GraphType type = group->template->slot_types[slot];
-    return type <= TYPE_VEC4 ? (uint32_t)type : 1;
+    return components(group->template->slot_types[slot]);
 }
 
 /* A number in the table, or the node of the frame that it is. */

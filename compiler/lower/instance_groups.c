@@ -318,8 +318,8 @@ Lowered lower_groups(Lowering *l, PartJoin *join, LowerContext context)
     Lowered      all   = lowered_nothing;
     JoinedGroups found = find_joined_groups(l, join, context);
     for (uint32_t i = 0; i < found.count; i++) {
-        Lowered table_number = group_lower(&found.groups[i], &found.join, l->surfaces, context);
-        all                  = join_two(l, join->csg_node->blend, all, table_number);
+        Lowered group = group_lower(&found.groups[i], &found.join, l->surfaces, context);
+        all           = join_two(l, join->csg_node->blend, all, group);
     }
     return all;
 }

@@ -190,14 +190,10 @@ static double width_of(Range range) { return range.high - range.low; }
 static void halve_cells(Cells *cells)
 {
     for (size_t i = 0; i < cells->count; i++) {
-        Box *low = &cells->boxes[i], *high = &cells->boxes[cells->count + i];
-        int  axis = 0;
-        for (int k = 1; k < 3; k++)
-            if (width_of(low->axis[k]) > width_of(low->axis[axis]))
-                axis = k;
-        *high                = *low;
-        low->axis[axis].high = high->axis[axis].low = 0.5 *
-                                                      (low->axis[axis].low + low->axis[axis].high);
+        Box halves[2];
+        box_halve(cells->boxes[i], halves);
+        cells->boxes[i]                = halves[0];
+        cells->boxes[cells->count + i] = halves[1];
     }
     cells->count *= 2;
 }

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
-
 /* ---- the evaluator ---- */
 
 NodeValue evaluate_plainly(const Graph *graph, Node node, const Place *place)

@@ -8,8 +8,6 @@
 #include "compiler/graph/evaluate.h"
 #include "tests/support/bench.h"
 
-uint32_t components(GraphType type);
-
 /* ---- the evaluator ---- */
 
 typedef struct Place {

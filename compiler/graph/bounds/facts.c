@@ -13,8 +13,6 @@
 #include "compiler/graph/range.h"
 #include "compiler/graph/texture.h"
 
-static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
-
 /* ---- facts of nodes ---- */
 
 /* The needed nodes for which facts are computed, each with its index in `facts`. */
@@ -152,28 +150,6 @@ static double cell_slope(const Analysis *analysis, Node root, Box box)
     return analysis_fact(analysis, root)->slope;
 }
 
-/* Returns a place to cut: the middle, or further and further out where there is none. */
-static double range_cut(Range a)
-{
-    if (a.low > -HUGE_VAL && a.high < HUGE_VAL)
-        return a.low / 2 + a.high / 2;
-    if (a.low == -HUGE_VAL && a.high == HUGE_VAL)
-        return 0;
-    return a.high == HUGE_VAL ? fmax(2 * a.low, 1) : fmin(2 * a.high, -1);
-}
-
-static int widest_axis(Box box)
-{
-    int    widest = 0;
-    double width  = -1;
-    for (int i = 0; i < 3; i++)
-        if (box.axis[i].high - box.axis[i].low > width) {
-            width  = box.axis[i].high - box.axis[i].low;
-            widest = i;
-        }
-    return widest;
-}
-
 /* Sinks a cell from the top of the heap to its position. */
 static void heap_sink(Cell *heap, size_t count, Cell cell)
 {
@@ -219,7 +195,7 @@ static void heap_refine(const Analysis *analysis, Node root, Cell *heap, size_t 
         if ((count > enough && worst.slope < HUGE_VAL) || !(worst.slope > 0) ||
             !cutting_helps(analysis, root, worst))
             return;
-        int    axis                   = widest_axis(worst.box);
+        int    axis                   = box_longest_axis(&worst.box);
         double cut                    = range_cut(worst.box.axis[axis]);
         Cell   halves[2]              = {worst, worst};
         halves[0].box.axis[axis].high = cut;

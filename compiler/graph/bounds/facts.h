@@ -59,7 +59,7 @@ RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena 
 /* Parameters have these very values from now on, as in graph_facts. */
 void range_task_set(const RangeTask *task, const double (*parameters)[4]);
 void range_task_run(const RangeTask *task, Box box);
-/* Return the values of a FLOAT that a root needs, over the box of the last run, and how fast it changes there. */
+/* These return the values of a FLOAT that a root needs, over the box of the last run, and how fast it changes there. */
 Range  range_task_value(const RangeTask *task, Node node);
 double range_task_slope(const RangeTask *task, Node node);
 

@@ -28,18 +28,10 @@ static void leaf_range(const Graph *graph, const Expr *e, Range *result)
     const GraphParameter *p = e->op == OP_PARAMETER && e->index < graph->parameters.count
                                   ? &graph->parameters.items[e->index]
                                   : NULL;
-    for (uint32_t i = 0; i < type_size(e->type); i++)
+    for (uint32_t i = 0; i < components(e->type); i++)
         result[i] = e->op != OP_PARAMETER ? range_of(e->number[i])
                     : p                   ? (Range){p->low[i], p->high[i]}
                                           : ANYTHING;
-}
-
-static bool is_defined_nowhere(Op op, const Range *divisor, uint32_t size)
-{
-    for (uint32_t i = 0; op == OP_div && i < size; i++)
-        if (range_is_zero(divisor[i]))
-            return true;
-    return false;
 }
 
 /* Finds the range of a MAP row, and of what vectors are made of; false: it is another one. */
@@ -67,10 +59,10 @@ static void range_by_rule(const Graph *graph, const Expr *e, Op op, Range *const
     Fact      operands[MAX_OPERANDS] = {0};
     for (uint32_t k = 0; k < e->operand_count; k++) {
         types[k] = graph->items[e->operands[k]].type;
-        memcpy(operands[k].value, o[k], type_size(types[k]) * sizeof **o);
+        memcpy(operands[k].value, o[k], components(types[k]) * sizeof **o);
     }
     const Fact fact = op_fact(op, e->type, e->index, types, operands, e->number);
-    memcpy(result, fact.value, type_size(e->type) * sizeof *result);
+    memcpy(result, fact.value, components(e->type) * sizeof *result);
 }
 
 /* Finds the range of a node whose operands have theirs. */
@@ -87,8 +79,8 @@ static void find_range(const Graph *graph, Node node, Range *result)
     /* Rules do not know that two operands are the same number; a square is not negative. */
     const bool     same = e->operand_count == 2 && e->operands[0] == e->operands[1];
     const Op       op   = same && e->op == OP_mul ? OP_square : (Op)e->op;
-    const uint32_t size = type_size(e->type);
-    if (is_defined_nowhere(op, o[1 % e->operand_count], size))
+    const uint32_t size = components(e->type);
+    if (op == OP_div && divides_by_zero(o[1], size))
         for (uint32_t i = 0; i < size; i++)
             result[i] = ANYTHING;
     else if (range_rule(op))
@@ -127,7 +119,7 @@ static void keep_range(const Graph *graph, Node node)
         fixed = fixed && ranges[e->operands[k]] != &varies;
     if (graph->frame_ranges->used <= node)
         graph->frame_ranges->used = node + 1;
-    Range *range = fixed ? arena_new_array(graph->arena, Range, type_size(e->type)) : &varies;
+    Range *range = fixed ? arena_new_array(graph->arena, Range, components(e->type)) : &varies;
     if (fixed)
         find_range(graph, node, range);
     ranges[node] = range;

@@ -42,9 +42,10 @@ static Fact fact_vector(const RuleInput *input)
 static double slope_product(const RuleInput *input)
 {
     const Fact *u = &input->operands[0], *v = &input->operands[1];
-    double left = product_upward(length_range(u->value, type_size(input->types[0])).high, v->slope);
-    double right = product_upward(length_range(v->value, type_size(input->types[1])).high,
-                                  u->slope);
+    double      left  = product_upward(length_range(u->value, components(input->types[0])).high,
+                                       v->slope);
+    double      right = product_upward(length_range(v->value, components(input->types[1])).high,
+                                       u->slope);
     return sum_upward(left, right);
 }
 
@@ -244,11 +245,11 @@ static Rule *const rules[OP_COUNT] = {
 #include "compiler/graph/ops.def"
 };
 
-/* Quotients by 0 all over the box: of 0, too, whose derivatives make the slope seem to be 0. */
-static bool is_defined_nowhere(const RuleInput *input)
+/* Of quotients of 0, too: their derivatives make the slope seem to be 0. */
+bool divides_by_zero(const Range *divisor, uint32_t size)
 {
-    for (uint32_t i = 0; input->op == OP_div && i < input->size; i++)
-        if (range_is_zero(input->operands[1].value[i]))
+    for (uint32_t i = 0; i < size; i++)
+        if (range_is_zero(divisor[i]))
             return true;
     return false;
 }
@@ -258,12 +259,13 @@ Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, cons
 {
     RuleInput input = {
         .op = op, .type = type, .index = index, .types = types, .operands = operands};
-    input.size = type_size(type);
-    if (op != OP_CONSTANT && op != OP_COMPONENT && type_size(types[0]) > input.size)
-        input.size = type_size(types[0]);
-    Fact fact = op == OP_CONSTANT            ? fact_constant(&input, constant)
-                : is_defined_nowhere(&input) ? fact_unknown(input.size)
-                : rules[op]                  ? rules[op](&input)
-                                             : fact_of_numbers(&input);
-    return fact_agreed(fact, type_size(type));
+    input.size = components(type);
+    if (op != OP_CONSTANT && op != OP_COMPONENT && components(types[0]) > input.size)
+        input.size = components(types[0]);
+    const bool nowhere = op == OP_div && divides_by_zero(operands[1].value, input.size);
+    Fact       fact    = op == OP_CONSTANT ? fact_constant(&input, constant)
+                         : nowhere         ? fact_unknown(input.size)
+                         : rules[op]       ? rules[op](&input)
+                                           : fact_of_numbers(&input);
+    return fact_agreed(fact, components(type));
 }

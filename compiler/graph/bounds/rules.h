@@ -22,8 +22,6 @@ typedef struct RuleInput {
 /* The fact of the result. */
 typedef Fact Rule(const RuleInput *input);
 
-static inline uint32_t type_size(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
-
 /* ---- calculus.c ---- */
 
 /* One component with its gradient. */
@@ -69,6 +67,9 @@ Fact fact_agreed(Fact fact, uint32_t size);
 
 /* Returns a truth value of so many operands: 1, 0, or, where it may jump, both. */
 Fact fact_of_truth(const RuleInput *input, uint32_t count, Range value);
+
+/* Tells whether quotients by these ranges are numbers nowhere in the box: some divisor is 0. */
+bool divides_by_zero(const Range *divisor, uint32_t size);
 
 /* ---- rules of rows ---- */
 

@@ -208,7 +208,7 @@ static bool fractal_middle(const RuleInput *input, uint32_t others, double *midd
                                                      sum_upward(operands[0].v[i], -at.low)));
     }
     for (uint32_t i = 1; i <= others; i++)
-        for (uint32_t k = 0; k < type_size(input->types[i]); k++) {
+        for (uint32_t k = 0; k < components(input->types[i]); k++) {
             if (!range_is_single(input->operands[i].value[k]))
                 return false;
             operands[i].v[k] = input->operands[i].value[k].low;

@@ -8,13 +8,13 @@
 #include "compiler/graph/lanes/lanes.h"
 
 typedef struct GridBlend {
-    Op     op; /* a smooth minimum of which the slope is 1 (blends.def): of two, or of eight and */
-    bool   shares;           /* they share the result; not of those that make a sum of powers, */
-    bool   sums;             /* which is what all instances make, */
-    double width;            /* and its width, */
-    double steps;            /* and of some their number */
-    const LaneTape *tape;    /* its output is the distance of an instance, */
-    double         *scalars; /* with these scalars: tape->scalar_count for each */
+    Op     op; /* a smooth minimum whose slope is 1 (blends.def): of two, or of eight if `shares` */
+    bool   shares; /* near instances share the result */
+    bool   sums;   /* all instances make one sum of powers */
+    double width;
+    double steps;            /* their number, of blends that have some */
+    const LaneTape *tape;    /* its output is the distance of an instance */
+    double         *scalars; /* of each instance: tape->scalar_count */
     double          slope;   /* of all distances */
     bool            fades;   /* as blends.def says, and only distances count */
     bool            sifted; /* listed instances are all that count: no clearance ends their cells */

@@ -22,7 +22,7 @@
 /* The parts that the two halvings may leave out of what all may. */
 static const double shares[2] = {0.25, 0.5};
 
-/* The memory of one processor: for each instance of the list at hand */
+/* The memory of one processor, with an element for each instance of the list at hand. */
 typedef struct Desk {
     HalvingDesk halving;
     uint8_t    *needs[2]; /* which parts need it, of a cell and of one of its parts */
@@ -39,15 +39,9 @@ typedef struct Refiner {
     Desk        desks[MAX_PARTS];
 } Refiner;
 
-static size_t coarse_cell(const Refiner *r, const uint32_t *cell)
-{
-    return ((size_t)cell[2] * r->from->cells[1] + cell[1]) * r->from->cells[0] + cell[0];
-}
-
 static size_t first_refined(const Refiner *r, const uint32_t *cell)
 {
-    return GRID_REFINED_ALONG *
-           (((size_t)cell[2] * r->to->cells[1] + cell[1]) * r->to->cells[0] + cell[0]);
+    return GRID_REFINED_ALONG * grid_cell_number(r->to, cell);
 }
 
 static void set_clearance(const Refiner *r, const uint32_t *cell, int number, double clearance)
@@ -88,7 +82,7 @@ static void refine_cell(const Refiner *r, const Desk *desk, const uint32_t *cell
                         const uint32_t *all)
 {
     const Grid     *from   = r->from;
-    size_t          number = coarse_cell(r, cell);
+    size_t          number = grid_cell_number(from, cell);
     const uint32_t *first  = &from->first[number];
     Halving         h      = {.size      = from->size,
                               .instances = from->instances + first[0],
@@ -136,7 +130,7 @@ static void fill_cell(const Refiner *r, const Desk *desk, const uint32_t *cell)
 {
     double middles[GRID_REFINED][3], distances[GRID_REFINED];
     find_middles(r, cell, middles);
-    const uint32_t *list  = &r->from->first[coarse_cell(r, cell)];
+    const uint32_t *list  = &r->from->first[grid_cell_number(r->from, cell)];
     uint32_t       *first = r->to->first + first_refined(r, cell);
     for (uint32_t i = list[0]; i < list[1]; i++) {
         uint32_t instance = r->from->instances[i];

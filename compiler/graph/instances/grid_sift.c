@@ -29,10 +29,10 @@ enum { SHARED_LEVELS = 2 };
 /* The memory of one processor, and its results. */
 typedef struct Sieve {
     HalvingDesk desk;
-    uint8_t
-        *needs[MAX_LEVELS]; /* of the cube of each level that is at hand, which parts need it, */
-    uint32_t *lists[MAX_LEVELS]; /* and its list */
-    uint32_t *entries;           /* of cells, one after the other */
+    /* Of the cube of each level that is at hand: its list, and which parts need each instance. */
+    uint32_t *lists[MAX_LEVELS];
+    uint8_t  *needs[MAX_LEVELS];
+    uint32_t *entries; /* of cells, one after the other */
     size_t    count, evaluated;
     uint32_t  dealt; /* cubes below the shared levels, so far */
     bool      full;  /* it would take too long */
@@ -63,11 +63,6 @@ typedef struct Cube {
     uint32_t count;   /* of its list */
 } Cube;
 
-static size_t cell_number(const Grid *grid, const uint32_t cell[3])
-{
-    return ((size_t)cell[2] * grid->cells[1] + cell[1]) * grid->cells[0] + cell[0];
-}
-
 static bool is_outside(const Grid *grid, const Cube *cube)
 {
     for (int k = 0; k < 3; k++)
@@ -78,7 +73,7 @@ static bool is_outside(const Grid *grid, const Cube *cube)
 
 static void set_list(const Sifter *s, Sieve *sieve, const Cube *cube)
 {
-    size_t cell = cell_number(s->grid, cube->cell);
+    size_t cell = grid_cell_number(s->grid, cube->cell);
     if (sieve->count + cube->count > MAX_ENTRIES) {
         sieve->full = true;
         return;
@@ -102,7 +97,7 @@ static void empty_cube(const Sifter *s, const Cube *cube, double clearance)
     for (cell[2] = cube->cell[2]; cell[2] < end[2]; cell[2]++)
         for (cell[1] = cube->cell[1]; cell[1] < end[1]; cell[1]++)
             for (cell[0] = cube->cell[0]; cell[0] < end[0]; cell[0]++)
-                s->grid->clearance[cell_number(s->grid, cell)] = (float)clearance;
+                s->grid->clearance[grid_cell_number(s->grid, cell)] = (float)clearance;
 }
 
 /* Returns a part of a cube, and its list. */

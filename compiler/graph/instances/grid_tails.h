@@ -13,7 +13,7 @@
 /* Tells whether sums are numbers of single precision anywhere in a cell of this size. */
 bool grid_may_have_tails(const GridBlend *blend, double size);
 
-/* Lists and tails of a refined grid; `tails` has the distances of instances in the middles of cells before.  Single precision
+/* Sorts the lists of a refined grid and finds its tails; `tails` has the distances of instances in the middles of cells before.  Single precision
    may find a point of a cell so far outside. */
 void grid_find_tails(Grid *refined, const GridBlend *blend, double pad, Arena *arena,
                      Arena *scratch);

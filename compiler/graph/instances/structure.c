@@ -464,8 +464,7 @@ static Node copy_node(Graph *graph, const TemplateCopy *copy, const TemplateNode
     for (int i = 0; i < e.operand_count; i++)
         e.operands[i] = copy_use(copy, made->uses[i]);
     graph->here = e.span;
-    return e.op == OP_COMPONENT ? graph_component(graph, e.operands[0], e.index)
-                                : graph_op(graph, (Op)e.op, e.operands);
+    return graph_like(graph, &e, e.operands);
 }
 
 void template_copy(Graph *graph, const Template *template, const Node *slots, const LeafPair *pairs,

@@ -129,19 +129,6 @@ size_t cell_cost(const CellTape *tape)
     return cost;
 }
 
-/* ---- how far instances are ---- */
-
-static double distance_of_boxes(const Box *box, const CellView *view)
-{
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        const double off = max2(
-            max2(box->axis[k].low - view->at[k].high, view->at[k].low - box->axis[k].high), 0);
-        square += off * off;
-    }
-    return sqrt(square) * (1 - 1e-12);
-}
-
 /* ---- in all lanes ---- */
 
 static void fill(float *row, float number)
@@ -247,9 +234,10 @@ static void visit_nearest(const CellCall *call, NodeValue *values, const CellVie
     uint32_t             first = 0;
     for (uint32_t i = 0; i < call->instance_count; i++) {
         const uint32_t instance = call->instances[i];
-        least[i] = table->arcs ? instance_arc_min_distance(&table->arcs[instance], middle) - radius
-                               : distance_of_boxes(&table->bounds[instance], view) / table->stretch;
-        first    = least[i] < least[first] ? i : first;
+        least[i]                = table->arcs
+                                      ? instance_arc_min_distance(&table->arcs[instance], middle) - radius
+                                      : distance_of_boxes(&table->bounds[instance], view->at) / table->stretch;
+        first                   = least[i] < least[first] ? i : first;
     }
     visit(call, values, call->instances[first], inner, states, run);
     double farthest = farthest_of(states[0], size);
@@ -341,7 +329,7 @@ bool cell_find_instances(const CellCall *call, const CellView *view, uint32_t *i
     for (uint32_t i = 0; i < all; i++) {
         const uint32_t instance = call->instances ? call->instances[i] : i;
         if (table->arcs ? instance_arc_min_distance(&table->arcs[instance], middle) > farthest
-                        : distance_of_boxes(&boxes[instance], view) > reach)
+                        : distance_of_boxes(&boxes[instance], view->at) > reach)
             continue;
         if (*count == most)
             return false;

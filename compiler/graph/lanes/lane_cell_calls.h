@@ -9,15 +9,9 @@
 
 #include "compiler/graph/fractal.h"
 #include "compiler/graph/lanes/lane_math.h"
+#include "compiler/graph/op_values.h"
 
 /* ---- numbers of copies ---- */
-
-static inline uint32_t lane_scramble(uint32_t x)
-{
-    x = (x ^ (x >> 16)) * 0x7feb352du;
-    x = (x ^ (x >> 15)) * 0x846ca68bu;
-    return x ^ (x >> 16);
-}
 
 static inline float lane_push_id(float a, float b)
 {
@@ -26,12 +20,12 @@ static inline float lane_push_id(float a, float b)
 
 static inline float lane_hash_id(float a, float b)
 {
-    return lane_bits(lane_scramble(lane_bits_of(a) + (b != 0 ? 0x9e3779b9u : 0x7f4a7c15u)));
+    return lane_bits(scramble(lane_bits_of(a) + (b != 0 ? 0x9e3779b9u : 0x7f4a7c15u)));
 }
 
 static inline float lane_join_id(float a, float b)
 {
-    return lane_bits(lane_scramble(lane_scramble(lane_bits_of(a)) + lane_bits_of(b)));
+    return lane_bits(scramble(scramble(lane_bits_of(a)) + lane_bits_of(b)));
 }
 
 static inline float lane_to_uint(float a)
@@ -41,7 +35,7 @@ static inline float lane_to_uint(float a)
 
 static inline float lane_id_unit(float a)
 {
-    return (float)(int32_t)(lane_scramble(lane_bits_of(a)) >> 8) * (1.0f / 16777216);
+    return (float)(int32_t)(scramble(lane_bits_of(a)) >> 8) * (1.0f / 16777216);
 }
 
 /* ---- noise ---- */
@@ -59,7 +53,7 @@ static inline float lane_lattice(float p, uint32_t *cell)
     return clamped - whole;
 }
 
-static inline uint32_t lane_lattice_bits(uint32_t x) { return lane_scramble(x) >> 28; }
+static inline uint32_t lane_lattice_bits(uint32_t x) { return scramble(x) >> 28; }
 
 static inline float lane_between(float a, float b, float t) { return a + (b - a) * t; }
 
@@ -80,7 +74,7 @@ static inline float lane_noise2(float x, float y)
 {
     uint32_t       cell_x, cell_y;
     const float    f = lane_lattice(x, &cell_x), g = lane_lattice(y, &cell_y), t = lane_fade(g);
-    const uint32_t a = lane_scramble(cell_x) + cell_y, b = lane_scramble(cell_x + 1) + cell_y;
+    const uint32_t a = scramble(cell_x) + cell_y, b = scramble(cell_x + 1) + cell_y;
     const float    low  = lane_between(lane_slope_2(lane_lattice_bits(a), f, g),
                                        lane_slope_2(lane_lattice_bits(a + 1), f, g - 1), t);
     const float    high = lane_between(lane_slope_2(lane_lattice_bits(b), f - 1, g),
@@ -99,13 +93,12 @@ static inline float lane_noise3(float x, float y, float z)
     uint32_t    cell_x, cell_y, cell_z;
     const float f = lane_lattice(x, &cell_x), g = lane_lattice(y, &cell_y),
                 h = lane_lattice(z, &cell_z), s = lane_fade(g), t = lane_fade(h);
-    const uint32_t a = lane_scramble(cell_x) + cell_y, b = lane_scramble(cell_x + 1) + cell_y;
-    const float    low  = lane_between(lane_noise_row(lane_scramble(a) + cell_z, f, g, h, t),
-                                       lane_noise_row(lane_scramble(a + 1) + cell_z, f, g - 1, h, t),
+    const uint32_t a = scramble(cell_x) + cell_y, b = scramble(cell_x + 1) + cell_y;
+    const float    low  = lane_between(lane_noise_row(scramble(a) + cell_z, f, g, h, t),
+                                       lane_noise_row(scramble(a + 1) + cell_z, f, g - 1, h, t), s);
+    const float    high = lane_between(lane_noise_row(scramble(b) + cell_z, f - 1, g, h, t),
+                                       lane_noise_row(scramble(b + 1) + cell_z, f - 1, g - 1, h, t),
                                        s);
-    const float    high = lane_between(
-           lane_noise_row(lane_scramble(b) + cell_z, f - 1, g, h, t),
-           lane_noise_row(lane_scramble(b + 1) + cell_z, f - 1, g - 1, h, t), s);
     return 0.96f * lane_between(low, high, lane_fade(f));
 }
 
@@ -169,13 +162,12 @@ static void LOCAL(julia_step)(REAL z[4][CELL_LANES], const REAL *const *c, int p
 /* Evaluates what krs_julia of julia.glsl does. */
 static void LOCAL(cell_julia)(const REAL *const *x, REAL *to)
 {
-    enum { MAX_ROUNDS = 64, MAX_DEGREE = 16 };
-    _Alignas(64) REAL z[4][CELL_LANES], sizes[MAX_ROUNDS][CELL_LANES], norm[CELL_LANES],
+    _Alignas(64) REAL z[4][CELL_LANES], sizes[MAX_ITERATIONS][CELL_LANES], norm[CELL_LANES],
         last[CELL_LANES];
     _Alignas(64) REAL taken[CELL_LANES];
     const REAL       *settings = x[9], *radius = x[10];
-    const int         power = LOCAL(same_whole)(x[7], MAX_DEGREE),
-              most          = LOCAL(same_whole)(x[8], MAX_ROUNDS);
+    const int         power = LOCAL(same_whole)(x[7], MAX_POWER),
+              most          = LOCAL(same_whole)(x[8], MAX_ITERATIONS);
     int n                   = 0;
     for (int k = 0; k < 3; k++)
         memcpy(z[k], x[k], sizeof z[k]);
@@ -241,12 +233,11 @@ static void LOCAL(triplex_step)(REAL w[3][CELL_LANES], const REAL *const *c, int
 /* Evaluates what evaluate_mandelbulb of fractal.c does. */
 static void LOCAL(cell_mandelbulb)(const REAL *const *x, REAL *to)
 {
-    enum { MAX_ROUNDS = 64, MAX_DEGREE = 16 };
     _Alignas(64) REAL w[3][CELL_LANES], size[CELL_LANES], steep[CELL_LANES], sum[CELL_LANES];
     _Alignas(64) REAL lateral[CELL_LANES], last[CELL_LANES], stretch[CELL_LANES], going[CELL_LANES];
     const REAL       *settings = x[5], *radius = x[6], *cx = x[0], *cy = x[1], *cz = x[2];
-    const int         power = LOCAL(same_whole)(x[3], MAX_DEGREE),
-              most          = LOCAL(same_whole)(x[4], MAX_ROUNDS);
+    const int         power = LOCAL(same_whole)(x[3], MAX_POWER),
+              most          = LOCAL(same_whole)(x[4], MAX_ITERATIONS);
     const REAL degree = (REAL)power, core = (REAL)mandelbulb_core(power);
     const REAL least = (REAL)real_pow(4 * degree, -1 / (degree - 1)),
                far   = fminf(16, (REAL)real_exp2(32 / degree));

@@ -151,7 +151,7 @@ size_t cell_row_count(const CellTape *tape);
 void cell_visit(const CellCall *call, NodeValue *values, float *rows, CellStates states,
                 LaneCellRun *run);
 
-/* Numbers of a table; false: some lane has no instance. */
+/* Reads numbers of a table; false: some lane has no instance. */
 bool cell_read_rows(const Graph *graph, const Expr *row, const NodeValue *values,
                     const float *instances, float *to);
 /* Computes what the operation behind the bodies makes of the states, point by point. */

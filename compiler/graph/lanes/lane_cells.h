@@ -106,7 +106,7 @@ float cell_row_reach(const CellTape *tape, uint32_t row, float radius, float mar
 /* Returns the steps that all lanes take by it, those for instances of lists included. */
 size_t cell_cost(const CellTape *tape);
 
-/* Shorten a tape, after a run in the middles of balls, to what is left in the ball of a lane.
+/* These shorten a tape, after a run in the middles of balls, to what is left in the ball of a lane.
    `margin` is what rounding may make of coordinates.  The new tape lives until its mark, which was
    taken before, is released.  As many may live as the work has depth. */
 typedef struct CellMark {

@@ -195,17 +195,6 @@ static bool takes_least(const InstanceFunction *function)
            !function->joins && !function->sums && function->type == TYPE_FLOAT;
 }
 
-/* Tells how far a box is from a range of points at least. */
-static double distance_of_boxes(const Box *box, const Range at[3])
-{
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        double off = max2(max2(box->axis[k].low - at[k].high, at[k].low - box->axis[k].high), 0);
-        square += off * off;
-    }
-    return sqrt(square) * (1 - 1e-12);
-}
-
 /* Finds the instances that may be nearer than the nearest is at most, in the box; false: they are
    not known, or too many. */
 static bool find_min_instances(const Pruning *p, const LaneCall *call, const InstanceTable *table,

@@ -77,9 +77,9 @@ static Range range_by_rule(uint16_t op, const Range *o, uint32_t count)
 static bool is_scalar(const LaneCall *call, uint32_t operand, GraphType type)
 {
     uint32_t scalars = 0;
-    for (uint32_t c = 0; c < type_size(type); c++)
+    for (uint32_t c = 0; c < components(type); c++)
         scalars += (call->operands[operand][c] & LANE_SCALAR) != 0;
-    return scalars == type_size(type);
+    return scalars == components(type);
 }
 
 /* Tells how much farther an instance group may be if lengths are longer. */
@@ -141,8 +141,8 @@ static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step
     bool            sure = op_has_traits((Op)e->op, STAYS_FINITE);
     for (uint32_t k = 0; k < e->operand_count; k++) {
         types[k] = graph->items[e->operands[k]].type;
-        facts[k] = is_scalar(call, k, types[k]) ? (Fact){0} : fact_unknown(type_size(types[k]));
-        for (uint32_t c = 0; c < type_size(types[k]); c++) {
+        facts[k] = is_scalar(call, k, types[k]) ? (Fact){0} : fact_unknown(components(types[k]));
+        for (uint32_t c = 0; c < components(types[k]); c++) {
             sure = operand_for(tape, ranges, call->operands[k][c], false, &facts[k].value[c]) &&
                    sure && is_finite(facts[k].value[c]);
         }

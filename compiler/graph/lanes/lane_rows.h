@@ -28,7 +28,7 @@ typedef struct LaneSteps {
 
 /* Adds a step; returns the number of its value. */
 uint32_t lane_steps_add(LaneSteps *steps, LaneStep step);
-/* Returns a scalar that is this number; returns the operand. */
+/* Adds a scalar that is this number; returns the operand. */
 uint32_t lane_steps_number(LaneSteps *steps, double number);
 /* Finds how fast each node changes with the point at most, wherever that is; infinite: it may jump,
    or there is no bound. */

@@ -180,7 +180,7 @@ static void run_call(Run *run)
         return;
     for (uint32_t k = 0; k < e->operand_count; k++) {
         types[k] = graph->items[e->operands[k]].type;
-        for (uint32_t c = 0; c < type_size(types[k]); c++)
+        for (uint32_t c = 0; c < components(types[k]); c++)
             put_in_fact(run, &facts[k], c, call->operands[k][c]);
     }
     Fact fact = is_texture((Op)e->op)

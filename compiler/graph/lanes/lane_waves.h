@@ -9,10 +9,10 @@
 #include "compiler/graph/lanes/lanes.h"
 
 typedef struct LaneWave {
-    uint32_t
-        number; /* the operand `a`; NODE_NONE: it is no such distance, or ranges do not bound `a` */
-    double period, first,
-        last; /* the nearest multiples are from `first` to `last` times the period */
+    /* The operand `a`; NODE_NONE: it is no such distance, or ranges do not bound `a`. */
+    uint32_t number;
+    /* The nearest multiples are from `first` to `last` times the period. */
+    double period, first, last;
 } LaneWave;
 
 /* Returns the wave that a step is in the box of a run of ranges. */

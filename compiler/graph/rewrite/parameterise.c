@@ -49,8 +49,7 @@ static Node copy_operation(Parameterise *h, const Expr *e)
                                   ? graph_parameterised(h->graph, operand->type, operand->number, h->next++)
                                   : h->nodes[e->operands[i]];
     }
-    return e->op == OP_COMPONENT ? graph_component(h->graph, operands[0], e->index)
-                                 : graph_op(h->graph, e->op, operands);
+    return graph_like(h->graph, e, operands);
 }
 
 static Graph *parameterise_all(const Graph *old, Node *roots, size_t root_count, uint32_t first,

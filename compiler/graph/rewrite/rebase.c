@@ -163,8 +163,7 @@ static SplitValue plain_value(Graph *g, const Expr *e, const SplitValue *values)
     Node operands[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++)
         operands[i] = sum_of(g, values[i]);
-    return whole(e->op == OP_COMPONENT ? graph_component(g, operands[0], e->index)
-                                       : graph_op(g, e->op, operands));
+    return whole(graph_like(g, e, operands));
 }
 
 static bool any_base(const Expr *e, const SplitValue *values)
@@ -267,8 +266,7 @@ static const InstanceTable *table_at(const Graph *g, uint32_t table)
 
 static uint32_t table_of_call(const Graph *g, const Expr *call)
 {
-    const uint32_t function = (uint32_t)g->items[call->operands[0]].number[0];
-    return g->instances->functions.items[function].table_number;
+    return g->instances->functions.items[called_function(g, call)].table_number;
 }
 
 /* Notes which tables stay as they are: also those that instances of others call. */

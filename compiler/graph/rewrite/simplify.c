@@ -37,8 +37,6 @@ static const Expr *expr(const Rewrite *s, Node node) { return &s->graph->items[n
 static bool        is(const Rewrite *s, Node node, Op op) { return expr(s, node)->op == op; }
 static bool        constant(const Rewrite *s, Node node) { return is(s, node, OP_CONSTANT); }
 
-static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
-
 /* Tells whether a node is the constant with all components equal to this number. */
 static bool equals(const Rewrite *s, Node node, double number)
 {
@@ -329,11 +327,7 @@ static Node simplify_smin(const Rewrite *s)
 }
 
 /* Simplifies a footprint to 0: when materials have been lowered, the rest is of distances. */
-static Node simplify_footprint(const Rewrite *s)
-{
-    const double nothing[4] = {0};
-    return graph_constant(s->graph, s->type, nothing);
-}
+static Node simplify_footprint(const Rewrite *s) { return zero(s); }
 
 /* Keeps a node without a rule. */
 static Node simplify_none(const Rewrite *s)
@@ -378,10 +372,7 @@ static Node rebuild(Simplifier *simplifier, const Expr *e, bool with_rules)
         step.finite[i] = simplifier->finite[e->operands[i]];
     }
     Node node = with_rules ? simplify_by_rule(&step) : NODE_NONE;
-    if (node != NODE_NONE)
-        return node;
-    return e->op == OP_COMPONENT ? graph_component(graph, step.o[0], e->index)
-                                 : graph_op(graph, e->op, step.o);
+    return node != NODE_NONE ? node : graph_like(graph, e, step.o);
 }
 
 /* Copies what the roots need of `old`, by the rules or as it is, into a new graph. */

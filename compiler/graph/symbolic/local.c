@@ -336,7 +336,7 @@ static bool is_even(const Graph *g, const Expr *e)
 static BallTerms find_node(BallContext *x, Node node, const Tape *tape, const BallTerms *all)
 {
     Expr      e     = x->graph->items[node];
-    BallTerms found = new_terms(x, e.type <= TYPE_VEC4 ? e.type : 1), operands[MAX_OPERANDS];
+    BallTerms found = new_terms(x, components((GraphType)e.type)), operands[MAX_OPERANDS];
     for (uint32_t i = 0; e.type <= TYPE_VEC4 && i < found.count; i++) {
         found.items[i] = constant_term(x, graph_component(x->graph, node, i));
         if (e.op == OP_POINT)

@@ -30,7 +30,7 @@ Node slope_here(const BallContext *x, const BallTerm *a);
 /* Returns the slope in the ball. */
 Node steepness(const BallContext *x, const BallTerm *a);
 
-/* Make the term of a node `value`: as a number which is the same all over the ball, */
+/* Makes the term of a number that is the same all over the ball. */
 BallTerm constant_term(const BallContext *x, Node value);
 /* Makes the term of a value of which nothing is known but its slope over the box. */
 BallTerm opaque_term(BallContext *x, Node value);

@@ -15,7 +15,7 @@ typedef struct Parity {
     uint8_t of[4];
 } Parity;
 
-static uint32_t size_of(const Expr *e) { return e->type <= TYPE_VEC4 ? e->type : 1; }
+static uint32_t size_of(const Expr *e) { return components((GraphType)e->type); }
 
 static uint8_t product(uint8_t a, uint8_t b)
 {

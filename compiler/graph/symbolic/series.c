@@ -375,7 +375,7 @@ static bool expand_node(Expansion *x, Node node, const Tape *tape, const SeriesE
 {
     Expr e         = x->graph->items[node];
     x->graph->here = e.span;
-    *result        = new_elements(x, e.type <= TYPE_VEC4 ? e.type : 1);
+    *result        = new_elements(x, components((GraphType)e.type));
     if (e.time != TIME_POINT) {
         for (uint32_t i = 0; e.type <= TYPE_VEC4 && i < result->count; i++)
             result->items[i] = constant_element(x, graph_component(x->graph, node, i));

@@ -129,16 +129,6 @@ static bool bound_by_leading_form(ZeroSearch *search, Box *zeros)
 
 /* ---- by slabs ---- */
 
-/* Returns where to cut a side in two. */
-static double cut_of(Range side)
-{
-    if (isfinite(side.low) && isfinite(side.high))
-        return 0.5 * side.low + 0.5 * side.high;
-    if (!isfinite(side.low) && !isfinite(side.high))
-        return 0;
-    return isfinite(side.low) ? fmax(2 * side.low, 1) : fmin(2 * side.high, -1);
-}
-
 /* Tells whether the polynomial has this sign all over a box. */
 static bool has_sign(ZeroSearch *search, Box box, int sign, int depth)
 {
@@ -148,12 +138,9 @@ static bool has_sign(ZeroSearch *search, Box box, int sign, int depth)
         return true;
     if (depth == 0)
         return false;
-    int widest = 0;
-    for (int i = 1; i < 3; i++)
-        if (box.axis[i].high - box.axis[i].low > box.axis[widest].high - box.axis[widest].low)
-            widest = i;
-    Box    half            = box;
-    double cut             = cut_of(box.axis[widest]);
+    const int    widest    = box_longest_axis(&box);
+    const double cut       = range_cut(box.axis[widest]);
+    Box          half      = box;
     half.axis[widest].high = cut;
     if (!has_sign(search, half, sign, depth - 1))
         return false;
