@@ -435,6 +435,9 @@ static bool tidy(Mesher *m)
     if (m->tidied++ >= MAX_TIMES)
         return false;
     size_t count = handles_find(&m->contour, AROUND * m->error, locations, MAX_LOCATIONS);
+    if (m->tidied > 1 && count > m->untidy)
+        return false;
+    m->untidy = count;
     for (size_t i = 0; i < count; i++)
         any = sides_tidy(&m->contour, locations[i], AROUND * m->error, DEEP * m->error) || any;
     return any;

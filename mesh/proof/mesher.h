@@ -37,6 +37,7 @@ typedef struct Mesher {
     size_t        unresolved; /* tetrahedra */
     double        sharp;      /* as of Verifier */
     int           tidied;     /* how often sides of points were changed (sides.h) */
+    size_t        untidy;     /* locations at which the mesh was tidied last */
     size_t        handles;    /* in a mesh where nothing else is unresolved (handles.h) */
     double        unresolved_at[3];
     bool          drafted;     /* the mesh was tested in places only */
