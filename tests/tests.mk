@@ -25,7 +25,7 @@ PROPERTY    := ops noise textures graph simplify facts derive series zeros local
 ORACLES     := research/moebius_images research/enhanced self distant patterns bumps primitives krs_expand folds trees maps moebius operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device essl query query_limits picture executors \
-               albedo furnace thin_film anisotropy tangents subsurface paths direct_glass emissive sky sky_means plate_light detail media volumes cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling closed_rooms \
+               albedo furnace thin_film anisotropy tangents subsurface paths direct_glass caustics emissive sky sky_means plate_light detail media volumes cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling closed_rooms \
                occlusion curves sweeps corners hulls lofts boundaries nothing places underestimates bounds stencils light sides steep scales agree far open_surfaces ray_lists specialize outlines glyphs drawings \
                imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_open_surfaces flat_meshes round_meshes slices grids measures meshes mesh_forms mesh_examples
 FUZZ        := sentences
@@ -67,7 +67,7 @@ LONG        := $(addprefix tests/, web/many.sh web/pictures.sh web/wgsl_many.sh 
                per_component plates printing rendering saved schedules values) \
                $(addprefix property/, blends_of_many instances fillets iteration_boxes iterations) \
                $(addprefix oracle/, agree albedo algebraic area_shadows chain_pictures chains closed_rooms combinations cornell coverage \
-               direct_glass distant emissive furnace light measures media meshes mesh_examples mesh_forms moebius occlusion paths plate_light \
+               caustics direct_glass distant emissive furnace light measures media meshes mesh_examples mesh_forms moebius occlusion paths plate_light \
                ray_lists open_surfaces sky soft_shadows specialize stencils upsampling volumes))
 # What a set has of scripts, of programs, and of programs under the sanitizers.
 scripts_short    = $(filter-out $(LONG), $(1))

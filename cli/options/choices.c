@@ -35,6 +35,10 @@ const Choice shadows_choices[] = {
 #define KRS_SHADOWS(id, name, about) {name, about},
 #include "krs/choices.def"
     LAST};
+const Choice caustics_choices[] = {
+#define KRS_CAUSTICS(id, name, about) {name, about},
+#include "krs/choices.def"
+    LAST};
 const Choice executor_choices[] = {
 #define KRS_EXECUTOR(id, name, about) {name, about},
 #include "krs/choices.def"

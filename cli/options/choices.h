@@ -16,7 +16,7 @@ extern const Choice integrator_choices[], trace_choices[], schedule_choices[], c
     plane_choices[], tone_map_choices[], pass_choices[], on_off_choices[], on_choices[],
     when_choices[], diagnostics_choices[], json_choices[], untrusted_choices[], split_choices[],
     copies_choices[], language_choices[], export_choices[], unit_choices[], axis_choices[],
-    exposure_choices[];
+    exposure_choices[], caustics_choices[];
 
 /* Returns the number of a word among the choices; -1: it is none of them. */
 int find_choice(const char *word, const Choice *choices);

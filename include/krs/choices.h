@@ -69,6 +69,14 @@ typedef enum KrsShadows {
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_MAX_CHOICES];
 
+/* How light is found that smooth surfaces gather on others: KRS_CAUSTICS_PATHS, KRS_CAUSTICS_PHOTONS. */
+typedef enum KrsCaustics {
+#define KRS_CAUSTICS(id, name, about) KRS_CAUSTICS_##id,
+#include "krs/choices.def"
+    KRS_CAUSTICS_COUNT
+} KrsCaustics;
+extern const char *const krs_caustics_names[KRS_MAX_CHOICES];
+
 /* The executors that march the rays of a camera: KRS_EXECUTOR_KERNELS, KRS_EXECUTOR_LANES. */
 typedef enum KrsExecutor {
 #define KRS_EXECUTOR(id, name, about) KRS_EXECUTOR_##id,

@@ -247,6 +247,8 @@ typedef struct KrsRenderOptions {
         KrsMethods methods);       /* by which the picture is found; {0}: the fastest known */
     KrsProgressCallback *progress; /* may be NULL */
     void                *user;     /* handed to `progress` */
+    /* KRS_CAUSTICS_PHOTONS wants the integrator `path`, and neither light_groups nor a catcher. */
+    KrsCaustics caustics;
 } KrsRenderOptions;
 
 typedef enum KrsPhase {

@@ -50,6 +50,11 @@ static size_t rays_of_map(const Job *job)
 /* Two rows are as large as a ray. */
 static size_t rays_of_volumes(const Job *job) { return (volumes_rows(job) + 1) / 2; }
 
+static size_t rays_of_photons(const Job *job)
+{
+    return job->options.caustics == KRS_CAUSTICS_PHOTONS ? (PHOTON_INPUT_ROWS + 1) / 2 : 0;
+}
+
 /* Copies the depths at which rays of a band end to the device, behind the listed rays, and the planes
    of a plate behind them.  The map of the plate is there already. */
 static void upload_limits(const Job *job, const KrsWindow *traced)
@@ -76,17 +81,20 @@ size_t inputs_room(const Job *job)
 {
     const size_t pixels = job->rendering->band.pixels;
     return (job->rays ? pixels : 0) + (job->options.depth ? rays_of_limits(job) : 0) +
-           rays_of_planes(job) + rays_of_map(job) + rays_of_volumes(job);
+           rays_of_planes(job) + rays_of_map(job) + rays_of_volumes(job) + rays_of_photons(job);
 }
 
-void inputs_upload_tables(const Job *job)
+void inputs_upload_tables(Job *job)
 {
-    const size_t    of_volumes = inputs_room(job) - rays_of_volumes(job);
+    const size_t    of_photons = inputs_room(job) - rays_of_photons(job);
+    const size_t    of_volumes = of_photons - rays_of_volumes(job);
     const size_t    of_map     = of_volumes - rays_of_map(job);
     ListedRayBlock *rays       = rendering_listed_rays(job->rendering, job->view.light_count);
     FrameBlock     *frame      = job->rendering->frame.bytes;
     if (plate_map_exists(job))
         plate_map_make(job, (uint32_t(*)[4])(rays + of_map));
+    job->photons_at = LIGHTS_AT + 2 * (uint32_t)of_photons +
+                      LIGHT_ROWS * ((uint32_t)job->view.light_count + LIGHTS_AT_ONCE);
     if (volumes_rows(job) == 0)
         return;
     volumes_copy(job, (uint32_t(*)[4])(rays + of_volumes));

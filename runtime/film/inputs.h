@@ -10,7 +10,7 @@
 size_t inputs_room(const Job *job);
 /* Copies those of a band to the device, behind the lights, and says in the control block where. */
 void inputs_upload(const Job *job, const KrsWindow *traced);
-/* Copies what is the same for all bands: the map of a plate, and media. */
-void inputs_upload_tables(const Job *job);
+/* Copies what is the same for all bands: the map of a plate, and media.  Says in the job where photons go. */
+void inputs_upload_tables(Job *job);
 
 #endif

@@ -52,7 +52,7 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
 {
     if ((unsigned)o->methods.trace >= KRS_TRACE_COUNT ||
         (unsigned)o->methods.schedule >= KRS_SCHEDULE_COUNT ||
-        (unsigned)o->shadows >= KRS_SHADOWS_COUNT ||
+        (unsigned)o->shadows >= KRS_SHADOWS_COUNT || (unsigned)o->caustics >= KRS_CAUSTICS_COUNT ||
         (unsigned)o->methods.components >= KRS_COMPONENTS_COUNT ||
         (unsigned)o->methods.normals >= KRS_NORMALS_COUNT ||
         (unsigned)o->pixel_filter >= KRS_PIXEL_FILTER_COUNT ||
@@ -142,6 +142,11 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
     if (!(o->catcher_roughness >= 0) || !(o->catcher_roughness <= 1) ||
         !(o->catcher_reflectance > 0) || !(o->catcher_reflectance <= KRS_MAX_REFLECTANCE))
         return refuse(rendering, "the roughness of a plate is at most 1, its reflectance 0.99");
+    if (o->caustics == KRS_CAUSTICS_PHOTONS &&
+        (o->integrator != KRS_INTEGRATOR_PATH || o->light_groups ||
+         o->catcher != KRS_CATCHER_NONE || rendering->program->volumes > 0))
+        return refuse(rendering, "photons are for the integrator path, without groups of lights, a "
+                                 "plate that catches shadows, or media that scatter light");
     if (!(o->max_radiance >= 0))
         return refuse(rendering, "the most radiance of a ray must be above 0");
     if (!(o->slice_ms > 0) || o->methods.max_steps > MAX_STEPS ||

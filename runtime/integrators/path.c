@@ -7,6 +7,7 @@
  * paths take a step together: each pass is over those that are left.
  */
 #include "runtime/integrators/integrators.h"
+#include "runtime/integrators/photons.h"
 #include "runtime/tracer/shaders.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/primary.h"
@@ -105,7 +106,12 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
         !rendering_paths(r, o, KRS_FOR_PATHS, job_light_meets_planes(job), &paths.shaders) ||
         !primary_find_plate(job, &paths.plate))
         return false;
-    paths.escape      = renderer_escape_of_paths(r);
+    paths.escape = renderer_escape_of_paths(r);
+    if (o->caustics == KRS_CAUSTICS_PHOTONS && r->program->mirrors) {
+        plan->before = photons_new(job);
+        if (!plan->before.own)
+            return false;
+    }
     const March march = primary_march_of_paths(job, paths.shaders.march);
     for (uint32_t number = 0; number <= bounces; number++) {
         add_surface(&paths, number);

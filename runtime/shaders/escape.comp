@@ -33,6 +33,7 @@ struct Path {
     bool  caught; // it began at the plate; its density is stored as a negative number
     bool  mirrored; // by the plate
     bool  knows_lights; // what lights send here is known already
+    bool  focused;      // photons tell what comes from lights
 };
 
 // Returns the part of a light that counts where rays find it as well as points of it are chosen, so
@@ -55,7 +56,7 @@ vec3 find_sources(Path path, float end, uint index, vec3 shown)
         vec3  radiance = find_radiance_of(light, path.origin, path.direction, end, density);
         float chance = find_importance(light, path.origin) / max(all, 1e-30);
         float share = share_of_rays(path.density, chance * density);
-        bool  shows = !from_camera || (light.kind & LIGHT_POSITIONAL) == 0u;
+        bool  shows = path.focused ? !casts_shadows(light) : !from_camera || (light.kind & LIGHT_POSITIONAL) == 0u;
         vec3  own = shows && density > 0.0 ? share * radiance : vec3(0.0);
         uint separate = path.caught ? 0u : control.separate;
         sum += separate != 0u ? vec3(0.0) : own;
@@ -95,12 +96,14 @@ Path load(uvec2 pixel, uint index, out float base, out float slope)
     path.mirrored = path.caught && is_mirrored(pixel);
 #endif
     path.knows_lights = fract(abs(load_path(PATH_TOWARD, index).w)) == SCATTERED;
+    path.focused = fract(abs(load_path(PATH_TOWARD, index).w)) == FOCUSED;
 #else
     path.weight = vec3(1.0);
     path.density = 0.0;
     path.caught = false;
     path.mirrored = false;
     path.knows_lights = false;
+    path.focused = false;
 #endif
     return path;
 }

@@ -15,6 +15,10 @@ float code_of_ray(float side, uint medium) { return side * float(1u + medium); }
 // sent it there, whose light of lights is known.  Others have not met glass.
 const float STRAIGHT = 0.5, SCATTERED = 0.25;
 
+// With PHOTONS: DULL: a surface has scattered the path to which photons come.  FOCUSED: and only smooth ones have
+// since.
+const float DULL = 0.125, FOCUSED = 0.1875;
+
 float code_through(float code, float how) { return code + sign(code) * how; }
 
 uint medium_of_code(float code) { return code == 0.0 ? 0u : uint(abs(code)) - 1u; }

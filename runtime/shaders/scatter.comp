@@ -13,6 +13,9 @@
  *
  * VOLUMES: media dim the light of lights (volumes.glsl).
  *
+ * PHOTONS_GATHERED: light that smooth surfaces gather on others is found by photons, unless there are none in this
+ * picture.
+ *
  * CATCHES: a plate catches shadows.  Paths that begin there have rows of results of their own.  What the
  * plate shows may hide lights from surfaces of the scene.
  */
@@ -32,6 +35,7 @@
 #include "lights.glsl"
 #include "emissive.glsl"
 #include "boundary.glsl"
+#include "shading_normal.glsl"
 #ifdef CATCHES
 #include "plate.glsl"
 #include "plate_rays.glsl"
@@ -64,16 +68,6 @@ vec2 choose(uvec2 pixel, uint choice)
 {
     return sample_choice(work.corner + pixel, control.ray, CHOICES * control.value + choice,
                          control.seed);
-}
-
-// Returns the normal on the side of the ray.  Where a material tilts it too far, the surface's own
-// is taken.
-vec3 find_normal(HitPoint hit, KrsSurface surface, vec3 facing)
-{
-    vec3  normal = hit.side * surface.normal;
-    float size = length(normal);
-    bool  usable = size > 0.0 && dot(normal, hit.direction) < 0.0 && dot(normal, facing) > 0.0;
-    return usable ? normal / size : facing;
 }
 
 #if defined(SUBSURFACE) || defined(VOLUMES)
@@ -170,6 +164,26 @@ void find_whether_caught(uvec2 pixel, uint index)
 #endif
 }
 
+#ifdef PHOTONS_GATHERED
+#include "photons.glsl"
+
+// Tells whether photons know of light of lights that a surface sends on.
+bool has_photons() { return control.photons != 0u; }
+
+bool is_known_by_photons(bool smooth_surface)
+{
+    return has_photons() && smooth_surface && (come_by == DULL || come_by == FOCUSED);
+}
+
+// Returns the code of a ray, with what photons know of its light.
+float code_for_photons(float code, bool smooth_surface)
+{
+    bool known = !smooth_surface || is_known_by_photons(true);
+    return has_photons() && code != 0.0 && known
+               ? code_through(code, smooth_surface ? FOCUSED : DULL) : code;
+}
+#endif
+
 // Tells whether the plate is before a point of a light.  What it casts on itself it shows already.
 bool is_behind_plate(LightPoint point, HitPoint hit)
 {
@@ -183,7 +197,7 @@ bool is_behind_plate(LightPoint point, HitPoint hit)
 // Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it, and the
 // row of results to which it is added.
 vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec3 facing,
-                  vec3 weight, Cones cones, Boundary boundary, out uint row)
+                  vec3 weight, Cones cones, Boundary boundary, bool photons_know, out uint row)
 {
     bool  is_sky;
     uint  number;
@@ -200,6 +214,8 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     bool  sees = rise * light.z > 0.0 && all > 0.0 && !along;
     vec3  added = sees ? weight * scattered.rgb * point.light * share * tint : vec3(0.0);
     added = finite_or_black(added);
+    if (photons_know && !is_sky && casts_shadows(find_light(number)))
+        added = vec3(0.0);
     if (largest(added) > 0.0 && is_behind_plate(point, hit))
         added = vec3(0.0);
 #ifdef VOLUMES
@@ -368,16 +384,30 @@ void do_item(uint number)
         return;
     }
 #endif
+#ifndef PHOTONS_GATHERED
     store_seen(index, radiance, hit, normal, surface);
     if (control.phase == PATHS_END)
         return;
+#endif
     Axes axes = find_axes(normal, surface.tangent);
     Bsdf bsdf = find_bsdf(surface, hit, boundary, axes);
     if (ends_here(bsdf))
         return;
+    HitPoint seen = hit;
 #ifdef SUBSURFACE
     if (bsdf.chance_below > 0.0)
         weight *= go_below(pixel, hit, facing, bsdf, axes, surface);
+#endif
+    bool photons_know = false;
+#ifdef PHOTONS_GATHERED
+    bool smooth_surface = is_smooth(surface);
+    bool gathers = control.phase != PATHS_END && !smooth_surface && has_photons();
+    photons_know = is_known_by_photons(smooth_surface);
+    if (gathers)
+        radiance += weight * gather_photons(hit.position, facing.xyz, bsdf, axes);
+    store_seen(index, radiance, seen, normal, surface);
+    if (control.phase == PATHS_END)
+        return;
 #endif
     // Glass bends what leaves it, so that cones are of no use there.
     float dull = mix(surface.roughness * (1.0 - bsdf.glass), 1.0, bsdf.shares.w);
@@ -385,9 +415,12 @@ void do_item(uint number)
     uint  row;
     vec3  of_lights = is_direct() && come_by != STRAIGHT ? vec3(0.0) : weight;
     vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, of_lights, cones,
-                                boundary, row);
+                                boundary, photons_know, row);
     float side = continue_path(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
                        surface.distance, boundary, cones);
+#ifdef PHOTONS_GATHERED
+    side = code_for_photons(side, smooth_surface);
+#endif
     store_path(PATH_TOWARD, index, vec4(toward, side));
     if (side != 0.0)
         tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;

@@ -169,53 +169,55 @@ static_assert(sizeof(PointWorkBlock) == 12, "std430");
 /* What the host tells a shader, in rows of four numbers as above.  Values that decide branches are
    here, not among the constants of a dispatch.  For each set of constants that decides a branch
    lavapipe would compile the shader again, and keep it. */
-#define CONTROL_ROWS(FLOATS, UINTS)                                                        \
-    /* projection: PERSPECTIVE and so on */                                                \
-    /* phase: of the shader, see below */                                                  \
-    /* first_ray: 1: this is the first ray of each pixel */                                \
-    /* light: number of the light that a dispatch is about */                              \
-    UINTS(0, projection, phase, first_ray, light)                                          \
-    /* lights: number of all lights */                                                     \
-    /* ray: number of the ray within its pixel */                                          \
-    /* seed: of random numbers */                                                          \
-    /* starts_from: rays start at 1: the ends of beams of tiles, 2: of their quarters */   \
-    UINTS(1, lights, ray, seed, starts_from)                                               \
-    /* listed: 1: only listed tiles have rays */                                           \
-    /* source: of the items: ITEMS_... */                                                  \
-    /* items: number of items */                                                           \
-    /* items_per_lane: at most */                                                          \
-    UINTS(2, listed, source, items, items_per_lane)                                        \
-    /* reading: where the queue or list that is read begins */                             \
-    /* writing: where the queue that is written begins */                                  \
-    /* value: VALUE_...: the number of LIGHTING that is computed */                        \
-    /* rows: wanted rows of results: bit ROW_... of each */                                \
-    UINTS(3, reading, writing, value, rows)                                                \
-    /* by_march_group: 1: hits know their march group, and are listed by it */             \
-    /* no_occlusion: 1: there is no occlusion */                                           \
-    /* window: column | row << 16 of the first tile with a beam, in the band */            \
-    /* across: tiles with beams in a row */                                                \
-    UINTS(4, by_march_group, no_occlusion, window, across)                                 \
-    /* rays: of each pixel */                                                              \
-    /* filters: 1: neighbours share what their rays find (shared.glsl) */                  \
-    /* no_background: 1: where nothing is hit there is no light */                         \
-    /* limits: where depths of pixels begin in the inputs (limit.comp) */                  \
-    UINTS(5, rays, filters, no_background, limits)                                         \
-    /* sampled_at: where words of quarters begin in `tiles`; 0: all pixels get rays */     \
-    /* of_paths: 1: the rays are those of paths that have begun (MIXED_RAYS) */            \
-    /* color_row: the row of results to which light is added: ROW_... */                   \
-    /* separate: 1: the light of each light has a row of results of its own */             \
-    UINTS(6, sampled_at, of_paths, color_row, separate)                                    \
-    /* count: of the lights that a pass of shade.comp adds */                              \
-    /* caught: the row of results of light on the plate; 0: it catches none */             \
-    /* plate_planes: where planes of the plate begin in the inputs (plate.glsl) */         \
-    /* plate_map: where its map begins there (plate_rays.glsl); 0: there is none */        \
-    UINTS(7, count, caught, plate_planes, plate_map)                                       \
-    /* max_radiance: of a ray: more is clamped */                                          \
-    /* noise: error at which samples of a pixel end */                                     \
-    /* noise_floor: light to which the error of black pixels is relative */                \
-    /* plate_roughness, plate_reflectance: of the plate; head on, 0: it mirrors nothing */ \
-    FLOATS(8, max_radiance, noise, noise_floor, plate_roughness)                           \
-    FLOATS(9, plate_reflectance, gap_a, gap_b, gap_c)
+#define CONTROL_ROWS(FLOATS, UINTS)                                                                 \
+    /* projection: PERSPECTIVE and so on */                                                         \
+    /* phase: of the shader, see below */                                                           \
+    /* first_ray: 1: this is the first ray of each pixel */                                         \
+    /* light: number of the light that a dispatch is about */                                       \
+    UINTS(0, projection, phase, first_ray, light)                                                   \
+    /* lights: number of all lights */                                                              \
+    /* ray: number of the ray within its pixel */                                                   \
+    /* seed: of random numbers */                                                                   \
+    /* starts_from: rays start at 1: the ends of beams of tiles, 2: of their quarters */            \
+    UINTS(1, lights, ray, seed, starts_from)                                                        \
+    /* listed: 1: only listed tiles have rays */                                                    \
+    /* source: of the items: ITEMS_... */                                                           \
+    /* items: number of items */                                                                    \
+    /* items_per_lane: at most */                                                                   \
+    UINTS(2, listed, source, items, items_per_lane)                                                 \
+    /* reading: where the queue or list that is read begins */                                      \
+    /* writing: where the queue that is written begins */                                           \
+    /* value: VALUE_...: the number of LIGHTING that is computed */                                 \
+    /* rows: wanted rows of results: bit ROW_... of each */                                         \
+    UINTS(3, reading, writing, value, rows)                                                         \
+    /* by_march_group: 1: hits know their march group, and are listed by it */                      \
+    /* no_occlusion: 1: there is no occlusion */                                                    \
+    /* window: column | row << 16 of the first tile with a beam, in the band */                     \
+    /* across: tiles with beams in a row */                                                         \
+    UINTS(4, by_march_group, no_occlusion, window, across)                                          \
+    /* rays: of each pixel */                                                                       \
+    /* filters: 1: neighbours share what their rays find (shared.glsl) */                           \
+    /* no_background: 1: where nothing is hit there is no light */                                  \
+    /* limits: where depths of pixels begin in the inputs (limit.comp) */                           \
+    UINTS(5, rays, filters, no_background, limits)                                                  \
+    /* sampled_at: where words of quarters begin in `tiles`; 0: all pixels get rays */              \
+    /* of_paths: 1: the rays are those of paths that have begun (MIXED_RAYS) */                     \
+    /* color_row: the row of results to which light is added: ROW_... */                            \
+    /* separate: 1: the light of each light has a row of results of its own */                      \
+    UINTS(6, sampled_at, of_paths, color_row, separate)                                             \
+    /* count: of the lights that a pass of shade.comp adds */                                       \
+    /* caught: the row of results of light on the plate; 0: it catches none */                      \
+    /* plate_planes: where planes of the plate begin in the inputs (plate.glsl) */                  \
+    /* plate_map: where its map begins there (plate_rays.glsl); 0: there is none */                 \
+    UINTS(7, count, caught, plate_planes, plate_map)                                                \
+    /* max_radiance: of a ray: more is clamped */                                                   \
+    /* noise: error at which samples of a pixel end */                                              \
+    /* noise_floor: light to which the error of black pixels is relative */                         \
+    /* plate_roughness, plate_reflectance: of the plate; head on, 0: it mirrors nothing */          \
+    FLOATS(8, max_radiance, noise, noise_floor, plate_roughness)                                    \
+    /* photons: where those of this sample begin in the inputs (photons.glsl); 0: there are none */ \
+    FLOATS(9, plate_reflectance, gap_a, gap_b, gap_c)                                               \
+    UINTS(10, photons, gap_d, gap_e, gap_f)
 
 /* What the shaders count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
@@ -243,16 +245,16 @@ struct Control {
 
 /* Indices of some words of the control block, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
-CONSTANT(GROUPS_WORD, 60);
-CONSTANT(STOPPED_WORD, 63);
-CONSTANT(RAN_WORD, 64);
+CONSTANT(GROUPS_WORD, 64);
+CONSTANT(STOPPED_WORD, 67);
+CONSTANT(RAN_WORD, 68);
 
 #ifdef __STDC_VERSION__
 typedef struct ControlBlock {
     CONTROL_ROWS(MEMBERS_OF_FLOATS, MEMBERS_OF_UINTS)
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (40 + 26 + MAX_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (44 + 26 + MAX_CHAINED) * sizeof(uint32_t), "std430");
 #define ROW_OF_CONTROL_BEGINS(row, a, b, c, d) \
     static_assert(offsetof(ControlBlock, a) == 16 * (row), "std430");
 CONTROL_ROWS(ROW_OF_CONTROL_BEGINS, ROW_OF_CONTROL_BEGINS)
@@ -468,6 +470,20 @@ struct EmissiveBall {
     float radiance; /* about that of its disc */
     float gap_a, gap_b, gap_c;
 };
+
+/* A photon, in two rows.  Before photons.comp: where it begins, its light; its direction, and what it has of the
+   light's intensity or irradiance.  After it: where it has ended, its direction; its light, and the normal there,
+   directions packed by pack_direction (photons.glsl).
+
+   The photons of a sample among the inputs: a row with the radius of their blur, 1 / the side of a cell, the number
+   of buckets less 1, and the row of the first photon; numbers of the first photon of each bucket, four in a row, and
+   of the end of the last; and the photons, bucket by bucket. */
+CONSTANT(PHOTONS, 65536); /* of a sample */
+CONSTANT(PHOTON_ROWS, 2);
+CONSTANT(PHOTON_BUCKETS, 65536);
+CONSTANT(PHOTON_STARTS_AT, 1);
+CONSTANT(PHOTONS_AT, 1 + 65536 / 4 + 1);
+CONSTANT(PHOTON_INPUT_ROWS, 1 + 65536 / 4 + 1 + 2 * 65536);
 
 /* The ray of a pixel, given by the caller.  Listed rays lie behind the lights and room for
    LIGHTS_AT_ONCE more. */

@@ -162,6 +162,7 @@ struct KrsRendering {
     ResidentBand resident;                    /* what the buffers of `band` hold */
     Buffer       points, answers;             /* for point_query.comp */
     Buffer       query_rays, ray_hits, taken; /* for query.comp */
+    Buffer       photons;                     /* for photons.comp */
     LaneFields   lane_fields;
     LaneTimes    lane_times; /* (film/executor.h) */
     /* The items of a slice, as learned, for each phase; [1]: for shaders with the scene. */

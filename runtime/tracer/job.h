@@ -55,6 +55,7 @@ typedef struct Job {
     const KrsRays   *rays; /* a list of rays; NULL: they are those of the view's camera */
     uint32_t         first_rows, later_rows; /* of results that rays store: the first, others */
     FrameBlock       frame;
+    uint32_t         photons_at;             /* the row of inputs where there is room for photons */
     EmissiveBlock    emissive[MAX_EMISSIVE]; /* frame.emissive_count of them */
     double           rebase_origin[3];       /* points on the device are relative to it */
     bool             begins_outside;         /* all rays begin outside of all solids */

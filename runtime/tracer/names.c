@@ -39,6 +39,11 @@ const char *const krs_shadows_names[KRS_MAX_CHOICES] = {
 #include "krs/choices.def"
 };
 
+const char *const krs_caustics_names[KRS_MAX_CHOICES] = {
+#define KRS_CAUSTICS(id, name, about) name,
+#include "krs/choices.def"
+};
+
 const char *const krs_executor_names[KRS_MAX_CHOICES] = {
 #define KRS_EXECUTOR(id, name, about) name,
 #include "krs/choices.def"

@@ -57,7 +57,12 @@ void plan_add_march_again(Plan *plan, float weight)
     plan_add(plan, (Pass){PASS_MARCH, march->phase, weight, .march = march});
 }
 
-void plan_free(Plan *plan) { gpu_release(plan->gpu, plan->passes); }
+void plan_free(Plan *plan)
+{
+    gpu_release(plan->gpu, plan->passes);
+    if (plan->before.free)
+        plan->before.free(plan->gpu, plan->before.own);
+}
 
 uint32_t plan_path_rows(const Plan *plan)
 {
@@ -294,6 +299,8 @@ bool plan_run(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
     double       done = 0;
     place_ray(index, job->options.seed, filter_of(job), work->offset);
     begin_ray(job, plan, index);
+    if (plan->before.run && !plan->before.run(job, plan->before.own, index))
+        return false;
     for (size_t i = 0, count; i < plan->count; i += count) {
         double weight = 0;
         count         = count_fused(plan, i);

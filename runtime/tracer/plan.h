@@ -53,6 +53,13 @@ typedef struct Pass {
 
 enum { MAX_FUSED = 1 + KRS_MAX_MARCH_GROUPS }; /* passes in one submission */
 
+/* What an integrator does before the passes of each sample of a band. */
+typedef struct Before {
+    bool (*run)(Job *job, void *own, uint32_t sample); /* NULL: nothing */
+    void (*free)(Gpu *gpu, void *own);
+    void *own;
+} Before;
+
 typedef struct Plan {
     Gpu          *gpu; /* whose allocator the passes come from */
     Pass         *passes;
@@ -62,7 +69,8 @@ typedef struct Plan {
     size_t        march_count;
     RayField     *field;    /* of PASS_LANES; or NULL.  It and surfaces belong to the rendering */
     SurfaceField *surfaces; /* of PASS_SURFACES; or NULL */
-    uint32_t      surface_rows;   /* of each hit, then */
+    uint32_t      surface_rows; /* of each hit, then */
+    Before        before;
     uint32_t      halo;           /* pixels on each side of a band that are traced as well */
     bool          has_paths;      /* each pixel follows a path */
     bool          by_march_group; /* pixels are listed by the group of components that they hit */

@@ -152,6 +152,7 @@ static void release(KrsRendering *rendering)
                          &rendering->query_rays,
                          &rendering->ray_hits,
                          &rendering->taken,
+                         &rendering->photons,
                          &band->ends,
                          &band->hits,
                          &band->results,

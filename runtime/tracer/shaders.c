@@ -160,6 +160,15 @@ Shader *rendering_point_query(KrsRendering *rendering)
 
 /* ---- paths ---- */
 
+Shader *rendering_photons(KrsRendering *rendering)
+{
+    const RayKind rays   = rendering->rays;
+    rendering->rays      = RAYS_OF_PATHS;
+    Shader *const shader = find_shader(rendering, "photons.comp", variant_of_photons(rendering));
+    rendering->rays      = rays;
+    return shader;
+}
+
 static KrsTrace trace_of_paths(KrsTrace trace)
 {
     const ResearchTrace *research = research_trace(trace);
@@ -183,9 +192,11 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
     rendering->rays     = paths ? RAYS_OF_PATHS : rendering->rays;
     shaders->normals    = rendering_normals_shader(rendering, options->methods.normals, 0);
     rendering->rays     = paths ? RAYS_OF_PATHS : rays; /* those of pictures are for paths, too */
-    shaders->scatter    = paths ? find_shader(rendering, "scatter.comp",
-                                              variant_of_scatter(rendering, options->methods.starts,
-                                                                 options->integrator))
+    shaders->scatter    = paths ? find_shader(
+                                      rendering, "scatter.comp",
+                                      variant_of_scatter(rendering, options->methods.starts,
+                                                         options->integrator,
+                                                         options->caustics == KRS_CAUSTICS_PHOTONS))
                                 : rendering_shade(rendering);
     const bool volumes  = paths && rendering->program->volumes > 0;
     if (volumes)
@@ -275,7 +286,7 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
             variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
     if (paths) {
         request(requests, "scatter.comp",
-                variant_of_scatter(rendering, KRS_STARTS_PRECISION, KRS_INTEGRATOR_PATH));
+                variant_of_scatter(rendering, KRS_STARTS_PRECISION, KRS_INTEGRATOR_PATH, false));
         request(requests, "secondary.comp",
                 variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
                                 KRS_INTEGRATOR_PATH,

@@ -32,6 +32,8 @@ Shader *rendering_research(KrsRendering *rendering, const ResearchPass *pass);
 Shader *rendering_shade(KrsRendering *rendering);
 /* Returns the same without a scene: the host finds surfaces (lane_surfaces.h). */
 Shader *rendering_shade_found(KrsRendering *rendering);
+/* Returns the shader of photons. */
+Shader *rendering_photons(KrsRendering *rendering);
 Shader *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 Shader *rendering_point_query(KrsRendering *rendering);
 

@@ -392,7 +392,7 @@ ShaderVariant variant_of_collide(const KrsRendering *rendering, KrsIntegrator in
 
 /* The random directions of paths need sines. */
 ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
-                                 KrsIntegrator integrator)
+                                 KrsIntegrator integrator, bool photons)
 {
     ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want(&to, KRS_FUNCTION_SURFACE);
@@ -404,6 +404,8 @@ ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
         define(&to, "#define DIRECT\n");
         want(&to, KRS_FUNCTION_GLASS);
     }
+    if (photons)
+        define(&to, "#define PHOTONS_GATHERED\n");
     if (rendering->program->subsurface)
         want(&to, KRS_FUNCTION_SUBSURFACE);
     want_volumes(&to, rendering);
@@ -411,6 +413,19 @@ ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
     want_plate(&to, rendering);
     want_media(&to, rendering);
     want_sky(&to, rendering);
+    define_choices(&to);
+    return to;
+}
+
+/* Photons are marched by distances, and scattered as paths are. */
+ShaderVariant variant_of_photons(const KrsRendering *rendering)
+{
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    want(&to, KRS_FUNCTION_DISTANCE);
+    want(&to, KRS_FUNCTION_SURFACE);
+    want(&to, KRS_FUNCTION_SINES);
+    want_materials(&to, rendering);
+    want_media(&to, rendering);
     define_choices(&to);
     return to;
 }
@@ -468,6 +483,10 @@ ShaderVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
         {"secondary.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SINES}, 2},
         {"shade.comp", false, {KRS_FUNCTION_SURFACE}, 1},
         {"occluders.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},
+        {"photons.comp",
+         false,
+         {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES},
+         3},
         {"scatter.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},
         {"track.comp", false, {KRS_FUNCTION_DENSITY, KRS_FUNCTION_SINES}, 2},
         {"beam.comp",

@@ -44,8 +44,9 @@ ShaderVariant variant_of_occluders(const KrsRendering *rendering);
 ShaderVariant variant_of_shade(const KrsRendering *rendering);
 /* Returns the same without a scene: the host finds surfaces. */
 ShaderVariant variant_of_shade_found(const KrsRendering *rendering);
+ShaderVariant variant_of_photons(const KrsRendering *rendering);
 ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
-                                 KrsIntegrator integrator);
+                                 KrsIntegrator integrator, bool photons);
 /* Of media that scatter light: where they do, and what comes of it. */
 ShaderVariant variant_of_track(const KrsRendering *rendering);
 ShaderVariant variant_of_beam(const KrsRendering *rendering);

@@ -170,6 +170,8 @@ static void wrong_use_is_refused(void **state)
         {.methods.trace = KRS_TRACE_PREDICTED}, /* or for that */
         {.methods.schedule = KRS_SCHEDULE_COUNT},
         {.shadows = KRS_SHADOWS_COUNT},
+        {.caustics = KRS_CAUSTICS_COUNT},
+        {.caustics = KRS_CAUSTICS_PHOTONS}, /* previews have none */
         {.methods.starts = KRS_STARTS_COUNT},
         {.methods.reserved = {1}},
         {.catcher = KRS_CATCHER_COUNT},
