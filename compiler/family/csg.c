@@ -145,7 +145,7 @@ static Lowered union_by_parts(Lowering *l, const Shape *shape, LowerContext cont
 
 Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return lower_within_boundary(l, shape, context, union_by_parts);
+    return lower_within_boundary(l, shape, context, context.point, union_by_parts);
 }
 
 static Lowered intersection_of_two(Lowering *l, const Shape *shape, Lowered a, Lowered b)
@@ -176,7 +176,7 @@ static Lowered intersection_by_parts(Lowering *l, const Shape *shape, LowerConte
 
 Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return lower_within_boundary(l, shape, context, intersection_by_parts);
+    return lower_within_boundary(l, shape, context, context.point, intersection_by_parts);
 }
 
 static Lowered difference_by_parts(Lowering *l, const Shape *shape, LowerContext context)
@@ -193,7 +193,7 @@ static Lowered difference_by_parts(Lowering *l, const Shape *shape, LowerContext
 
 Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return lower_within_boundary(l, shape, context, difference_by_parts);
+    return lower_within_boundary(l, shape, context, context.point, difference_by_parts);
 }
 
 /* Lowers what is in one of two shapes: their union less what they share. */
@@ -214,7 +214,7 @@ static Lowered xor_by_parts(Lowering *l, const Shape *shape, LowerContext contex
 
 Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return lower_within_boundary(l, shape, context, xor_by_parts);
+    return lower_within_boundary(l, shape, context, context.point, xor_by_parts);
 }
 
 /* Lowers a clipped shape, of which all that is seen is of the part that is cut. */

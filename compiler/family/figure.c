@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "compiler/lower/boundary.h"
 #include "compiler/lower/normal.h"
 
 /* ---- how it is made ---- */
@@ -29,6 +30,9 @@ const Shape *make_revolve(ShapeBuilder *builder, const Shape *figure, Node offse
     /* The axis cuts a figure that crosses it: the distance inside the cut is only a bound. */
     solid->exact = figure->exact && x.low >= 0;
     solid->box   = builder_box(builder, solid);
+    double number;
+    if (graph_known_component(builder->graph, offset, 0, &number))
+        solid->boundary = boundary_about(builder->arena, -number);
     return solid;
 }
 
@@ -56,17 +60,29 @@ Lowered lower_extrude(Lowering *l, const Shape *shape, LowerContext context)
     return result;
 }
 
-Lowered lower_revolve(Lowering *l, const Shape *shape, LowerContext context)
+/* Returns the point of the figure's plane that comes to a point. */
+static Node point_before_revolving(Graph *g, const Shape *shape, Node point)
 {
-    Graph *g = l->graph;
-    Node   x = graph_component(g, context.point, 0), y = graph_component(g, context.point, 1);
-    Node   z        = graph_component(g, context.point, 2);
-    Node   axis     = graph_op2(g, OP_vec2, x, z);
-    Node   offset   = graph_op1(g, OP_length, axis);
-    offset          = graph_op2(g, OP_sub, offset, shape->values[0]);
-    Node       zero = graph_number(g, 0);
-    Node       flat = graph_op3(g, OP_vec3, offset, y, zero);
+    Node x = graph_component(g, point, 0), y = graph_component(g, point, 1);
+    Node z      = graph_component(g, point, 2);
+    Node axis   = graph_op2(g, OP_vec2, x, z);
+    Node offset = graph_op1(g, OP_length, axis);
+    offset      = graph_op2(g, OP_sub, offset, shape->values[0]);
+    Node zero   = graph_number(g, 0);
+    return graph_op3(g, OP_vec3, offset, y, zero);
+}
+
+static Lowered revolve_figure(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Graph     *g    = l->graph;
+    Node       flat = point_before_revolving(g, shape, context.point);
     NormalPath path = normal_path(l, context, 1);
     normal_rotate_about_y(l, &path, context.point, graph_vec3(g, 1, 0, 0));
     return lower_behind(l, shape->children[0], context, &path, flat);
+}
+
+Lowered lower_revolve(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Node flat = point_before_revolving(l->graph, shape, context.point);
+    return lower_within_boundary(l, shape, context, flat, revolve_figure);
 }

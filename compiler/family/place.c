@@ -179,7 +179,7 @@ static Lowered mirror_by_part(Lowering *l, const Shape *shape, LowerContext cont
 
 Lowered lower_mirror(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return lower_within_boundary(l, shape, context, mirror_by_part);
+    return lower_within_boundary(l, shape, context, context.point, mirror_by_part);
 }
 
 Lowered lower_elongate(Lowering *l, const Shape *shape, LowerContext context)

@@ -338,7 +338,7 @@ static Lowered repeat_by_cells(Lowering *l, const Shape *shape, LowerContext con
 
 Lowered lower_repeat(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return lower_within_boundary(l, shape, context, repeat_by_cells);
+    return lower_within_boundary(l, shape, context, context.point, repeat_by_cells);
 }
 
 static bool range_is_finite(Range range) { return isfinite(range.low) && isfinite(range.high); }

@@ -30,12 +30,22 @@ struct Boundary {
     Curves        lines;
     Arcs          arcs;
     OutlineShape *table; /* of all but the arcs, if they are many or curved; or NULL */
+    const double *axis;  /* the x about which the figure is revolved; or NULL */
 };
 
 struct Boundary *boundary_new(Arena *arena)
 {
     struct Boundary *boundary = arena_new(arena, struct Boundary);
     boundary->arena           = arena;
+    return boundary;
+}
+
+struct Boundary *boundary_about(Arena *arena, double axis)
+{
+    struct Boundary *boundary = boundary_new(arena);
+    double          *at       = arena_new(arena, double);
+    *at                       = axis;
+    boundary->axis            = at;
     return boundary;
 }
 
@@ -103,13 +113,32 @@ static void make_table(struct Boundary *boundary, Span span, Arena *scratch)
     boundary->lines.count = 0;
 }
 
-static void find_boundary(Lowering *l, const Shape *csg_node, struct Boundary *boundary)
+/* Leaves out the pieces that lie on the axis; returns false if there are none, or some are beyond it. */
+static bool drop_axis(Curves *curves, double axis)
 {
-    Curves curves   = {0};
-    bool   curved   = false, changed;
-    boundary->state = BOUNDARY_UNKNOWN;
-    if (!figure_outline(l->graph, csg_node, l->scratch, &curves, &changed) || curves.count == 0 ||
-        !changed)
+    double slack = 1e-9 * (curves_size(curves) + fabs(axis));
+    size_t kept  = 0;
+    for (size_t i = 0; i < curves->count; i++) {
+        const Curve *curve = &curves->items[i];
+        if (curve->from[0] < axis - slack || curve->to[0] < axis - slack)
+            return false;
+        if (!curve->straight || curve->from[0] > axis + slack || curve->to[0] > axis + slack)
+            curves->items[kept++] = *curve;
+    }
+    const bool any = kept < curves->count;
+    curves->count  = kept;
+    return any;
+}
+
+static void find_boundary(Lowering *l, const Shape *shape, struct Boundary *boundary)
+{
+    const Shape *figure = boundary->axis ? shape->children[0] : shape;
+    Curves       curves = {0};
+    bool         curved = false, changed;
+    boundary->state     = BOUNDARY_UNKNOWN;
+    if (!figure_outline(l->graph, figure, l->scratch, &curves, &changed) ||
+        (boundary->axis && !drop_axis(&curves, *boundary->axis)) || curves.count == 0 ||
+        !(changed || boundary->axis))
         return;
     for (size_t i = 0; i < curves.count; i++) {
         const Curve *curve = &curves.items[i];
@@ -123,7 +152,7 @@ static void find_boundary(Lowering *l, const Shape *csg_node, struct Boundary *b
     if (boundary->arcs.count > MAX_ARCS)
         return;
     if (curved || boundary->lines.count > MAX_LINES)
-        make_table(boundary, csg_node->span, l->scratch);
+        make_table(boundary, shape->span, l->scratch);
     boundary->state = BOUNDARY_KNOWN;
 }
 
@@ -204,38 +233,40 @@ static Node distance_to_table(Lowering *l, struct Boundary *boundary, double rea
     return graph_op1(l->graph, OP_abs, distance);
 }
 
-static bool boundary_counts(Lowering *l, const Shape *csg_node, LowerContext context)
+static bool boundary_counts(Lowering *l, const Shape *shape, LowerContext context)
 {
-    struct Boundary *boundary = csg_node->boundary;
+    struct Boundary *boundary = shape->boundary;
     if (!boundary || !(context.reach > 0) || !(l->groups || l->far))
         return false;
     if (boundary->state == BOUNDARY_NEW)
-        find_boundary(l, csg_node, boundary);
+        find_boundary(l, shape, boundary);
     return boundary->state == BOUNDARY_KNOWN;
 }
 
-static Node boundary_distance(Lowering *l, const Shape *csg_node, LowerContext context, Node joined)
+/* Returns the distance to the boundary, with the sign of `joined`, which is 0 also within: on seams. */
+static Node boundary_distance(Lowering *l, struct Boundary *boundary, double reach, Node point,
+                              Node joined)
 {
-    Graph           *g        = l->graph;
-    struct Boundary *boundary = csg_node->boundary;
-    Node             near     = distance_to_pieces(l, boundary, context.point);
+    Graph *g    = l->graph;
+    Node   near = distance_to_pieces(l, boundary, point);
     if (boundary->table) {
-        Node table = distance_to_table(l, boundary, context.reach, context.point);
+        Node table = distance_to_table(l, boundary, reach, point);
         near       = near == NODE_NONE ? table : graph_op2(g, OP_min, near, table);
     }
-    Node inside = graph_op2(g, OP_less, joined, graph_number(g, 0));
-    return graph_op3(g, OP_select, inside, neg(g, near), near);
+    Node outside = graph_op2(g, OP_less, graph_number(g, 0), joined);
+    return graph_op3(g, OP_select, outside, near, neg(g, near));
 }
 
-Lowered lower_within_boundary(Lowering *l, const Shape *csg_node, LowerContext context,
+Lowered lower_within_boundary(Lowering *l, const Shape *shape, LowerContext context, Node point,
                               LowerShape *by_parts)
 {
-    if (!boundary_counts(l, csg_node, context))
-        return by_parts(l, csg_node, context);
+    if (!boundary_counts(l, shape, context))
+        return by_parts(l, shape, context);
     LowerContext sides = context; /* what is asked of the parts is the side alone */
     sides.reach        = 0;
-    Lowered result     = by_parts(l, csg_node, sides);
+    Lowered result     = by_parts(l, shape, sides);
     if (result.distance != NODE_NONE)
-        result.distance = boundary_distance(l, csg_node, context, result.distance);
+        result.distance = boundary_distance(l, shape->boundary, context.reach, point,
+                                            result.distance);
     return result;
 }

@@ -428,6 +428,55 @@ static void copies_have_true_distances(void **state)
     }
 }
 
+/* A side on the axis is within the solid, so it is no boundary. */
+static void solids_of_revolution_have_true_distances(void **state)
+{
+    static Member member;
+    Random        random = {16};
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        double shift       = i % 3 == 0 ? 0 : quarter(&random, 1, 4);
+        int    kept        = 0;
+        member.text.length = 0;
+        member.count       = 1 + i % 3;
+        for (int k = 0; k < member.count; k++) {
+            double width    = quarter(&random, 2, 5);
+            member.parts[k] = (Part){.kind  = RECTANGLE,
+                                     .a     = width,
+                                     .b     = quarter(&random, 2, 5),
+                                     .scale = 1,
+                                     .x     = 0.5 * width - shift,
+                                     .y     = quarter(&random, -3, 3),
+                                     .join  = "||-"[k]};
+        }
+        if (member.count == 3)
+            member.parts[2].x += 0.5; /* a groove that does not reach the axis */
+        find_boundary(member.parts, member.count, &member.boundary);
+        write_csg_node(&member.text, member.parts, member.count);
+        for (int k = 0; k < member.boundary.count; k++)
+            if (member.boundary.points[k][0] > -shift + 1e-9)
+                memcpy(member.boundary.points[kept++], member.boundary.points[k],
+                       sizeof *member.boundary.points);
+        member.boundary.count = kept;
+        Product product       = product_format("let solid = %s.revolve(%.17g);\n"
+                                                     "shape same() { distance: solid.distance([x, y, z]),\n"
+                                                     "               slope: 1, within: box([19, 19, 19]) }\n"
+                                                     "show same();\n",
+                                               member.text.bytes, shift);
+        for (int k = 0; k < POINTS; k++) {
+            double radius = k % 4 == 0 ? 0 : random_between(&random, 0, 3),
+                   angle = random_between(&random, 0, 6), y = random_between(&random, -2.5, 2.5);
+            double truth = true_distance_of(&member, radius - shift + (radius == 0 ? 1e-9 : 0), y);
+            double found = product_distance(&product,
+                                            vec(radius * cos(angle), y, radius * sin(angle)));
+            if (!(fabs(found - truth) <= TOLERANCE))
+                fail_msg("%s\nat (%.9g, %.9g): %.9g, truly %.9g", member.text.bytes, radius, y,
+                         found, truth);
+        }
+        product_free(&product);
+    }
+}
+
 /* At each height the mean of the true distances says what is inside: there is no groove. */
 static void lofts_go_by_true_distances(void **state)
 {
@@ -481,6 +530,7 @@ int main(void)
         cmocka_unit_test(csg_nodes_have_true_distances),
         cmocka_unit_test(loops_have_true_distances),
         cmocka_unit_test(copies_have_true_distances),
+        cmocka_unit_test(solids_of_revolution_have_true_distances),
         cmocka_unit_test(lofts_go_by_true_distances),
         cmocka_unit_test(parameters_leave_bounds),
     };

@@ -244,7 +244,7 @@ static Value method_revolve(Elaboration *e, const Shape *shape, Call *call)
     Node offset = want_number(e, call, 0, 0);
     if (offset == NODE_NONE || !check_figure(e, shape, call))
         return value_error();
-    return value_shape(make_revolve(e->builder, shape, offset, call->syntax->span));
+    return value_of_csg_node(e, make_revolve(e->builder, shape, offset, call->syntax->span));
 }
 
 static Value method_paint(Elaboration *e, const Shape *shape, Call *call)
