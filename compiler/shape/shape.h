@@ -214,9 +214,9 @@ struct Shape {
     uint32_t            cells[3];   /* REPEAT: copies per axis, 0 for endless */
     uint32_t            stage_count;
 
-    struct OutlineShape *outline;    /* PRIMITIVE that contours fill (lower/outline.h), else NULL */
-    Border              *border;     /* PRIMITIVE whose declaration knows its outline, else NULL */
-    struct Boundary     *boundary;   /* what lower/boundary.h makes of a CSG node or REVOLVE, else NULL */
+    struct OutlineShape *outline; /* PRIMITIVE that contours fill (lower/outline.h), else NULL */
+    Border              *border;  /* PRIMITIVE whose declaration knows its outline, else NULL */
+    struct Boundary *boundary; /* what lower/boundary.h makes of a CSG node or REVOLVE, else NULL */
     Node plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
     Node ball_radius;                /* PRIMITIVE that is a ball about the origin, else NODE_NONE */
     /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and
