@@ -22,9 +22,10 @@
 enum {
     SIDE         = 64, /* cells in a row of a square */
     SQUARE_CELLS = SIDE * SIDE,
-    IN_SLICE     = 8192,      /* photons of a dispatch */
-    FIRST_PASS   = UINT32_MAX /* stands for the number of a sample */
+    IN_SLICE     = 8192 /* photons of a dispatch */
 };
+/* Stands for the number of a sample. */
+#define FIRST_PASS UINT32_MAX
 /* The part of photons that are spread evenly. */
 #define EVEN 0.1
 /* Photons within the first radius, where light is spread over all of the region and is not gathered. */
