@@ -78,9 +78,8 @@ void print_use(Compilation *c, Text *out) { files_print_uses(&c->files, out); }
 
 KrsStatus pass_names(Compilation *c)
 {
-    const char *builtin[512];
-    size_t      count = builtin_names(builtin, sizeof builtin / sizeof *builtin);
-    files_check_names(&c->files, builtin, count);
+    const char *builtin[MAX_BUILTIN_NAMES];
+    files_check_names(&c->files, builtin, builtin_names(builtin, MAX_BUILTIN_NAMES));
     return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
 }
 
@@ -163,18 +162,18 @@ KrsStatus pass_simplify(Compilation *c)
     return KRS_OK;
 }
 
-/* Prunes a component; other roots may be the distance itself. */
+/* Prunes a component; other roots may be the distance itself.  Returns whether it has changed. */
 static bool prune_component(Compilation *c, size_t component)
 {
-    Roots     *roots = &c->scene->roots;
-    const Node old   = distance_root(roots, component);
-    const Box  box   = c->elaborated.components.items[component].shape->box;
-    Node new         = csg_nodes_prune(c->simplified, old, box, &c->scratch);
+    Roots     *roots  = &c->scene->roots;
+    const Node old    = distance_root(roots, component);
+    const Box  box    = c->elaborated.components.items[component].shape->box;
+    const Node pruned = csg_nodes_prune(c->simplified, old, box, &c->scratch);
     arena_free(&c->scratch);
-    for (size_t i = 0; new != old &&i < roots->first[ROOT_KINDS]; i++)
+    for (size_t i = 0; pruned != old && i < roots->first[ROOT_KINDS]; i++)
         if (roots->all[i] == old)
-            roots->all[i] = new;
-    return new != old;
+            roots->all[i] = pruned;
+    return pruned != old;
 }
 
 /* Prunes the graph.  What is needed depends on numbers, so it stays where these are kept out of the
@@ -202,7 +201,8 @@ KrsStatus pass_parameterise(Compilation *c)
     Arena *arena = &c->scene->arena;
     if (!parameterises(c))
         return KRS_OK;
-    /* These begin beyond what is counted in the text, and then in the graph. */
+    /* Numbers of the graph and of boxes are counted from here on: beyond those of the text, and beyond
+       each other. */
     const uint32_t of_graph = 1u << 30, of_boxes = 1u << 31;
     Graph         *graph = graph_parameterise(c->scene->graph, roots->all, roots->first[ROOT_KINDS],
                                               of_graph, arena);

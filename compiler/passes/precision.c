@@ -149,7 +149,7 @@ static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *ca
            krs_may_blur_normals(farthest, nearest, pixel, lines);
 }
 
-/* Returns the longest side of its box that has an end. */
+/* Returns the longest side of the box of a scene that has an end. */
 static double size_of(const Scene *s)
 {
     double size = 0;

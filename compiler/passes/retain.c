@@ -14,8 +14,8 @@ static const char *retain_text(Compilation *c, const char *text)
     return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
 }
 
-/* Returns where the author's texts have something; zeros for what a text of the library has.
-   Mostly it is in the text of the one before, which may be NULL. */
+/* Returns where the author's texts have something; zeros for what a text of the library has.  Mostly it
+   is in the same text as the location `before`, which may be NULL. */
 static KrsLocation retain_location(Compilation *c, Span span, const KrsLocation *before)
 {
     const Source *source = &c->sources.items[span.source];
@@ -248,7 +248,8 @@ static void retain_tapes(Compilation *c)
                                instances->frame_numbers.count, arena);
 }
 
-/* Tapes have much of the frame in common, which is run once for all.  Operands have smaller numbers. */
+/* Gathers the nodes of the frame that any tape has, so that they are run once for all tapes.  They are in
+   the order of their numbers, since operands have smaller ones. */
 static void retain_frame(Compilation *c)
 {
     KrsScene         *scene   = c->scene;
