@@ -47,7 +47,7 @@ void module_part_corners(Box box, double low[3], double high[3])
     }
 }
 
-/* Numbers of the frame that are known now. */
+/* Returns a vector of the frame that is known now (graph_parameterised). */
 static Node parameterise_vector(Graph *graph, const double v[3], uint32_t *number)
 {
     return graph_parameterised(graph, TYPE_VEC3, v, (*number)++);

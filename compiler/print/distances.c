@@ -14,8 +14,8 @@ Node emit_zone(const Emitter *e)
                : m->zone;
 }
 
-/* Tells how deep p is in the zones of the scene, and then what distances must not be below: that, and the
-   depth in those of the caller. */
+/* Emits krs_zone_depth, the depth of p in the zones of the scene; and krs_cut, which keeps a distance from
+   being below that depth and the one in zones of the caller. */
 void emit_zones(Emitter *e)
 {
     const Node zone = emit_zone(e);
@@ -71,7 +71,7 @@ static FunctionKind kind_of_distance(const Emitter *e, uint32_t component)
     return OF_DISTANCE;
 }
 
-/* Emits the least, which begins with the first component where none is left out. */
+/* Emits the least distance, which begins with the first component where none is left out. */
 void emit_distance(Emitter *e)
 {
     bool some = e->variant->march_group > 0 || (e->variant->planes && e->module->is_plane) ||
@@ -91,7 +91,7 @@ bool emit_has_gradient(const Emitter *e, uint32_t component)
     return e->graph->items[e->module->gradients[2 * component]].type == TYPE_VEC3;
 }
 
-/* Planes that rays know have gradients as well. */
+/* Tells whether the gradient needs a component: planes that rays know have gradients as well. */
 static bool is_of_group(const Emitter *e, uint32_t component)
 {
     return e->variant->march_group == 0 || emit_is_of_group(e, component);
@@ -112,8 +112,8 @@ bool emit_wants_gradient(const Emitter *e)
     return e->wanted[KRS_FUNCTION_GRADIENT] || e->wanted[KRS_FUNCTION_TANGENT];
 }
 
-/* Tells whether overflow may make of the distance to the gradient's plane what it likes: of a polynomial's,
-   which is not the distance itself. */
+/* Tells whether the distance to the gradient's plane may overflow: that of a polynomial, which is not the
+   distance itself. */
 static bool may_overflow(const Emitter *e, uint32_t component)
 {
     return e->wanted[KRS_FUNCTION_TANGENT] && e->needed_of[OF_GRADIENT][component] &&

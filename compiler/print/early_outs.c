@@ -84,13 +84,13 @@ static const char *emit_region(Emitter *e, const Regions *regions, uint32_t regi
     return e->text[result];
 }
 
-/* A component without guards has the distance alone; one that is nowhere is left out, as is a plane
-   that rays know. */
+/* Tells whether a component has guards; one without has the distance alone. */
 static bool is_guarded(const Emitter *e, uint32_t component)
 {
     return emit_root(e, OF_LOD, component) != emit_root(e, OF_DISTANCE, component);
 }
 
+/* Tells whether distances have a component: not one that is nowhere, nor a plane that rays know. */
 static bool is_looked_at(const Emitter *e, uint32_t component)
 {
     return !box_is_empty(e->module->boxes[component]) && !emit_leaves_out(e, component);
@@ -136,7 +136,7 @@ const char *emit_box_distance(Emitter *e, uint32_t component)
     return call.bytes;
 }
 
-/* A component whose box is not nearer than what has been found is left out. */
+/* Emits a component, which is left out where its box is not nearer than what has been found. */
 static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
 {
     const char *call = emit_call_of(e, OF_LOD, component);
@@ -161,7 +161,7 @@ static FunctionKind kind_of_lod(const Emitter *e, uint32_t component)
     return OF_LOD;
 }
 
-/* Endless components first, then the others where they may be nearer. */
+/* Emits endless components first, then the others where they may be nearer. */
 void emit_lod(Emitter *e)
 {
     bool   found = e->module->is_plane == NULL; /* by the first component */

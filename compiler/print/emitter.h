@@ -2,9 +2,9 @@
  * emitter.h: what the files that print a module share.
  *
  * statements.c and mirrors.c turn nodes into statements; distances.c, surfaces.c, instances.c,
- * early_outs.c and march.c write the functions around them; module_print.c puts all together.  None of them knows
- * the language: what differs between languages is a template (templates.def), a type, an operation or
- * a helper of the printer.
+ * early_outs.c and march.c write the functions around them; module_print.c puts all together.  None of
+ * them knows the language: what differs between languages is a template (templates.def), a type, an
+ * operation or a helper of the printer.
  */
 #ifndef KRS_EMITTER_H
 #define KRS_EMITTER_H
@@ -110,7 +110,7 @@ void emit_body(Emitter *e, const Node *roots, size_t count);
    constant in it; then emit_node for each of the others. */
 void emit_begin(Emitter *e, const Node *roots, size_t count);
 void emit_node(Emitter *e, Node n);
-/* Emits the point likewise, unless it is given. */
+/* Does the same for a node of the point; a node that is given has its name. */
 void emit_point_node(Emitter *e, Node n);
 /* Emits the expression of a node whose operands have theirs. */
 const char *emit_expression(Emitter *e, const Expr *expr);
@@ -144,7 +144,7 @@ const char *emit_number(Emitter *e, double number);
 const char *emit_vector(Emitter *e, const double v[3]);
 /* Emits a vector of a box: the global of node `index`, or a literal where there are no nodes. */
 const char *emit_box_vector(Emitter *e, const Node *nodes, size_t index, const double v[3]);
-/* An expression that is a whole statement needs no parentheses around it. */
+/* Returns an expression without the parentheses around it, which a whole statement does not need. */
 const char *emit_bare(Emitter *e, const char *text);
 /* Returns a count, or the number of something. */
 const char *emit_count(Emitter *e, size_t count);
@@ -155,8 +155,8 @@ const char *emit_slot(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
 
 /* Reads the printer's files; then, of a call in a text, what it needs is in e->helper_text. */
 void helpers_read(Emitter *e);
-/* The function that `name` begins with is called, with so many operands of that type.  Returns what it is called
-   of that type. */
+/* Notes that the function which `name` begins with is called, with so many operands of that type.  Returns
+   the name of the function for that type. */
 const char *emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands);
 /* Writes a function of these files that is one of a component: N in it stands for the number. */
 void emit_helper_of(Emitter *e, const char *name, uint32_t component);
@@ -205,16 +205,8 @@ const MirrorNodes *mirror_nodes(const Emitter *e, Node fold);
 /* Emits a distance without what zones cut out. */
 const char *emit_cut(Emitter *e, const char *distance);
 void        need_distance(Emitter *e);
-/* volumes.c: functions of media that scatter light. */
-void emit_volumes(Emitter *e);
-void emit_density(Emitter *e);
-void emit_albedo(Emitter *e);
-void emit_anisotropy(Emitter *e);
-void emit_emission(Emitter *e);
-/* Tells whether this function of media is wanted. */
-bool emit_wants_volume(const Emitter *e, uint32_t which);
-void need_gradient(Emitter *e);
-void need_tangent(Emitter *e);
+void        need_gradient(Emitter *e);
+void        need_tangent(Emitter *e);
 /* Tells whether krs_tangent keeps the distance to a component's plane from overflow by the box around the component. */
 bool emit_keeps_plane(const Emitter *e, uint32_t component);
 /* Tells whether a function is wanted that finds the gradient of what is nearest. */
@@ -234,6 +226,15 @@ Node emit_zone(const Emitter *e);
 void emit_distance(Emitter *e);
 void emit_gradient(Emitter *e);
 void emit_tangent(Emitter *e);
+
+/* volumes.c: functions of media that scatter light. */
+void emit_volumes(Emitter *e);
+void emit_density(Emitter *e);
+void emit_albedo(Emitter *e);
+void emit_anisotropy(Emitter *e);
+void emit_emission(Emitter *e);
+/* Tells whether this function of media is wanted. */
+bool emit_wants_volume(const Emitter *e, uint32_t which);
 
 /* shared.c: what a component's distance and surface have in common. */
 /* Finds the values that the distance hands over; false: each is computed by itself. */
@@ -294,7 +295,6 @@ void emit_seen_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, ui
                      const char *variable);
 /* Emits the gradient `other` of a component, as the ray sees it. */
 void emit_media_gradient(Emitter *e, uint32_t component);
-void need_media_surface(Emitter *e);
 void emit_media_surface(Emitter *e);
 void need_media(Emitter *e);
 void emit_medium_at(Emitter *e);

@@ -82,7 +82,8 @@ static void read_file(Emitter *e, const EmbeddedFile *file, bool of_base)
     }
 }
 
-/* The first of a name and type is found, so a printer's own helper stands for that of its base. */
+/* Reads the helpers of a printer before those of its base: the first of a name and type is found, so that the
+   printer's own stands for that of the base. */
 void helpers_read(Emitter *e)
 {
     for (const Printer *printer = e->printer; printer; printer = printer->base)
@@ -90,7 +91,7 @@ void helpers_read(Emitter *e)
             read_file(e, file, printer != e->printer);
 }
 
-/* Returns the one whose first operand has this type, if any; NULL: any type. */
+/* Returns the helper of a name whose first operand has this type, if any; NULL: any type. */
 static Helper *find_helper(Emitter *e, const char *name, size_t length, const char *type)
 {
     for (size_t i = 0; i < e->helpers.count; i++) {
@@ -156,7 +157,7 @@ static void print_spread(Emitter *e, const char *name, const char *plain, GraphT
     text_add(out, ");\n}\n\n");
 }
 
-/* Returns what it is called; NULL: there is no such function. */
+/* Prints the function that a call begins with, and returns its name; NULL: there is no such function. */
 static const char *print_called(Emitter *e, const char *call, GraphType type, uint32_t operands)
 {
     const size_t length     = name_length(call);

@@ -141,7 +141,7 @@ const char *emit_row(Emitter *e, const Expr *row)
 
 /* ---- functions ---- */
 
-/* Returns the number of a function in texts, which count from 1. */
+/* Returns the name of a function; in texts functions count from 1. */
 static const char *function_name(Emitter *e, uint32_t id)
 {
     return numbered(e, "krs_instances_", id + 1);
@@ -165,7 +165,7 @@ const char *emit_state(Emitter *e, const Expr *state)
     return state_name(e, state_of(state->index));
 }
 
-/* Returns what functions are called with: some with the point alone. */
+/* Returns the parameters of functions that are called with so many operands: some with the point alone. */
 static const char *parameters_text(Emitter *e, uint32_t count)
 {
     static const GraphType   types[] = {TYPE_VEC3, TYPE_VEC3, TYPE_VEC2};
@@ -179,13 +179,19 @@ static const char *parameters_text(Emitter *e, uint32_t count)
     return text.bytes;
 }
 
+/* Returns the first value of a state. */
+static const char *first_text(Emitter *e, const InstanceState *state)
+{
+    Expr first = {.op = OP_CONSTANT, .type = (uint8_t)state->type};
+    memcpy(first.number, state->first, sizeof first.number);
+    return emit_constant(e, &first);
+}
+
 static void emit_first_states(Emitter *e, const InstanceFunction *function)
 {
     for (uint32_t i = 0; i < function->state_count; i++) {
         const InstanceState *state = &function->states[i];
-        Expr                 first = {.op = OP_CONSTANT, .type = (uint8_t)state->type};
-        memcpy(first.number, state->first, sizeof first.number);
-        emit_variable(e, state->type, state_name(e, i), emit_constant(e, &first));
+        emit_variable(e, state->type, state_name(e, i), first_text(e, state));
     }
 }
 
@@ -279,7 +285,7 @@ static void emit_sum_that_ends(Emitter *e, const InstanceFunction *function, con
               choice_text(e, "whole > 0.0", "blended", "nearby.clearance"));
 }
 
-/* Emits what the function returns that joins its states. */
+/* Emits the end of a function that joins its states: what it returns. */
 static void emit_end_of_states(Emitter *e, const InstanceFunction *function, const Node *bodies)
 {
     const Node  body   = bodies[function->state_count];
@@ -291,15 +297,11 @@ static void emit_end_of_states(Emitter *e, const InstanceFunction *function, con
     } else if (function->listed == NOT_LISTED) {
         text_format(e->out, "    return min(%s, nearby.clearance);\n}\n\n", end);
     } else {
-        const InstanceState *state = &function->states[function->listed];
-        Expr                 first = {.op = OP_CONSTANT, .type = (uint8_t)state->type};
-        memcpy(first.number, state->first, sizeof first.number);
-        Text none = {.arena = e->scratch};
-        text_add(&none, emit_constant(e, &first));
-        Text is_listed = {.arena = e->scratch};
+        const InstanceState *state     = &function->states[function->listed];
+        Text                 is_listed = {.arena = e->scratch};
         text_format(&is_listed, "%s < nearby.clearance", end);
         emit_local(e, TYPE_BOOL, "listed", is_listed.bytes);
-        emit_variable(e, state->type, "none", none.bytes);
+        emit_variable(e, state->type, "none", first_text(e, state));
         if (function->listed == 0)
             emit_line(e, state->type == TYPE_FLOAT ? "    none = nearby.clearance;\n"
                                                    : "    none.x = nearby.clearance;\n");

@@ -15,7 +15,7 @@
 
 static void write_out(Emitter *e, Text *to, const char *text, size_t length);
 
-/* Finds what is called at `text`, or NULL. */
+/* Finds the alternative that is called at `text`, or NULL. */
 static const Alternative *find_alternative(const Emitter *e, const char *text, size_t length)
 {
     for (const Alternative *alternative = e->printer->alternatives; alternative->name;
@@ -39,7 +39,7 @@ static size_t operand_length(const char *text, size_t length)
     return at;
 }
 
-/* Writes a alternative between two operands out; returns the length of what stood for it. */
+/* Writes an alternative between two operands out; returns the length of what stood for it. */
 static size_t write_alternative(Emitter *e, Text *to, const Alternative *alternative,
                                 const char *text, size_t length)
 {
@@ -190,8 +190,8 @@ const char *emit_vector(Emitter *e, const double v[3])
     return emit_constant(e, &constant);
 }
 
-/* A file may have any name; what would end the comment, in WGSL any end of a line of Unicode, or the text, is shown
-   as `?`. */
+/* Adds the name of a file, which may be any: what would end the comment, in WGSL any end of a line of Unicode,
+   or the text, is shown as `?`. */
 static void add_file_name(Text *out, const char *name)
 {
     size_t left = strlen(name), length;

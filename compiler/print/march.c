@@ -20,7 +20,8 @@ void emit_plane_cosine(Emitter *e) { emit_plane(e, emit_planes(e)[1]); }
 
 /* ---- parts ---- */
 
-/* Branches save work; of camera-relative points nobody knows what is far. */
+/* Tells whether parts are marched by krs_distance_lod: its branches save work, but of camera-relative points
+   nobody knows what is far. */
 static bool goes_by_lod(const Emitter *e)
 {
     return e->variant->many_threads && !e->variant->camera_relative;
@@ -116,7 +117,7 @@ static void need_steps(Emitter *e, FunctionKind kind)
 void need_along(Emitter *e) { need_steps(e, OF_ALONG); }
 void need_probe(Emitter *e) { need_steps(e, OF_PROBE); }
 
-/* Emits what a component has to itself, and where it joins the others. */
+/* Emits what a component tells of a ray beside its distance. */
 void emit_along_of(Emitter *e, const ModuleFunction *function)
 {
     emit_head_of(e, function->kind, function->component);
@@ -124,14 +125,14 @@ void emit_along_of(Emitter *e, const ModuleFunction *function)
     emit_line(e, "    return %s;\n}\n\n", e->text[*function->roots]);
 }
 
-/* Emits the least of all, of which some have no more than a distance. */
+/* Emits the least step of all components, of which some have no more than a distance. */
 static void emit_steps(Emitter *e, FunctionKind kind)
 {
     emit_variable(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
     for (uint32_t i = 0; i < e->module->components; i++) {
-        FunctionKind called = has_own_step(e, kind, i) ? kind : OF_DISTANCE;
-        bool         apart  = kind == OF_ALONG && emit_is_medium(e, i);
-        if (!emit_leaves_out(e, i) && !apart)
+        FunctionKind called   = has_own_step(e, kind, i) ? kind : OF_DISTANCE;
+        bool         separate = kind == OF_ALONG && emit_is_medium(e, i);
+        if (!emit_leaves_out(e, i) && !separate)
             text_format(e->out, "    t = min(t, %s);\n", emit_call_of(e, called, i));
     }
 }
@@ -147,19 +148,19 @@ void emit_along(Emitter *e)
     emit_media_steps(e, kind_of_step, "t");
 }
 
-/* Emits zones and media, which are lengths along the ray. */
+/* Emits both steps; where zones or media cut, whose steps are lengths along the ray, the first has all. */
 void emit_separate_steps(Emitter *e)
 {
-    const bool together = e->cuts || emit_has_media(e);
+    const bool fused = e->cuts || emit_has_media(e);
     emit_variable(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
     emit_variable(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     for (uint32_t i = 0; i < e->module->components; i++) {
         const FunctionKind kind = kind_of_step(e, i);
-        const char        *into = kind == OF_ALONG || together ? "t" : "d";
+        const char        *into = kind == OF_ALONG || fused ? "t" : "d";
         if (!emit_leaves_out(e, i) && !emit_is_medium(e, i))
             text_format(e->out, "    %s = min(%s, %s);\n", into, into, emit_call_of(e, kind, i));
     }
-    if (together)
+    if (fused)
         emit_seen_steps(e, kind_of_step, "t");
     text_format(e->out, "    return %s(t, d);\n", e->printer->types[TYPE_VEC2]);
 }

@@ -161,8 +161,6 @@ void emit_subsurface(Emitter *e) { emit_nearest_of(e, e->module->is_subsurface);
 
 /* ---- surfaces ---- */
 
-void need_media_surface(Emitter *e) { need_media(e); }
-
 /* Emits what of `other` is in no zone; the walls of zones have normals of their own. */
 static void emit_cut_surface(Emitter *e, const char *normal)
 {
@@ -181,7 +179,8 @@ static void emit_solid_surface(Emitter *e, uint32_t component)
                   (Operands){"other.distance < nearest.distance", "nearest", "other"});
 }
 
-/* The wall of the ray's own medium counts as a little farther: what touches it is seen. */
+/* Emits the surface of a medium.  The wall of the ray's own counts as a little farther: what touches it is
+   seen. */
 static void emit_medium_surface(Emitter *e, uint32_t component)
 {
     const char *own = equals_text(e, "krs_medium", component), *normal = "turned";

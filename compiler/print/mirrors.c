@@ -13,19 +13,22 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/print/emitter.h"
 
-/* Returns 1 + the axis that a constant mirror is across, negative where its normal points down; 0:
-   none. */
-static int fold_axis(const Emitter *e, const Expr *fold)
+/* Returns 1 + the axis that a constant normal is along, negative where it points down; 0: none. */
+static int axis_of(const Expr *normal)
 {
-    const Expr *normal = &e->graph->items[fold->operands[1]];
-    if (normal->op != OP_CONSTANT)
-        return 0;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; normal->op == OP_CONSTANT && i < 3; i++)
         if (fabs(normal->number[i]) == 1)
             return (int)normal->number[i] * (i + 1);
     return 0;
+}
+
+/* Returns the same of the normal of a mirror. */
+static int fold_axis(const Emitter *e, const Expr *fold)
+{
+    return axis_of(&e->graph->items[fold->operands[1]]);
 }
 
 /* Returns a mirror across an axis.  One coordinate becomes the lesser, or the greater, of itself
@@ -71,7 +74,7 @@ static bool is_tilted(const Emitter *e, const Expr *expr)
             (e->graph->items[expr->operands[1]].op == OP_CONSTANT && fold_axis(e, expr) == 0));
 }
 
-/* A use of the node by a mirror counts twice: so this is the only one. */
+/* Tells whether a mirror is used by the next mirror alone, whose use counts twice. */
 static bool only_feeds_mirror(const Emitter *e, Node n)
 {
     return is_tilted(e, &e->graph->items[n]) && e->feeds_mirror[n] && e->uses[n] == 2 &&
@@ -102,7 +105,7 @@ static const char *product_text(Emitter *e, Node fold, Node mirror, int back)
         return frame_text(e, nodes->products[back - 1]);
     const double *n = items[items[fold].operands[1]].number;
     const double *b = items[items[mirror].operands[1]].number;
-    return emit_number(e, 2 * (n[0] * b[0] + n[1] * b[1] + n[2] * b[2]));
+    return emit_number(e, 2 * dot3(n, b));
 }
 
 /* Subtracts what a mirror before has moved the point by, along the normal. */
@@ -173,21 +176,13 @@ enum { MAX_MIRRORS = 64 };
 
 static const MirrorNodes no_nodes = {false, {NODE_NONE, NODE_NONE}};
 
-static bool is_across_axis(const Expr *normal)
-{
-    bool across = false;
-    for (int i = 0; i < 3; i++)
-        across = across || (normal->op == OP_CONSTANT && fabs(normal->number[i]) == 1);
-    return across;
-}
-
 /* Tells whether a mirror may be in a row, which may have mirrors with literal normals among the
    others. */
 static bool may_be_in_row(const Graph *graph, Node node)
 {
     const Expr *e = &graph->items[node];
     return e->op == OP_fold && graph->items[e->operands[1]].time != TIME_POINT &&
-           !is_across_axis(&graph->items[e->operands[1]]);
+           axis_of(&graph->items[e->operands[1]]) == 0;
 }
 
 static MirrorNodes parameterise_mirror(Graph *graph, Node fold)

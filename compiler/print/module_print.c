@@ -345,7 +345,7 @@ static void emit_block(Emitter *e)
         emit_template(e, TEMPLATE_TEXTURES, (Operands){0});
 }
 
-/* Prototypes of the entry points, which may then be called in any order. */
+/* Emits prototypes of the entry points, which may then be called in any order. */
 static void emit_entry_points(Emitter *e)
 {
     if (e->wanted[KRS_FUNCTION_SURFACE])

@@ -20,7 +20,7 @@ static bool is_computed(const Emitter *e, Node n)
     return e->graph->items[n].time == TIME_POINT && !e->given[n];
 }
 
-/* Tells how many noises stand between a value and the point, one in the other.  Returns the most. */
+/* Finds how many noises stand between each value and the point, one in the other.  Returns the most. */
 static uint32_t find_ranks(Emitter *e)
 {
     uint32_t most = 0;
@@ -46,7 +46,7 @@ static const char *new_name(Emitter *e, char letter)
     return name.bytes;
 }
 
-/* The first of the variables becomes the second, and so on; the last becomes `last`, or stays. */
+/* Emits moves: each variable gets the value of the next one, and the last gets `last`, or stays. */
 static void emit_moves(Emitter *e, const char **names, size_t count, const char *last)
 {
     for (size_t i = 0; i + 1 < count; i++)

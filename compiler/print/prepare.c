@@ -6,8 +6,8 @@
 
 #include "compiler/print/emitter.h"
 
-/* Names the values of a frame, and declares them as globals unless they are macros; `set` gets their nodes, of which there
-   are so many. */
+/* Names the values of a frame, and declares them as globals unless they are macros; `set` gets their nodes.
+   Returns how many there are. */
 static size_t emit_globals(Emitter *e, const Node *roots, size_t count, bool macros, Node *set,
                            bool *is_global)
 {

@@ -6,7 +6,7 @@
  */
 #include "compiler/print/emitter.h"
 
-/* The values beyond which a function of its own is shorter to read. */
+/* The number of values beyond which a function of its own is shorter to read. */
 enum { MAX_SHARED = 12 };
 
 /* The state of a node. */
@@ -69,7 +69,7 @@ static const char *name_of(Emitter *e, const char *what, size_t number)
 
 static const char *type_text(Emitter *e, GraphType type) { return e->printer->types[type]; }
 
-/* Returns a line, or a parameter, for each. */
+/* Returns the line, or the parameter, of a value that is handed over. */
 static const char *variable_text(Emitter *e, TextTemplate template, const NodeList *shared,
                                  size_t i)
 {
@@ -133,11 +133,8 @@ void emit_shared_rest(Emitter *e, const ModuleFunction *surface, const NodeList 
     emit_variables(e, shared);
     emit_local(e, TYPE_FLOAT, "d", call_text(e, shared, surface->component));
     e->given[surface->roots[ROOT_DISTANCE]] = "d";
-    for (size_t i = 0; i < shared->count; i++) {
-        Text name = {.arena = e->scratch};
-        text_format(&name, "s%zu", i);
-        e->given[shared->items[i]] = name.bytes;
-    }
+    for (size_t i = 0; i < shared->count; i++)
+        e->given[shared->items[i]] = name_of(e, "s", i);
     emit_body(e, surface->roots, surface->root_count);
     e->given[surface->roots[ROOT_DISTANCE]] = NULL;
     for (size_t i = 0; i < shared->count; i++)

@@ -121,9 +121,10 @@ void state_values_find(const StateValues *values, const NodeValue *parameters, N
         for (uint32_t k = 0; k < value->width; k++) {
             if (value->at[k] == NO_PLACE)
                 continue;
-            uint32_t at = value->at[k] - 4 * values->first_slot, bits = (uint32_t)found[k];
-            float    number = to_single(found[k]);
+            uint32_t at     = value->at[k] - 4 * values->first_slot;
             bool     whole  = graph->items[value->node].type == TYPE_UINT;
+            uint32_t bits   = whole ? (uint32_t)found[k] : 0; /* others may be beyond its range */
+            float    number = to_single(found[k]);
             memcpy(&block[at / 4][at % 4], whole ? (void *)&bits : (void *)&number, sizeof number);
         }
     }

@@ -31,10 +31,10 @@ typedef struct StateValues {
 bool state_value_is_given(const Graph *graph, Node node);
 /* Tells whether it only arranges its operands: shaders do that. */
 bool state_value_is_arranged(const Graph *graph, Node node);
-/* Places for `wanted`, or for what those arrange. */
+/* Finds places for `wanted`, or for what those arrange. */
 void state_values_assign(StateValues *values, const Graph *graph, const Node *wanted, size_t count,
                          Arena *arena, Arena *scratch);
-/* Finds them all; `block` has room for `slots`. */
+/* Finds all these values; `block` has room for `slots`. */
 void state_values_find(const StateValues *values, const NodeValue *parameters, NodeValue *room,
                        float (*block)[4]);
 

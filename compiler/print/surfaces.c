@@ -32,7 +32,7 @@ void emit_struct(Emitter *e)
 void need_surface(Emitter *e)
 {
     if (emit_has_media(e))
-        need_media_surface(e);
+        need_media(e);
     for (uint32_t i = 0; i < e->module->components; i++)
         e->needed_of[OF_SURFACE][i] = true;
 }

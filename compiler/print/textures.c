@@ -50,7 +50,7 @@ void emit_texture_globals(Emitter *e)
         emit_template(e, TEMPLATE_GLOBAL, (Operands){e->printer->types[TYPE_VEC3], "krs_view"});
 }
 
-/* Headers are behind those of tables. */
+/* Emits the reads of headers, which are behind those of tables. */
 void emit_texture_reads(Emitter *e)
 {
     const size_t tables = e->graph->instances ? e->graph->instances->tables.count : 0;

@@ -186,7 +186,8 @@ static void spell_list(Speller *s, Part p)
     }
 }
 
-/* Functions of another name, or that are no functions; $T is a type of as many numbers as the operand has. */
+/* Functions that have another name in WGSL, or are no functions there; $T is a type of as many numbers as the
+   operand has. */
 static const struct {
     const char *glsl, *wgsl;
 } calls[] = {
@@ -253,7 +254,7 @@ static void spell_call(Speller *s, Part name, Part list)
     text_add(s->out, ")");
 }
 
-/* Operators, numbers and names stay; what is in parentheses is an expression. */
+/* Spells what is no choice: operators, numbers and names stay; what is in parentheses is an expression. */
 static void spell_terms(Speller *s, Part p)
 {
     while (p.from < p.end) {
@@ -306,7 +307,7 @@ static void spell_expression(Speller *s, Part p)
 
 static void spell_statement(Speller *s);
 
-/* Blanks and comments. */
+/* Copies blanks and comments. */
 static void pass_blanks(Speller *s)
 {
     const char *from = s->at;
@@ -485,13 +486,11 @@ static void spell_statement(Speller *s)
 
 void wgsl_spell(const char *text, size_t length, GraphType type, Text *out)
 {
-    static const char        operands[] = "$a$b$c$d";
-    static const char *const names[]    = {
-           [TYPE_FLOAT] = "float", [TYPE_VEC2] = "vec2", [TYPE_VEC3] = "vec3",
-           [TYPE_VEC4] = "vec4",   [TYPE_BOOL] = "bool", [TYPE_UINT] = "uint"};
-    Speller s = {.at = text, .begin = text, .end = text + length, .out = out};
+    static const char operands[] = "$a$b$c$d";
+    const char       *name       = glsl_printer.types[type];
+    Speller           s          = {.at = text, .begin = text, .end = text + length, .out = out};
     for (const char *at = operands; *at; at += 2)
-        remember(&s, part(at, at + 2), part(names[type], names[type] + strlen(names[type])));
+        remember(&s, part(at, at + 2), part(name, name + strlen(name)));
     for (pass_blanks(&s); s.at < s.end; pass_blanks(&s))
         spell_statement(&s);
 }
