@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/splitmix.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/research/research.h"
 #include "compiler/refute/refute_blame.h"
@@ -160,7 +161,7 @@ static bool try_claims(Refuter *r, size_t suspect, uint64_t operations, Finding 
             continue;
         search.figure = shape->figure && strcmp(pair->property, "figure") != 0;
         search.random = r->random;
-        r->random += 0x9e3779b97f4a7c15;
+        (void)splitmix_next(&r->random);
         finding->suspect = suspect;
         refuted          = try_settings(r, shape, &search, operations / claims.count, finding);
         if (refuted)

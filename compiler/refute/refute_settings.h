@@ -6,16 +6,16 @@
 
 #include "compiler/refute/refuter.h"
 
-/* Slopes and state of the scene, before any parameters are chosen. */
+/* These prepare the slopes and the state of a scene, before any parameters are chosen. */
 void prepare_slopes(Refuter *r);
 void prepare_frames(Refuter *r);
 
-/* Tells whether what it computes depends on parameters of the scene. */
+/* Tells whether what a tape computes depends on parameters of the scene. */
 bool needs_parameters(const Tape *tape);
-/* Defaults in the first trial, then anything that is permitted. */
+/* Chooses the defaults in the first trial, then anything that is permitted. */
 void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values);
-/* Chooses parameters that a state can have, as good as any others but for the first; false: there
-   are none to be found, or those of the first trial cannot be had, which is a finding. */
+/* Chooses parameters that a state can have, by several attempts except in the first trial.  False: none were
+   found; in the first trial, whose parameters are given, that is a finding. */
 bool choose_possible(Refuter *r, uint32_t trial, NodeValue *parameters);
 
 #endif

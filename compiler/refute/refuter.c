@@ -3,6 +3,7 @@
  */
 #include "compiler/refute/refuter.h"
 
+#include "compiler/base/splitmix.h"
 #include "compiler/graph/rewrite/simplify.h"
 #include "compiler/refute/search.h"
 #include "compiler/shape/slope.h"
@@ -42,7 +43,7 @@ bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool lips
     search->steep  = lipschitz;
     search->figure = shape->figure;
     search->random = r->random;
-    r->random += 0x9e3779b97f4a7c15;
+    (void)splitmix_next(&r->random);
     return true;
 }
 

@@ -141,7 +141,7 @@ bool search_start(Search *search, const NodeValue *parameters)
     return tape_frame_infinite(&search->tape, search->values) == NODE_NONE;
 }
 
-/* Searches uphill from the best KEPT of a batch of starts. */
+/* Searches uphill from the best few of a batch of starts. */
 static void search_batch(Search *s, uint64_t end)
 {
     PointPair best[BEST];

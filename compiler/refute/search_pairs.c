@@ -216,10 +216,5 @@ bool gradient_at(Search *s, const double p[3], double gradient[3])
         (void)distance_at(s, before);
         gradient[i] -= side_now(s);
     }
-    double length = length3(gradient);
-    if (!isfinite(length) || !(length > 0))
-        return false;
-    for (int i = 0; i < 3; i++)
-        gradient[i] /= length;
-    return true;
+    return normalize3(gradient);
 }

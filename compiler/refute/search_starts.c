@@ -70,9 +70,8 @@ static void start_at_target(Search *s, double p[3], double axis[3])
         drive_up(s, target, p, axis);
     else
         drive_to_zero(s, target, p, axis);
-    double length = length3(axis);
-    for (int i = 0; i < 3; i++)
-        axis[i] = length > 0 && isfinite(length) ? axis[i] / length : i == 0;
+    if (!normalize3(axis))
+        memcpy(axis, (double[]){1, 0, 0}, 3 * sizeof *axis);
     if (!(length3(p) < 1e6 * (s->size + 1)))
         random_point(s, p);
     if (search_index(s, 2))

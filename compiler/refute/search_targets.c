@@ -24,7 +24,7 @@ static double target_value(const Search *s, const Target *t)
     case GOAL_WHOLE: return x - floor(x + 0.5);
     case GOAL_HALF: return x - floor(x) - 0.5;
     case GOAL_UNIT: return fabs(x) - 1;
-    case GOAL_FRONT: return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] - c[0];
+    case GOAL_FRONT: return dot3(a, b) - c[0];
     case GOAL_WALL: return x / b[t->component] - floor(x / b[t->component]) - 0.5;
     }
     return 0;
