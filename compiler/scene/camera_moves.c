@@ -2,6 +2,7 @@
  * camera_moves.c: moves a camera as a mouse and keys do.
  */
 #include "compiler/base/elementary.h"
+#include "compiler/base/vec.h"
 #include "krs/camera.h"
 
 #include <math.h>
@@ -12,39 +13,20 @@
 /* No zoom goes nearer to its point, in parts of its distance. */
 #define MIN_FACTOR 1e-3
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    const double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                         a[0] * b[1] - a[1] * b[0]};
-    memcpy(out, c, sizeof c);
-}
-
-static double length(const double v[3]) { return sqrt(dot(v, v)); }
-
+/* Scales a vector to length 1, unless it is 0. */
 static void normalize(double v[3])
 {
-    const double size = length(v);
+    const double size = length3(v);
     for (int i = 0; size > 0 && i < 3; i++)
         v[i] /= size;
 }
 
-static void add(double v[3], double factor, const double w[3])
-{
-    for (int i = 0; i < 3; i++)
-        v[i] += factor * w[i];
-}
-
 /* Rotates a vector around a unit axis (Rodrigues). */
-static void turn(double v[3], const double axis[3], double angle)
+static void rotate(double v[3], const double axis[3], double angle)
 {
     double       side[3];
-    const double along = dot(axis, v) * (1 - real_cos(angle));
-    cross(axis, v, side);
+    const double along = dot3(axis, v) * (1 - real_cos(angle));
+    cross3(axis, v, side);
     for (int i = 0; i < 3; i++)
         v[i] = v[i] * real_cos(angle) + side[i] * real_sin(angle) + axis[i] * along;
 }
@@ -54,7 +36,7 @@ static double distance(const KrsCamera *camera)
     double sight[3];
     for (int i = 0; i < 3; i++)
         sight[i] = camera->target[i] - camera->eye[i];
-    return length(sight);
+    return length3(sight);
 }
 
 /* Returns the height of the picture at the target, in world units. */
@@ -70,9 +52,9 @@ void krs_camera_axes(const KrsCamera *camera, double forward[3], double right[3]
     for (int i = 0; i < 3; i++)
         forward[i] = camera->target[i] - camera->eye[i];
     normalize(forward);
-    cross(forward, camera->up, right);
+    cross3(forward, camera->up, right);
     normalize(right);
-    cross(right, forward, up);
+    cross3(right, forward, up);
 }
 
 /* Returns the angle upwards that leaves the line of sight off the upright direction. */
@@ -80,7 +62,7 @@ static double limit_up(const double forward[3], const double upright[3], double 
 {
     const double most  = real_acos(MAX_UPRIGHT);
     const double above = real_acos(
-        fmin(fmax(dot(forward, upright), -1), 1)); /* angle from the top */
+        fmin(fmax(dot3(forward, upright), -1), 1)); /* angle from the top */
     return fmin(fmax(angle, above - (M_PI - most)), above - most);
 }
 
@@ -91,8 +73,8 @@ static void rotate_sight(const KrsCamera *camera, double sight[3], double right,
     memcpy(upright, camera->up, sizeof upright);
     normalize(upright);
     krs_camera_axes(camera, forward, side, top);
-    turn(sight, side, limit_up(forward, upright, up));
-    turn(sight, upright, -right);
+    rotate(sight, side, limit_up(forward, upright, up));
+    rotate(sight, upright, -right);
 }
 
 void krs_camera_orbit(KrsCamera *camera, double right, double up)
@@ -117,8 +99,8 @@ void krs_camera_look(KrsCamera *camera, double right, double up)
 
 static void shift(KrsCamera *camera, double factor, const double direction[3])
 {
-    add(camera->eye, factor, direction);
-    add(camera->target, factor, direction);
+    add_scaled3(camera->eye, camera->eye, factor, direction);
+    add_scaled3(camera->target, camera->target, factor, direction);
 }
 
 void krs_camera_pan(KrsCamera *camera, double right, double up)
@@ -157,7 +139,7 @@ void krs_camera_roll(KrsCamera *camera, double angle)
 {
     double forward[3], side[3], top[3];
     krs_camera_axes(camera, forward, side, top);
-    turn(top, forward, angle);
+    rotate(top, forward, angle);
     memcpy(camera->up, top, sizeof top);
 }
 
@@ -170,8 +152,8 @@ static double distance_for(const KrsCamera *camera, const double half[3], double
     for (int corner = 0; corner < 8; corner++) {
         const double at[3] = {corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1],
                               corner & 4 ? half[2] : -half[2]};
-        const double needed = fmax(fabs(dot(at, side)) / wide, fabs(dot(at, top)) / tall);
-        farthest            = fmax(farthest, needed - dot(at, forward));
+        const double needed = fmax(fabs(dot3(at, side)) / wide, fabs(dot3(at, top)) / tall);
+        farthest            = fmax(farthest, needed - dot3(at, forward));
     }
     return farthest;
 }
@@ -196,7 +178,7 @@ void krs_camera_fit(KrsCamera *camera, const double low[3], const double high[3]
     for (int i = 0; i < 3; i++)
         half[i] = fmax((high[i] - low[i]) / 2, 1e-9);
     const double away = camera->projection == KRS_PERSPECTIVE ? distance_for(camera, half, aspect)
-                                                              : 2 * length(half);
+                                                              : 2 * length3(half);
     for (int i = 0; i < 3; i++) {
         camera->target[i] = (low[i] + high[i]) / 2;
         camera->eye[i]    = camera->target[i] - margin * away * forward[i];

@@ -105,7 +105,7 @@ static Likeness compare_roots(Comparison *c, RootList a, RootList b)
     return found;
 }
 
-/* Returns the roots of these kinds. */
+/* Compares the roots of these kinds. */
 static Likeness compare_graphs(Comparison *c, bool of_shaders, RootKind first, RootKind last)
 {
     return compare_roots(c, collect_roots(c->a, of_shaders, first, last, &c->arena),
@@ -143,7 +143,7 @@ static bool same_tails(const Grid *a, const Grid *b, size_t cells)
 
 static bool same_grid(const Grid *a, const Grid *b)
 {
-    const size_t cells = (size_t)a->cells[0] * a->cells[1] * a->cells[2];
+    const size_t cells = grid_cell_count(a);
     return memcmp(&a->inner, &b->inner, sizeof a->inner) == 0 &&
            memcmp(a->low, b->low, sizeof a->low) == 0 && a->size == b->size &&
            memcmp(a->cells, b->cells, sizeof a->cells) == 0 &&

@@ -139,8 +139,9 @@ double krs_normal_blur(double coordinate, double pixel);
    views and orthographic ones twice the height of so many lines of pixels of this width. */
 double krs_seen_reach(double distance, double pixel, double lines);
 /* Camera-relative coordinates are not worth their cost where others are less than KRS_MIN_GAIN times as
-   large, or the blur is less than KRS_MIN_BLUR.  Whether what is seen may have more of both, where the
-   eye has this coordinate, and the nearest surface this distance from it and pixels of this width. */
+   large, or the blur is less than KRS_MIN_BLUR.  krs_may_blur_normals tells whether what is seen may have
+   more of both, where the eye has this coordinate, and the nearest surface this distance from it and pixels
+   of this width. */
 #define KRS_MIN_GAIN 4
 #define KRS_MIN_BLUR 0.1
 bool krs_may_blur_normals(double coordinate, double distance, double pixel, double lines);

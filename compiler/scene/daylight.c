@@ -161,7 +161,7 @@ static void mix_table(const double *table, int rows, int columns, double y, doub
                 b * ((1 - c) * next[k] + c * next[3 + k]);
 }
 
-/* The horizon hides the sun bit by bit. */
+/* Returns the part of the sun's disc that is above the horizon, which hides it bit by bit. */
 static double part_of_disc(Place at)
 {
     return fmin(fmax(0.5 + 0.5 * (at.cosine - horizon_at(at.radius)) / SUN_RADIUS, 0), 1);

@@ -192,8 +192,7 @@ struct KrsScene {
     SceneImage       image;
     char             hash[17];
     Tape             distance; /* distances of all components, and zones */
-    Tape             guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
-    zones */
+    Tape             guarded;  /* the same with guards (ROOTS_GUARDED) */
     Tape ahead;        /* if there are open surfaces: ROOTS_ALONG of all components, and zones */
     Tape gradients;    /* if there are open surfaces: gradients of all components */
     Tape surface;      /* all roots of all components, and zones */
@@ -219,8 +218,7 @@ struct KrsState {
     Box            *boxes;      /* memory for those of planned shapes (BoxPlan) */
     double          framed_eye[3], framed_target[3]; /* if the scene is framed: as there, or placed
                                                         for this state */
-    const char     *unbounded; /* location of the slope without a bound in the last refused
-    state */
+    const char     *unbounded; /* location of the slope without a bound, after a refusal */
     NodeValue      *values;    /* of every node */
     KrsLight       *lights;
     float (*sky)[3];              /* of daylight, */

@@ -276,7 +276,7 @@ size_t krs_state_zones(const KrsState *state, const double *rebase_origin, float
     return state->zone_count;
 }
 
-/* The origin is the last slot of the parameter block. */
+/* Sets the origin, which is the last slot of the parameter block, and finds the values. */
 void krs_state_rebase(KrsState *state, const double rebase_origin[3], float (*block)[4])
 {
     const KrsScene *scene = state->scene;
@@ -366,7 +366,7 @@ static void view_light(const KrsState *state, size_t index, KrsLight *light)
 
 /* ---- daylight ---- */
 
-/* Returns the sun, once lights are known. */
+/* Returns what the sky of a state is made of, once its lights are known. */
 static Daylight find_daylight(const KrsState *state)
 {
     const KrsScene *scene = state->scene;

@@ -236,8 +236,9 @@ static void shrink(const Cells *cells, Cell *cell)
     const double golden = 2.399963229728653, angle = 2.8 / sqrt(RIM_POINTS); /* pi (3 - sqrt 5) */
     double       least = HUGE_VAL;
     for (int i = 0; i < RIM_POINTS; i++) {
-        const double y = 1 - (2 * i + 1.0) / RIM_POINTS, ring = sqrt(1 - y * y), turn = golden * i;
-        const double way[3] = {ring * real_cos(turn), y, ring * real_sin(turn)};
+        const double y = 1 - (2 * i + 1.0) / RIM_POINTS, ring = sqrt(1 - y * y),
+                     azimuth = golden * i;
+        const double way[3]  = {ring * real_cos(azimuth), y, ring * real_sin(azimuth)};
         double       point[3];
         for (int k = 0; k < 3; k++)
             point[k] = cell->middle[k] + cell->radius * way[k];

@@ -146,7 +146,7 @@ void state_tables_refresh(const KrsState *state)
 
 /* ---- as shaders read them ---- */
 
-/* The origin is the last slot of the parameter block. */
+/* Tells whether a slot is that of the origin: the last one of the parameter block. */
 static bool is_origin(const KrsScene *scene, uint32_t slot)
 {
     return scene->program.camera_relative && slot == scene->program.parameter_slots - 1;

@@ -16,11 +16,6 @@ typedef struct Place {
     size_t row, copy, cell, list;
 } Place;
 
-static size_t cell_count(const Grid *grid)
-{
-    return (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-}
-
 /* Places the parts of a table with so many cells and entries at `next`, and moves that on to the next table. */
 static Place place_parts(const InstanceTable *table, size_t cells, size_t entries, TableSizes *next)
 {
@@ -34,7 +29,7 @@ static Place place_parts(const InstanceTable *table, size_t cells, size_t entrie
 
 static Place place_table(const InstanceTable *table, TableSizes *next)
 {
-    size_t cells = cell_count(&table->cells);
+    size_t cells = grid_cell_count(&table->cells);
     return place_parts(table, cells, table->cells.first[cells], next);
 }
 
@@ -148,7 +143,7 @@ static void put_fading(const InstanceTable *table, Texel *header)
 
 static void put_grid(const Grid *grid, Texel *records, Texel *lists)
 {
-    size_t   cells   = cell_count(grid);
+    size_t   cells   = grid_cell_count(grid);
     uint32_t entries = grid->first[cells];
     for (size_t c = 0; c <= cells; c++) {
         const bool middle = grid->tails && c < cells && grid->first[c] < grid->first[c + 1];
@@ -189,7 +184,7 @@ static void put_rows(const Instances *instances, const InstanceTable *table,
 static void put_copies(const InstanceTable *table, const float (*rows)[4], float (*copies)[4])
 {
     const size_t texels  = row_texels(table),
-                 entries = table->cells.first[cell_count(&table->cells)];
+                 entries = table->cells.first[grid_cell_count(&table->cells)];
     for (size_t i = 0; i < entries; i++)
         memcpy(copies + i * texels, rows + table->cells.instances[i] * texels,
                texels * sizeof *rows);

@@ -16,16 +16,7 @@ static bool reads_normals(const Graph *graph, const Tape *tape)
 
 static size_t nearest_component(KrsState *state, const double point[3])
 {
-    const KrsScene *scene   = state->scene;
-    size_t          nearest = 0;
-    if (scene->component_count == 1)
-        return 0;
-    tape_run_point(&state->tapes.distance, point, state->values);
-    for (size_t i = 1; i < scene->component_count; i++)
-        if (state->values[distance_root(&scene->roots, i)].v[0] <
-            state->values[distance_root(&scene->roots, nearest)].v[0])
-            nearest = i;
-    return nearest;
+    return state->scene->component_count == 1 ? 0 : state_nearest_component(state, point) - 1;
 }
 
 /* Finds the place in a texture; false: nothing there reads one. */
