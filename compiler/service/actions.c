@@ -2,7 +2,6 @@
  * actions.c: changes of a text that are offered: quick fixes, a number as a param, an expression as a definition; colours;
  * the canonical layout.
  */
-#include <stdlib.h>
 #include <string.h>
 
 #include "compiler/front/format.h"
@@ -205,7 +204,7 @@ static bool find_param_line(const Here *here, const Way *way, const char *name, 
     const char   *text      = here->source->text + number->span.start;
     const int     length    = (int)(number->span.end - number->span.start);
     const bool    angle     = length > 3 && memcmp(text + length - 3, "deg", 3) == 0;
-    const double  value     = angle ? strtod(text, NULL) : number->number[0];
+    const double  value     = angle ? text_decimal(text, (size_t)length - 3) : number->number[0];
     const Reach   reaches[] = {
           {0, 2 * value}, {0.5 * value, 2 * value}, {0.5 * value, angle ? 0.5 * (value + 180) : 1}};
     const size_t before = mistakes_instead(here, here->source->text, here->source->length);
@@ -346,16 +345,11 @@ void answer_actions(const Here *here, const ServiceQuestion *about, Json *json)
 void answer_formatting(const Here *here, const ServiceQuestion *about, Json *json)
 {
     const Source *source = here->source;
-    const Diags  *diags  = &here->analysis->diags;
     Text          text   = {.arena = &here->service->arena};
-    bool          wrong  = false;
     (void)about;
-    for (size_t i = 0; i < diags->count; i++)
-        wrong = wrong || (diags->items[i]->code < DIAG_UNKNOWN_NAME &&
-                          diags->items[i]->span.source == here->file->source);
     text_add(&text, "");
     json_open(json, NULL, "[");
-    if (!wrong &&
+    if (!has_unread(here->analysis, here->file) &&
         format_source(here->file->source, &here->analysis->sources, &here->service->arena, &text)) {
         uint32_t start = 0, end = source->length, last = (uint32_t)text.length;
         while (start < end && start < last && source->text[start] == text.bytes[start])
@@ -365,9 +359,9 @@ void answer_formatting(const Here *here, const ServiceQuestion *about, Json *jso
             last--;
         }
         /* No edit begins or ends within a character. */
-        while (start > 0 && (source->text[start] & 0xC0) == 0x80)
+        while (start > 0 && !text_begins_character(source->text[start]))
             start--;
-        while (end < source->length && (source->text[end] & 0xC0) == 0x80) {
+        while (end < source->length && !text_begins_character(source->text[end])) {
             end++;
             last++;
         }

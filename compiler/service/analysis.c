@@ -174,19 +174,23 @@ const File *file_of(const Analysis *a, uint32_t source)
     return NULL;
 }
 
-/* ---- places in trees ---- */
-
-static bool contains(Span span, uint32_t offset)
+bool has_unread(const Analysis *a, const File *file)
 {
-    return span.start <= offset && offset <= span.end;
+    for (size_t i = 0; i < a->diags.count; i++)
+        if (a->diags.items[i]->code < DIAG_UNKNOWN_NAME &&
+            a->diags.items[i]->span.source == file->source)
+            return true;
+    return false;
 }
+
+/* ---- places in trees ---- */
 
 /* Returns the child at an offset; of two that touch there, the second. */
 static const Syntax *child_at(const Syntax *syntax, uint32_t offset)
 {
     const Syntax *found = NULL;
     for (uint32_t i = 0; i < syntax->count; i++)
-        if (contains(syntax->children[i]->span, offset))
+        if (span_has(syntax->children[i]->span, offset))
             found = syntax->children[i];
     return found;
 }
@@ -207,8 +211,8 @@ Way find_way_to(Arena *arena, const Syntax *tree, const Syntax *node)
         const Syntax *next = NULL;
         array_push(arena, &way, here);
         for (uint32_t i = 0; i < here->count && next != node; i++)
-            if (here->children[i] == node || (contains(here->children[i]->span, node->span.start) &&
-                                              contains(here->children[i]->span, node->span.end)))
+            if (here->children[i] == node || (span_has(here->children[i]->span, node->span.start) &&
+                                              span_has(here->children[i]->span, node->span.end)))
                 next = here->children[i];
         here = next;
     }
@@ -247,7 +251,7 @@ const Token *find_pointed(const Tokens *tokens, uint32_t offset)
     const bool   sign  = token->kind >= TOKEN_LEFT_PAREN || token->kind == TOKEN_END;
     if (sign && token > tokens->items && token[-1].span.end == offset)
         token--;
-    return contains(token->span, offset) && token->kind != TOKEN_END ? token : NULL;
+    return span_has(token->span, offset) && token->kind != TOKEN_END ? token : NULL;
 }
 
 /* ---- meanings ---- */
@@ -268,7 +272,7 @@ const NameUse *find_use(const File *file, uint32_t offset)
     const NameUse *found = NULL;
     for (size_t i = 0; i < file->uses.count; i++) {
         const NameUse *use = &file->uses.items[i];
-        if (contains(use->span, offset) && (!found || use->span.start == offset))
+        if (span_has(use->span, offset) && (!found || use->span.start == offset))
             found = use;
     }
     return found;
@@ -288,7 +292,7 @@ static const Syntax *defined_around(const File *file, const char *name, uint32_t
     const NameUse *found = NULL;
     for (size_t i = 0; i < file->uses.count; i++) {
         const NameUse *use = &file->uses.items[i];
-        if (use->defines && use->name == name && contains(use->seen, offset) &&
+        if (use->defines && use->name == name && span_has(use->seen, offset) &&
             (!found || use->seen.end - use->seen.start <= found->seen.end - found->seen.start))
             found = use;
     }
@@ -414,14 +418,19 @@ const char *uri_of(Service *service, const char *path)
     return uri ? uri : path;
 }
 
-void add_location(Service *service, Json *json, const char *name, const Source *source, Span span)
+const char *path_of(Service *service, const Source *source)
 {
     Text path = {.arena = &service->arena};
     if (source->library && strncmp(source->name, "library:", 8) != 0)
         text_add(&path, "library:");
     text_add(&path, source->name);
+    return path.bytes;
+}
+
+void add_location(Service *service, Json *json, const char *name, const Source *source, Span span)
+{
     json_open(json, name, "{");
-    json_text(json, "uri", uri_of(service, path.bytes));
+    json_text(json, "uri", uri_of(service, path_of(service, source)));
     diag_json_range(json, "range", source, span.start, span.end);
     json_close(json, "}");
 }

@@ -66,6 +66,12 @@ Analysis *analyse_instead(Service *service, const Document *document, const char
                           size_t length);
 void      analysis_free(Analysis *analysis);
 
+/* Tells whether an offset is in a span, or touches it. */
+static inline bool span_has(Span span, uint32_t offset)
+{
+    return span.start <= offset && offset <= span.end;
+}
+
 /* Nodes from the tree of a file to the innermost one at an offset. */
 typedef struct Way {
     const Syntax **items;
@@ -77,6 +83,15 @@ Way find_way_to(Arena *arena, const Syntax *tree, const Syntax *node);
 /* Returns the last node of a kind on a way, or NULL; *index is where it is. */
 const Syntax *last_of_kind(const Way *way, SyntaxKind kind, size_t *index);
 
+/* These tell whether a token is a bracket of any kind. */
+static inline bool opens_bracket(TokenKind kind)
+{
+    return kind == TOKEN_LEFT_PAREN || kind == TOKEN_LEFT_BRACKET || kind == TOKEN_LEFT_BRACE;
+}
+static inline bool closes_bracket(TokenKind kind)
+{
+    return kind == TOKEN_RIGHT_PAREN || kind == TOKEN_RIGHT_BRACKET || kind == TOKEN_RIGHT_BRACE;
+}
 /* Returns the number of the token at an offset, or else of the one before it. */
 size_t find_token(const Tokens *tokens, uint32_t offset);
 /* Returns the word, number or string at an offset, or just before it; or else what is there; NULL:
@@ -97,6 +112,8 @@ const BuiltinWord *find_word(const char *name, bool method);
 bool               is_method(const BuiltinWord *word);
 bool               is_called(const BuiltinWord *word);
 const File        *file_of(const Analysis *analysis, uint32_t source);
+/* Tells whether a statement of a file could not be read. */
+bool has_unread(const Analysis *analysis, const File *file);
 
 /* A value, and what it was asked of. */
 typedef struct Asked {
@@ -138,7 +155,9 @@ void signature_of_word(const BuiltinWord *word, Signature *signature);
 /* ---- JSON ---- */
 /* Returns the URI of a document or file, or its path if the host knows none. */
 const char *uri_of(Service *service, const char *path);
-/* Adds the path of a source, which is its name; {"uri", "range"}. */
+/* Returns the path of a source, which is its name; of the library it begins with "library:". */
+const char *path_of(Service *service, const Source *source);
+/* Adds the place of a span: {"uri", "range"}. */
 void add_location(Service *service, Json *json, const char *name, const Source *source, Span span);
 
 /* ---- tokens.c ---- */

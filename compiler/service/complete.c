@@ -13,10 +13,9 @@ static size_t open_bracket(const Completion *c)
     size_t depth = 0;
     for (size_t i = c->before ? (size_t)(c->before - c->tokens.items) + 1 : 0; i-- > 0;) {
         const TokenKind kind = c->tokens.items[i].kind;
-        if (kind == TOKEN_RIGHT_BRACE || kind == TOKEN_RIGHT_PAREN || kind == TOKEN_RIGHT_BRACKET)
+        if (closes_bracket(kind))
             depth++;
-        else if (kind == TOKEN_LEFT_BRACE || kind == TOKEN_LEFT_PAREN ||
-                 kind == TOKEN_LEFT_BRACKET) {
+        else if (opens_bracket(kind)) {
             if (depth-- == 0)
                 return i;
         }

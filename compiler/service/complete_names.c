@@ -72,7 +72,7 @@ static void find_statement(const Completion *c, size_t *first, size_t *last)
         }
 }
 
-/* Brackets that close what is open at the place. */
+/* Adds the brackets that close what is open at the place. */
 static void add_closers(const Completion *c, size_t first, Text *out)
 {
     struct {
@@ -82,10 +82,9 @@ static void add_closers(const Completion *c, size_t first, Text *out)
     Arena *arena = &c->here->service->arena;
     for (size_t i = first; i < c->tokens.count && c->tokens.items[i].span.end <= c->start; i++) {
         const TokenKind kind = c->tokens.items[i].kind;
-        if (kind == TOKEN_LEFT_PAREN || kind == TOKEN_LEFT_BRACKET || kind == TOKEN_LEFT_BRACE)
+        if (opens_bracket(kind))
             array_push(arena, &open, kind);
-        else if (open.count > 0 && (kind == TOKEN_RIGHT_PAREN || kind == TOKEN_RIGHT_BRACKET ||
-                                    kind == TOKEN_RIGHT_BRACE))
+        else if (open.count > 0 && closes_bracket(kind))
             open.count--;
     }
     while (open.count > 0) {

@@ -79,7 +79,7 @@ static void add_head(const Here *here, const Syntax *syntax, Text *out)
         while (end > start && (text[end - 1] == ';' || text[end - 1] == ' '))
             end--;
         const bool cut = end - start > LONGEST;
-        for (end = cut ? start + LONGEST : end; cut && (text[end] & 0xC0) == 0x80;)
+        for (end = cut ? start + LONGEST : end; cut && !text_begins_character(text[end]);)
             end--;
         text_add_bytes(&head, text + start, end - start);
         text_add(&head, cut ? " ..." : "");
@@ -165,15 +165,13 @@ static bool add_property(const Here *here, const Way *way, size_t at, Text *out)
     return true;
 }
 
-static bool is_in(Span span, uint32_t offset) { return span.start <= offset && offset <= span.end; }
-
-/* Names behind dots and of properties, which are no names of values. */
+/* Adds what is known of a name behind a dot or of a property, which is no name of a value. */
 static bool add_label(const Here *here, Text *out, Span *span)
 {
     const Way way = find_way(&here->service->arena, here->file->syntax, here->offset);
     for (size_t i = way.count; i-- > 0;) {
         const Syntax *node = way.items[i];
-        if (!node->name || !is_in(node->name_span, here->offset))
+        if (!node->name || !span_has(node->name_span, here->offset))
             continue;
         *span = node->name_span;
         if (node->kind == SYNTAX_METHOD)

@@ -7,16 +7,6 @@
 
 /* ---- the call ---- */
 
-static bool opens(TokenKind kind)
-{
-    return kind == TOKEN_LEFT_PAREN || kind == TOKEN_LEFT_BRACKET || kind == TOKEN_LEFT_BRACE;
-}
-
-static bool closes(TokenKind kind)
-{
-    return kind == TOKEN_RIGHT_PAREN || kind == TOKEN_RIGHT_BRACKET || kind == TOKEN_RIGHT_BRACE;
-}
-
 /* Goes back from the offset to the bracket that is open there, past those that are closed. */
 bool find_call(const Tokens *tokens, uint32_t offset, CallHere *call)
 {
@@ -27,11 +17,11 @@ bool find_call(const Tokens *tokens, uint32_t offset, CallHere *call)
         const Token *token = &tokens->items[i];
         if (token->span.end > offset || token->kind == TOKEN_END)
             continue;
-        if (closes(token->kind))
+        if (closes_bracket(token->kind))
             depth++;
-        else if (opens(token->kind) && depth > 0)
+        else if (opens_bracket(token->kind) && depth > 0)
             depth--;
-        else if (opens(token->kind)) {
+        else if (opens_bracket(token->kind)) {
             const Token *callee = i > 0 ? token - 1 : NULL;
             call->callee        = callee;
             call->method        = i > 1 && callee[-1].kind == TOKEN_DOT;

@@ -53,15 +53,14 @@ static const char *title_of(const Here *here, const Syntax *syntax)
     if (length > syntax->span.end - syntax->span.start)
         length = syntax->span.end - syntax->span.start;
     bool cut = length > LONGEST;
-    for (length = cut ? LONGEST : length; cut && length > 0 && (text[length] & 0xC0) == 0x80;)
+    for (length = cut ? LONGEST : length;
+         cut && length > 0 && !text_begins_character(text[length]);)
         length--;
     Text title = {.arena = &here->service->arena};
     text_add_bytes(&title, text, length);
     text_add(&title, cut ? " ..." : "");
     return title.bytes;
 }
-
-static void add_symbols(const Here *here, const Syntax *block, Json *json);
 
 static void add_symbol(const Here *here, const Syntax *syntax, SymbolKind kind, Json *json)
 {
@@ -79,7 +78,7 @@ static void add_symbol(const Here *here, const Syntax *syntax, SymbolKind kind, 
     json_close(json, "}");
 }
 
-/* Symbols of a block, and of the blocks in it. */
+/* Adds the symbols of a block, and of the blocks in it. */
 static void add_symbols(const Here *here, const Syntax *block, Json *json)
 {
     for (uint32_t i = 0; i < block->count; i++) {
@@ -119,7 +118,7 @@ static void add_fold(const Source *source, uint32_t start, uint32_t end, const c
     json_close(json, "}");
 }
 
-/* Comments between two tokens: lines that follow each other are one. */
+/* Folds the comments between two tokens: lines that follow each other are one. */
 static void fold_comments(const Source *source, uint32_t from, uint32_t to, Json *json)
 {
     uint32_t begun = UINT32_MAX, end = 0; /* of lines of `//` */
@@ -157,11 +156,9 @@ void answer_folding(const Here *here, const ServiceQuestion *about, Json *json)
         if (token->span.start > before + 3)
             fold_comments(here->source, before, token->span.start, json);
         before = token->span.end;
-        if (token->kind == TOKEN_LEFT_BRACE || token->kind == TOKEN_LEFT_BRACKET ||
-            token->kind == TOKEN_LEFT_PAREN)
+        if (opens_bracket(token->kind))
             open[depth++] = token->span.start;
-        if (depth > 0 && (token->kind == TOKEN_RIGHT_BRACE || token->kind == TOKEN_RIGHT_BRACKET ||
-                          token->kind == TOKEN_RIGHT_PAREN))
+        if (depth > 0 && closes_bracket(token->kind))
             add_fold(here->source, open[--depth], token->span.start, NULL, true, json);
     }
     json_close(json, "]");

@@ -50,8 +50,7 @@ static const File *used_file(const Here *here)
     const Syntax *tree = here->file->syntax;
     for (uint32_t i = 0; i < tree->count; i++) {
         const Syntax *use = tree->children[i];
-        if (use->kind == SYNTAX_USE && use->name_span.start <= here->offset &&
-            here->offset <= use->name_span.end)
+        if (use->kind == SYNTAX_USE && span_has(use->name_span, here->offset))
             return files_used(&here->analysis->files, here->file, use);
     }
     return NULL;
@@ -327,15 +326,6 @@ static bool is_safe(const Here *here, const Places *places, const char *word)
                          places, word);
 }
 
-static bool has_unread(const Analysis *a, const File *file)
-{
-    for (size_t i = 0; i < a->diags.count; i++)
-        if (a->diags.items[i]->code < DIAG_UNKNOWN_NAME &&
-            a->diags.items[i]->span.source == file->source)
-            return true;
-    return false;
-}
-
 /* Tells whether the name stands where a text cannot be read, so that nobody knows what it means. */
 static bool is_unread(const File *file, const Source *source, const char *name)
 {
@@ -416,12 +406,9 @@ void answer_links(const Here *here, const ServiceQuestion *about, Json *json)
             continue;
         const Span    span   = use->name_span;
         const Source *source = &here->analysis->sources.items[file->source];
-        Text          path   = {.arena = &here->service->arena};
-        text_add(&path, source->library ? "library:" : "");
-        text_add(&path, source->name);
         json_open(json, NULL, "{");
         diag_json_range(json, "range", here->source, span.start, span.end);
-        json_text(json, "target", uri_of(here->service, path.bytes));
+        json_text(json, "target", uri_of(here->service, path_of(here->service, source)));
         json_close(json, "}");
     }
     json_close(json, "]");
