@@ -54,7 +54,8 @@ static void write_all(Writing *writing, const Instructions *instructions)
         write(writing, &instructions->items[i]);
 }
 
-/* Decorations of copies come with those of what they were copied from. */
+/* Writes what stands in front of the functions; decorations of copies come with those of what they were copied
+   from. */
 static void write_globals(Writing *writing)
 {
     const Instructions *globals   = &writing->module->globals;

@@ -94,7 +94,7 @@ static uint16_t find_members(const Forwarding *forwarding, uint32_t pointer,
     return count;
 }
 
-/* Lets a load be the value that was stored, or a member of it. */
+/* Lets the result of a load be the value that was stored, or a member of it. */
 static void forward(Forwarding *forwarding, Instruction *load, uint32_t value)
 {
     static const uint16_t ids[]  = {1, 3};

@@ -112,7 +112,7 @@ static void copy_call(Inliner *inliner, const Instruction *call)
     inliner->active[function] = false;
 }
 
-/* Variables of a function become some of the entry point.  Those that begin with a value, as whether
+/* Copies a variable of a function to those of the entry point.  Those that begin with a value, as whether
    the function has returned, begin with it at each call. */
 static void copy_variable(Inliner *inliner, const Instruction *variable, bool called)
 {
@@ -129,7 +129,7 @@ static void copy_variable(Inliner *inliner, const Instruction *variable, bool ca
     array_push_large(module->arena, &module->variables, copy);
 }
 
-/* The value of a call is what the function returns. */
+/* Copies a return: the value of a call is what the function returns. */
 static void copy_return(Inliner *inliner, const Instruction *from, const Instruction *call)
 {
     inliner->refused = inliner->refused || from[1].opcode != SPIRV_FUNCTION_END;
@@ -200,7 +200,7 @@ static void copy_function(Inliner *inliner, size_t at, const Instruction *call)
 
 /* ---- afterwards ---- */
 
-/* Phis name the blocks in which their values come. */
+/* Lets phis name the blocks in which their values come now. */
 static void correct_phis(Inliner *inliner)
 {
     ShaderModule *module = inliner->module;
