@@ -3,6 +3,8 @@
  */
 #include "compiler/base/json.h"
 
+#include <stdio.h>
+
 /* Adds what stands before a member or an element. */
 static void begin(Json *json, const char *name)
 {
@@ -71,7 +73,9 @@ void json_numbers(Json *json, const char *name, const double *numbers, size_t co
 void json_rounded(Json *json, const char *name, double number)
 {
     begin(json, name);
-    text_format(&json->text, "%.3f", number);
+    char printed[400]; /* of the largest numbers */
+    snprintf(printed, sizeof printed, "%.3f", number);
+    text_printed_number(&json->text, printed);
 }
 
 void json_ready(Json *json, const char *name, const char *value)

@@ -66,9 +66,7 @@ void text_format(Text *text, const char *format, ...)
     va_end(arguments);
 }
 
-/* Adds a number that printf has written, with a point in place of the locale's decimal
-   separator. */
-static void add_with_point(Text *text, const char *printed)
+void text_printed_number(Text *text, const char *printed)
 {
     bool inside = false;
     for (const char *c = printed; *c; c++) {
@@ -97,7 +95,7 @@ void text_number(Text *text, double number)
         if (strtod(printed, NULL) == number)
             break;
     }
-    add_with_point(text, printed);
+    text_printed_number(text, printed);
 }
 
 /* Reads a decimal number by strtod, which gets the digits and an exponent, but no decimal point:

@@ -24,6 +24,8 @@ void text_format_list(Text *text, const char *format, va_list arguments)
 
 /* Adds the shortest decimal that reads back as the same double ("0.1", "1e+30", "inf"). */
 void text_number(Text *text, double number);
+/* Adds a number that printf has written, with a point in place of the locale's decimal separator. */
+void text_printed_number(Text *text, const char *printed);
 
 /* Returns the number that a decimal without a sign stands for: digits, perhaps a point and an
    exponent. */

@@ -3,6 +3,7 @@
  * `deg`, colours that go up to 255.
  */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "compiler/eval/elaborate.h"
@@ -25,10 +26,14 @@ bool written_in_degrees(const Elaboration *e, const Syntax *syntax)
 void add_number(Text *text, double number, bool degrees)
 {
     /* Conversions to radians and back make noise of the last digits. */
-    if (degrees)
-        text_format(text, "%.12gdeg", number * 180 / M_PI);
-    else
+    char printed[64];
+    if (!degrees) {
         text_number(text, number);
+        return;
+    }
+    snprintf(printed, sizeof printed, "%.12g", number * 180 / M_PI);
+    text_printed_number(text, printed);
+    text_add(text, "deg");
 }
 
 /* Tells whether an expression is a number as such, perhaps with a minus. */

@@ -117,6 +117,7 @@ void form_march_groups(Compilation *c)
                                                c->scene->component_count + 1);
     Box         rest         = box_empty;
     double      rest_flops   = 0;
+    bool        any_rest     = false;
     for (size_t i = 0; i < c->scene->component_count; i++) {
         const Component *component = &c->elaborated.components.items[i];
         march_groups[i]            = 0;
@@ -137,9 +138,10 @@ void form_march_groups(Compilation *c)
             continue;
         }
         rest_flops += flops;
-        rest = box_hull(rest, component->shape->box);
+        any_rest = true;
+        rest     = box_hull(rest, component->shape->box);
     }
-    if (rest_flops > 0 && program->march_group_count > 0) {
+    if (any_rest && program->march_group_count > 0) {
         for (size_t i = 0; i < c->scene->component_count; i++)
             if (march_groups[i] == KRS_MAX_MARCH_GROUPS)
                 march_groups[i] = (uint32_t)program->march_group_count + 1;

@@ -20,14 +20,16 @@ static KrsStatus compile_edited(const KrsScene *scene, const char *text, size_t 
     if (automatic)
         options.specialize = KRS_SPECIALIZE_STRUCTURE;
     KrsStatus status = compile_again(scene, text, length, &options, updated);
-    if (status != KRS_OK || !automatic || krs_structure_is_affordable(*updated))
-        return status;
-    krs_scene_free(*updated);
-    options.specialize = KRS_SPECIALIZE_AUTO;
-    options.diagnostic = NULL; /* all has been said */
-    status             = compile_again(scene, text, length, &options, updated);
-    if (status == KRS_OK)
+    if (status == KRS_OK && automatic && !krs_structure_is_affordable(*updated)) {
+        krs_scene_free(*updated);
+        options.specialize = KRS_SPECIALIZE_AUTO;
+        options.diagnostic = NULL; /* all has been said */
+        status             = compile_again(scene, text, length, &options, updated);
+    }
+    if (status == KRS_OK) { /* those of later edits */
+        (*updated)->options.specialize = scene->options.specialize;
         (*updated)->options.diagnostic = scene->options.diagnostic;
+    }
     return status;
 }
 

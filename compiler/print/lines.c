@@ -142,8 +142,11 @@ static void add_literal(Text *text, double number)
         if (sscanf(digits, "%f", &back) == 1 && back == single)
             break;
     }
-    bool bare = !strpbrk(digits, ".e");
-    text_format(text, single < 0 ? "(%s%s)" : "%s%s", digits, bare ? ".0" : "");
+    const bool bare = strspn(digits, "-0123456789") == strlen(digits);
+    text_add(text, single < 0 ? "(" : "");
+    text_printed_number(text, digits);
+    text_add(text, bare ? ".0" : "");
+    text_add(text, single < 0 ? ")" : "");
 }
 
 const char *emit_constant(Emitter *e, const Expr *expr)

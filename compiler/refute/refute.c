@@ -201,6 +201,8 @@ static bool try_steps(Refuter *r, size_t suspect, uint64_t operations, Finding *
         }
         arena_free(r->in->scratch);
     }
+    if (!refuted)
+        finding->claim = CLAIM_DISTANCE;
     return refuted;
 }
 

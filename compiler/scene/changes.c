@@ -337,8 +337,8 @@ static bool same_parameters(const KrsScene *a, const KrsScene *b)
 
 static bool same_components(const KrsScene *a, const KrsScene *b)
 {
-    bool same = a->component_count == b->component_count;
-    for (size_t i = 0; same && i < a->component_count; i++)
+    bool same = a->shown_count == b->shown_count;
+    for (size_t i = 0; same && i < a->shown_count; i++)
         same = same_name(a->components[i].name, b->components[i].name);
     return same;
 }
@@ -352,7 +352,7 @@ static bool same_bounds(const KrsScene *a, const KrsScene *b)
         same = a->slopes[i].slot == b->slopes[i].slot &&
                memcmp(&a->slopes[i].task.box, &b->slopes[i].task.box,
                       sizeof a->slopes[i].task.box) == 0;
-    for (size_t i = 0; same && i < a->component_count; i++)
+    for (size_t i = 0; same && i < a->shown_count; i++)
         same = memcmp(a->components[i].low, b->components[i].low, sizeof(double[3])) == 0 &&
                memcmp(a->components[i].high, b->components[i].high, sizeof(double[3])) == 0;
     return same;

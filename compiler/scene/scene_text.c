@@ -43,6 +43,12 @@ static size_t known_functions(const KrsScene *scene, const KrsVariant *variant,
         wanted[count++] = KRS_FUNCTION_GRADIENT;
     if (program->along && !variant->camera_relative)
         wanted[count++] = KRS_FUNCTION_ALONG;
+    if (scene->volume_count > 0) {
+        wanted[count++] = KRS_FUNCTION_DENSITY;
+        wanted[count++] = KRS_FUNCTION_ALBEDO;
+        wanted[count++] = KRS_FUNCTION_ANISOTROPY;
+        wanted[count++] = KRS_FUNCTION_EMISSION;
+    }
     return count;
 }
 

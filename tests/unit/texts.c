@@ -274,6 +274,26 @@ static void places_are_found_in_long_lines(void **state)
     }
 }
 
+static void separators_of_locales_become_points(void **state)
+{
+    static const char *const numbers[][2] = {{"1.5", "1.5"},
+                                             {"-0,25", "-0.25"},
+                                             {"1,5e-07", "1.5e-07"},
+                                             {"0\xd9\xab"
+                                              "5",
+                                              "0.5"},
+                                             {"-12", "-12"},
+                                             {"inf", "inf"}};
+    (void)state;
+    Reading *r = reading_new();
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        Text text = {.arena = &r->arena};
+        text_printed_number(&text, numbers[i][0]);
+        assert_string_equal(text.bytes, numbers[i][1]);
+    }
+    reading_free(r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -282,6 +302,7 @@ int main(void)
         cmocka_unit_test(arena_is_cleared),
         cmocka_unit_test(arena_refuses_products_that_overflow),
         cmocka_unit_test(numbers_are_short_and_exact),
+        cmocka_unit_test(separators_of_locales_become_points),
         cmocka_unit_test(decimals_of_many_digits_are_exact),
         cmocka_unit_test(json_is_escaped),
         cmocka_unit_test(names_are_kept_once),

@@ -183,6 +183,32 @@ static void auto_takes_numbers_out_with_the_first_edit(void **context)
     " s.rotate([0, 0, 1], 1deg * i + 0.01).move([i % 8, 9.2, floor(i / 8)])]"                \
     " for i in 0..60 for s in solids(0.001 * i + more)]);"
 
+/* Functions of a medium are in shaders, too. */
+static void media_are_compared(void **context)
+{
+    static const char before[] = "param a = 1; medium { within: sphere(1), density: 1 + a * x }\n"
+                                 "show box([4, 0.1, 4]);";
+    static const struct {
+        const char *from, *to;
+        KrsChange   kind;
+    } changed[] = {
+        {"1 + a", "1 + a", KRS_CHANGE_NOTHING},
+        {"1 + a * x", "2 + a * x", KRS_CHANGE_VALUES},
+        {"1 + a * x", "1 + a * x * x", KRS_CHANGE_STRUCTURE},
+        {"density", "emission: [x * x, 1, 1], density", KRS_CHANGE_STRUCTURE},
+    };
+    (void)context;
+    KrsScene *scene = compile(before, KRS_SPECIALIZE_STRUCTURE);
+    for (size_t i = 0; i < sizeof changed / sizeof *changed; i++) {
+        KrsChanges changes;
+        KrsScene *updated = update(scene, edited(before, changed[i].from, changed[i].to), &changes);
+        if (changes.kind != changed[i].kind)
+            fail_msg("%s: %d", changed[i].to, changes.kind);
+        krs_scene_free(updated);
+    }
+    krs_scene_free(scene);
+}
+
 static void auto_keeps_very_many_numbers(void **context)
 {
     (void)context;
@@ -193,7 +219,12 @@ static void auto_keeps_very_many_numbers(void **context)
     KrsScene   *first     = update(scene, text, &changes);
     KrsScene   *literal   = compile(text, KRS_SPECIALIZE_NUMBERS);
     KrsScene   *second    = update(first, MANY, &changes);
+    KrsScene   *few       = update(second, BEFORE, &changes);
+    KrsScene   *again     = update(few, MANY, &changes);
     assert_false(krs_structure_is_affordable(structure));
+    assert_true(same_shaders(again, scene));
+    krs_scene_free(again);
+    krs_scene_free(few);
     assert_true(same_shaders(first, literal));
     assert_true(same_shaders(second, scene));
     krs_scene_free(second);
@@ -476,6 +507,7 @@ int main(void)
         cmocka_unit_test(changes_are_told),
         cmocka_unit_test(literals_are_structure),
         cmocka_unit_test(auto_takes_numbers_out_with_the_first_edit),
+        cmocka_unit_test(media_are_compared),
         cmocka_unit_test(auto_keeps_very_many_numbers),
         cmocka_unit_test(tables_are_values),
         cmocka_unit_test(bodies_are_compared),
