@@ -33,8 +33,11 @@ static void add_picture(const Options *options, const char *path)
 static void collect_readable(const Options *options)
 {
     for (size_t i = 0; i < options->files.count; i++) {
-        const char *path  = options->files.items[i];
-        const bool  alone = !takes_scenes(options->command) || pack_is_named(path);
+        const char *path = options->files.items[i];
+        /* Scenes, and files that are imported, include others. */
+        const bool alone = !(takes_scenes(options->command) ||
+                             options->command == COMMAND_IMPORT) ||
+                           pack_is_named(path);
         add_readable(options, alone ? path : scene_root(options, path));
     }
     add_picture(options, options->depth_in);
