@@ -3,7 +3,7 @@
 # or `krs merge` says why they do not.
 # shellcheck source-path=SCRIPTDIR disable=SC2016,SC2086
 . "$(dirname "$0")/common.sh"
-plan 26
+plan 27
 export XDG_CACHE_HOME="$work/caches"
 
 cat >scene.krs <<'END'
@@ -71,6 +71,20 @@ run render $how2 -o cut.exr
 run render $how $paths --samples 64..191/192 -o uncut.exr
 cmp -s cut.exr uncut.exr
 result $? "from which it goes on to the same sums"
+
+# ---- photons, which are those of the sample in every tile ----
+
+sed 's/roughness: 0.2/roughness: 0.05/' scene.krs >smooth.krs
+photons="smooth.krs --size 34x26 --rays kernels --quiet --integrator path --caustics photons"
+run render $photons --samples 4 -o all.exr
+export KRS_TEST_CHECKPOINT=0.001
+for tile in 0,0,17,26 17,0,17,9 17,9,17,17; do
+    run render $photons --resume --samples 4 --crop $tile -o "photons-$tile.exr"
+done
+unset KRS_TEST_CHECKPOINT
+run merge photons-*.exr -o merged.exr
+[ "$status" -eq 0 ] && cmp -s all.exr merged.exr
+result $? "tiles have the caustics of the picture"
 
 # ---- what must agree ----
 
