@@ -176,10 +176,8 @@ static const struct Piece *find_piece(const char *word, size_t length)
 
 static const char *find_template(const char *name)
 {
-    const EmbeddedFile *file = export_files;
-    while (file->name && strcmp(file->name, name) != 0)
-        file++;
-    assert(file->name);
+    const EmbeddedFile *file = embedded_find(export_files, name);
+    assert(file);
     return file->text;
 }
 

@@ -99,12 +99,10 @@ static bool write_file(const char *path, const EmbeddedFile *file)
 /* Returns the path of a file of the library, which is written where it is not there; for free(). */
 static char *library_path(const Places *places, const char *name)
 {
-    const EmbeddedFile *file = library_files;
+    const EmbeddedFile *file = embedded_find(library_files, name);
     char               *path = NULL;
     struct stat         about;
-    while (file->name && strcmp(file->name, name) != 0)
-        file++;
-    if (!file->name || !places->folder ||
+    if (!file || !places->folder ||
         asprintf(&path, "%s/library-%s/%s", places->folder, KRS_VERSION, name) < 0)
         return NULL;
     if ((stat(path, &about) == 0 && about.st_size == (off_t)file->length) ||

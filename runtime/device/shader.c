@@ -67,10 +67,7 @@ static const EmbeddedFile *find_module(const ShaderSource *source)
     if (length >= sizeof wanted || strspn(defines, " \n") != strlen(defines))
         return NULL;
     snprintf(wanted + length, sizeof wanted - length, ".spv");
-    for (const EmbeddedFile *file = module_files; file->name; file++)
-        if (strcmp(file->name, wanted) == 0)
-            return file;
-    return NULL;
+    return embedded_find(module_files, wanted);
 }
 
 /* Makes the cache's key: all that the text depends on but cannot show, and the text. */

@@ -88,8 +88,6 @@ const char *core_capabilities(void) { return get_service() ? service_capabilitie
 
 const char *core_library(const char *name)
 {
-    for (const EmbeddedFile *file = library_files; file->name; file++)
-        if (strcmp(file->name, name) == 0)
-            return file->text;
-    return NULL;
+    const EmbeddedFile *file = embedded_find(library_files, name);
+    return file ? file->text : NULL;
 }
