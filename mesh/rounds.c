@@ -428,14 +428,15 @@ static bool sharpen(Mesher *m)
    there are none. */
 static bool tidy(Mesher *m)
 {
-    enum { MAX_TIMES = 4, MAX_LOCATIONS = 256 };
+    enum { MAX_TIMES = 4, MAX_LOCATIONS = 256, FEW_LOCATIONS = 24 };
     static const double AROUND = 3, DEEP = 0.5; /* errors */
     double              locations[MAX_LOCATIONS][3];
     bool                any = false;
     if (m->tidied++ >= MAX_TIMES)
         return false;
     size_t count = handles_find(&m->contour, AROUND * m->error, locations, MAX_LOCATIONS);
-    if (m->tidied > 1 && count > m->untidy)
+    /* Few may become more at first, and are gone in the end; many take long, and stay. */
+    if (m->tidied > 1 && count > m->untidy && count > FEW_LOCATIONS)
         return false;
     m->untidy = count;
     for (size_t i = 0; i < count; i++)
